@@ -15,6 +15,7 @@ Examples
 """
 
 import sys
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from os import PathLike, fspath
@@ -334,6 +335,7 @@ def study(
     values: Mapping[str, object] | None = None,
     analysis: str = "check",
     fidelity: str = "auto",
+    threads: int | None = None,
     workers: int | None = None,
 ) -> "StudyReport":
     """Compute many variants of a case side by side, and keep them in a folder; what stands there is not computed again.
@@ -354,8 +356,10 @@ def study(
         What is done with every variant.
     fidelity : {"auto", "beam", "solid"}
         Of a check.
+    threads : int, optional
+        Variants at a time, each computed by a process of one thread; one a core when left out.
     workers : int, optional
-        Processes; one a core when left out.
+        What ``threads`` was called; it goes with the next version.
 
     Returns
     -------
@@ -375,7 +379,9 @@ def study(
     from loads.plans.plan import plan_of
     from loads.plans.variants import Variants
     from reports.notebook.study_report import StudyReport
+    from reports.page.output import folder_named
 
+    place, threads = folder_named(folder), _at_a_time(threads, workers)
     stated = {path: list(value) if isinstance(value, tuple) else value for path, value in vary.items()}
     plan = plan_of(
         {
@@ -387,8 +393,8 @@ def study(
             "fidelity": fidelity,
         }
     )
-    _, counts = compute_study(Variants(plan, Path()), Path(folder), workers=workers)
-    return StudyReport(Path(folder), counts)
+    _, counts = compute_study(Variants(plan, Path()), place, workers=threads)
+    return StudyReport(place, counts)
 
 
 def size(
@@ -404,6 +410,7 @@ def size(
     analysis: str = "check",
     fidelity: str = "auto",
     accuracy: str | None = None,
+    threads: int | None = None,
     workers: int | None = None,
     folder: "str | PathLike[str] | None" = None,
     progress: Callable[[str], None] | None = None,
@@ -422,7 +429,7 @@ def size(
         Distance of two values of a range; a hundredth of it when left out.
     minimise, maximise : str, optional
         What shall be least or greatest: mass, or a number such as ``"largest drive torque"``.
-    link, values, analysis, fidelity, workers
+    link, values, analysis, fidelity, threads, workers
         As for ``study``; ``analysis`` is check or envelope.
     accuracy, progress
         As for ``check``.
@@ -441,10 +448,9 @@ def size(
     CannotRunError
         Where the disk refuses.
     """
-    from pathlib import Path
-
     from reports.commands.size import find_size
     from reports.notebook.size_report import SizeReport
+    from reports.page.output import folder_named
 
     return SizeReport(
         find_size(
@@ -459,8 +465,8 @@ def size(
             analysis=analysis,
             fidelity=fidelity,
             accuracy=accuracy,
-            workers=workers,
-            folder=None if folder is None else Path(folder),
+            workers=_at_a_time(threads, workers),
+            folder=None if folder is None else folder_named(folder),
             tell=progress or _silent,
         )
     )
@@ -571,6 +577,13 @@ def inspect(path: "str | PathLike[str]", *, material: str | None = None, unit: s
 
 def _case(case: "Case | str | PathLike[str]") -> "Case":
     return read_case(case) if isinstance(case, str | PathLike) else case
+
+
+def _at_a_time(threads: int | None, workers: int | None) -> int | None:
+    if workers is None:
+        return threads
+    warnings.warn("workers is called threads now; the old name goes with the next version", FutureWarning, stacklevel=3)
+    return workers
 
 
 def _command() -> NoReturn:

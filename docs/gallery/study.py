@@ -16,7 +16,7 @@ found = alula.study(
     {"parts.bar.thickness": ["4 mm", "6 mm", "8 mm"]},
     folder.name,
     fidelity="beam",
-    workers=1,
+    threads=1,
 )
 found
 

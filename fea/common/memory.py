@@ -46,6 +46,19 @@ def resident() -> float:
     return float(pages * os.sysconf("SC_PAGE_SIZE"))
 
 
+def with_libraries() -> float:
+    """Load the libraries that solve linkages and solids, and return the memory that this process holds with them.
+
+    Returns
+    -------
+    float
+        [bytes]; 0 where the system does not tell.
+    """
+    import skfem  # noqa: F401
+
+    return resident()
+
+
 def available() -> float:
     """Memory that this process can still take [bytes]: the least that the system, container and limits leave.
 

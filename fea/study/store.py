@@ -91,7 +91,7 @@ class Store:
                 raise CaseError(
                     f"output: another study is writing to '{folder}'; wait for it, or choose another folder"
                 )
-            with _said(folder), cls._open(folder / NAME, "rwc") as store:
+            with _said(folder, _WRITING), cls._open(folder / NAME, "rwc") as store:
                 store._require_known(folder)
                 store._prepare()
                 yield store
@@ -117,12 +117,22 @@ class Store:
         Raises
         ------
         CaseError
-            For a folder without a study.
+            For a folder without a study, or in which none was begun yet.
+        CannotRunError
+            Where the file cannot be read.
         """
         if not (folder / NAME).is_file():
             raise CaseError(f"'{folder}' holds no study ({NAME}); give the folder that 'alula study' wrote")
-        with _said(folder), cls._open(folder / NAME, "rw" if os.access(folder, os.W_OK) else "ro") as store:
+        with (
+            _said(folder, "'{file}' cannot be read ({told}); try again, or give another folder"),
+            cls._open(folder / NAME, "rw" if os.access(folder, os.W_OK) else "ro") as store,
+        ):
             store._require_known(folder)
+            if not (store._version() and store.facts()):
+                raise CaseError(
+                    f"'{folder}' holds no study yet: {NAME} has no plan and no point; compute one into it with "
+                    "'alula study CASE --vary ... -o FOLDER'"
+                )
             yield store
 
     @classmethod
@@ -361,15 +371,16 @@ def _can_lock() -> bool:
     return True
 
 
+_WRITING = "output: writing to '{file}' failed ({told}); all points that were finished before stand there"
+
+
 @contextmanager
-def _said(folder: Path) -> Iterator[None]:
-    """Turn what SQLite refuses into a sentence."""
+def _said(folder: Path, sentence: str) -> Iterator[None]:
+    """Turn what SQLite refuses into a sentence, with the file and its words."""
     try:
         yield
     except sqlite3.DatabaseError as error:
         told = str(error)
         if "not a database" in told or "malformed" in told:
             raise CaseError(f"output: '{folder / NAME}' is no study of alula, or it is damaged; move it away") from None
-        raise CannotRunError(
-            f"output: writing to '{folder / NAME}' failed ({told}); all points that were finished before stand there"
-        ) from None
+        raise CannotRunError(sentence.format(file=folder / NAME, told=told)) from None

@@ -20,6 +20,7 @@ from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
 from loads.text.explain import printable, sentence
 from loads.text.file_text import LARGEST_FILE, file_text
+from loads.text.nesting import refuse_deep, too_deep
 
 
 class Change(NamedTuple):
@@ -79,11 +80,13 @@ def read_tables(name_or_path: str) -> dict[str, Any]:
     """
     text, where = read_text(name_or_path)
     try:
-        return tomllib.loads(text)
+        tables = tomllib.loads(text)
     except RecursionError:
-        raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
+        raise too_deep(where) from None
     except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
         raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; {_toml_remedy(error)}") from None
+    refuse_deep(tables, where)
+    return tables
 
 
 def _toml_remedy(error: ValueError) -> str:
@@ -262,6 +265,7 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     CaseError
         With one sentence for the first problem.
     """
+    refuse_deep(data, "case")
     _check_version(data)
     context = {"folder": folder}
     tables = with_part_points(data, context)
@@ -339,6 +343,7 @@ def _override(data: dict[str, Any], change: Change) -> None:
     keys = _keys(path)
     if not all(keys):
         raise CaseError(f"{who} '{printable(path)}': write keys with dots between them, for example pose.angle")
+    refuse_deep(change.value, f"{who} {printable(path)}", above=len(keys))
     here: Any = data
     for i, key in enumerate(keys):
         last = i == len(keys) - 1

@@ -10,6 +10,7 @@ from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
 from loads.case.forks import check_fork, check_pair
+from loads.case.heights import layer_of
 from loads.case.joint_rules import check_clearances, check_friction
 from loads.case.layers import check_layers, pin_masses
 from loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
@@ -235,7 +236,7 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
         if not case.stacked:
             raise CaseError(
                 f"checks.{name}: a check of clearance needs to know which links lie at one height, but all lie in one "
-                'plane; give every link a layer or z, such as links.A.layer = 1 with layer_spacing = "7 mm"'
+                f'plane; give every link a layer or z, such as {layer_of(case.links)} with layer_spacing = "7 mm"'
             )
     elif isinstance(check, MassCheck):
         if not (case.checked_links or case.carried or check.others or pin_masses(case)):

@@ -1,6 +1,7 @@
 """At what height along the pins each link lies."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 
 from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Link
@@ -40,7 +41,7 @@ def heights(links: Links, parts: Parts, spacing: float | None, washer: float | N
     if not stated:
         for entry, value in (("layer_spacing", spacing), ("washer", washer)):
             if value is not None:
-                raise CaseError(f"{entry}: no link states a layer; give every link one, such as links.A.layer = 1")
+                raise CaseError(f"{entry}: no link states a layer; give every link one, such as {layer_of(links)}")
         return dict.fromkeys(links, 0.0)
     for name, link in links.items():
         if link.layer is None and link.z is None:
@@ -53,6 +54,23 @@ def heights(links: Links, parts: Parts, spacing: float | None, washer: float | N
     layers = sorted({link.layer for link in links.values() if link.layer is not None})
     levels = _levels(links, parts, layers, spacing, washer)
     return {name: levels[link.layer] if link.layer is not None else link.z or 0.0 for name, link in links.items()}
+
+
+def layer_of(links: Iterable[str]) -> str:
+    """Return the line by which the first link of a case states its layer, as an example.
+
+    Parameters
+    ----------
+    links : iterable of str
+        Their names.
+
+    Returns
+    -------
+    str
+    """
+    name = next(iter(links))
+    plain = name.isascii() and " " not in name and "+" not in name
+    return f"links.{name if plain else json.dumps(name, ensure_ascii=False)}.layer = 0"
 
 
 def _levels(

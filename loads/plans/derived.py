@@ -1,6 +1,6 @@
 """Entries of a case that follow from others, by the expressions that claims have."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from geometry.base.errors import CaseError
@@ -10,7 +10,49 @@ from loads.sources.quantity import Value, describe, unit_of
 from loads.text.explain import printable
 
 
-def derived_value(tables: Mapping[str, Any], path: str, expression: str) -> object:
+def in_turn(links: Mapping[str, str], value: Callable[[str, Collection[str]], None]) -> None:
+    """Evaluate linked entries, each after those that it follows from, in whatever order they are stated.
+
+    Parameters
+    ----------
+    links : mapping of str to str
+        Entry -> expression.
+    value : callable
+        Evaluates one entry, and raises ``WaitsError`` where it follows from one of those that have no value yet.
+
+    Raises
+    ------
+    CaseError
+        For entries that follow from each other.
+    """
+    left, asked = dict.fromkeys(links), list[str]()
+    while left:
+        asked = asked or [next(iter(left))]
+        try:
+            value(asked[-1], left)
+        except WaitsError as wait:
+            if wait.path in asked:
+                raise CaseError(_in_a_circle(asked[asked.index(wait.path) :])) from None
+            asked.append(wait.path)
+        else:
+            del left[asked.pop()]
+
+
+class WaitsError(Exception):
+    """A linked entry follows from another one, ``path``, that has no value yet."""
+
+    def __init__(self, path: str) -> None:
+        super().__init__(path)
+        self.path = path
+
+
+def _in_a_circle(paths: list[str]) -> str:
+    first, *others = map(printable, paths)
+    way = "".join(f"{path}, which follows from " for path in others)
+    return f"link {first}: it follows from {way}{first if others else 'itself'}; state one of the entries by a value"
+
+
+def derived_value(tables: Mapping[str, Any], path: str, expression: str, waiting: Collection[str] = ()) -> object:
     """Evaluate the expression of a linked entry.
 
     Parameters
@@ -21,6 +63,8 @@ def derived_value(tables: Mapping[str, Any], path: str, expression: str) -> obje
         The entry that is linked; names in the expression are entries beside it, or whole paths.
     expression : str
         As of claims, such as ``"outer_diameter + 2*fillet_radius"``.
+    waiting : collection of str
+        Linked entries that have no value yet.
 
     Returns
     -------
@@ -31,11 +75,20 @@ def derived_value(tables: Mapping[str, Any], path: str, expression: str) -> obje
     ------
     CaseError
         For an expression that is wrong, and for an entry that the case does not state.
+    WaitsError
+        Where it follows from an entry that waits.
     """
-    beside = tuple(path.split(".")[:-1])
+    own = tuple(path.split("."))
+    beside, later = own[:-1], {tuple(other.split(".")): other for other in waiting}
+
+    def await_all_above(whole: Path, most: int) -> None:
+        for length in range(1, most + 1):
+            if whole[:length] in later:
+                raise WaitsError(later[whole[:length]])
 
     def named(name: Path) -> Value | str:
         for whole in ((*beside, *name), name):
+            await_all_above(whole, len(whole))
             found = entry(tables, whole)
             if found is not None:
                 return _value(found, whole)
@@ -44,6 +97,7 @@ def derived_value(tables: Mapping[str, Any], path: str, expression: str) -> obje
             "as a whole path; state it in the case, or correct the name"
         )
 
+    await_all_above(own, len(own) - 1)  # a whole part comes before its sizes
     try:
         value = evaluate(expression, named)
     except CaseError as error:

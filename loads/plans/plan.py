@@ -134,9 +134,7 @@ def plan_of(data: Mapping[str, Any]) -> StudyPlan:
     if twice := [path for path in plan.vary if path in plan.link]:
         raise CaseError(f"study: '{printable(twice[0])}' is varied and linked; leave one of the two out")
     if not varied and not plan.points:
-        raise CaseError(
-            'study: nothing varies; state an entry and its values, such as parts.bar.thickness = "2 mm..8 mm/7"'
-        )
+        raise CaseError('study: nothing varies; state an entry and its values, ENTRY = "2 mm..8 mm/7"')
     if plan.sample is not None and not plan.vary:
         raise CaseError("study: a sample needs ranges or lists that are varied; state them, or leave the sample out")
     return plan

@@ -1,7 +1,7 @@
 """The variants of a case that a study computes, each as the tables of a case file."""
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import Change, changed_tables, folder_of, read_tables
 from loads.case.part_points import KINDS
-from loads.plans.derived import derived_value
+from loads.plans.derived import derived_value, in_turn
 from loads.plans.plan import StudyPlan, case_name, table_of
 from loads.plans.points import Point, Points
 from loads.text.explain import printable, sentence
@@ -78,11 +78,17 @@ class Variants:
         Raises
         ------
         CaseError
-            For an entry that the case does not have, and an expression that has no value there.
+            For an entry that the case does not have, an expression that has no value there, and entries that follow
+            from each other.
         """
         found = changed_tables(self.base, _changes(point, "vary"))
-        for path, expression in self.plan.link.items():
-            found = changed_tables(found, _changes({path: derived_value(found, path, expression)}, "link"))
+
+        def follow(path: str, waiting: Collection[str]) -> None:
+            nonlocal found
+            value = derived_value(found, path, self.plan.link[path], waiting)
+            found = changed_tables(found, _changes({path: value}, "link"))
+
+        in_turn(self.plan.link, follow)
         self._name_files(found.get("parts"))
         return found
 

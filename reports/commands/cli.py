@@ -11,6 +11,7 @@ import typer
 from reports.commands.ending import progress, run
 from reports.commands.frequencies import app as frequencies
 from reports.commands.materials import app as materials
+from reports.commands.options import CaseArgument, JsonOption, MemoryOption, SetOption, ThreadsOption, folder_option
 from reports.commands.size import app as size
 from reports.commands.starters import app as starters
 from reports.commands.study import app as study
@@ -28,19 +29,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-CaseArgument = Annotated[
-    str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
-]
-SetOption = Annotated[
-    list[str] | None,
-    typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
-ThreadsOption = Annotated[int, typer.Option(min=1, max=256, help="Threads per library, and child processes at a time.")]
-MemoryOption = Annotated[
-    str | None,
-    typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.', show_default=False),
-]
 AccuracyOption = Annotated[
     str | None,
     typer.Option(
@@ -78,7 +66,7 @@ def _options(
 def check(
     case: CaseArgument,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for report.html, result.json, pictures and VTU files.")
+        Path | None, folder_option("Folder for report.html, result.json, pictures and VTU files.")
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
@@ -152,7 +140,7 @@ def motion(
     case: CaseArgument,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder; tables, figures and the animation go to its subfolder motion."),
+        folder_option("Folder; tables, figures and the animation go to its subfolder motion."),
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
@@ -186,9 +174,7 @@ def envelope(
     case: CaseArgument,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", help="Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."
-        ),
+        folder_option("Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."),
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
@@ -295,7 +281,7 @@ def synth(
     ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder; result.json and the drawing go to its subfolder synth."),
+        folder_option("Folder; result.json and the drawing go to its subfolder synth."),
     ] = None,
     json: JsonOption = False,
 ) -> None:
@@ -333,9 +319,7 @@ def inspect(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", help="Folder; result.json, parts.toml and part.png go to its subfolder inspect."
-        ),
+        folder_option("Folder; result.json, parts.toml and part.png go to its subfolder inspect."),
     ] = None,
     json: JsonOption = False,
 ) -> None:
@@ -359,7 +343,7 @@ def inspect(
 def export(
     case: CaseArgument,
     step: Annotated[bool, typer.Option("--step", help="Write the parts as STEP files (mm).")] = False,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")] = Path("parts"),
+    output: Annotated[Path, folder_option("Folder for the files.")] = Path("parts"),
     overrides: SetOption = None,
 ) -> None:
     """Write the parts of a case to CAD files."""

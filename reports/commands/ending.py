@@ -77,7 +77,7 @@ def run(app: Callable[[], object]) -> NoReturn:
 def make_writable() -> None:
     """Let text be written whatever the streams are: closed ones take it and lose it, poor encodings escape it.
 
-    The escapes are those of JSON, so that a record stays one.
+    The escapes are those of JSON, so that a record stays one. A stated size of the terminal that is none is left out.
     """
 
     def escaped(error: UnicodeError) -> tuple[str, int]:
@@ -86,6 +86,10 @@ def make_writable() -> None:
         units = error.object[error.start : error.end].encode("utf-16-be", "surrogatepass").hex()
         return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4)), error.end
 
+    for name in ("COLUMNS", "LINES"):  # a width of zero would print nothing
+        stated = os.environ.get(name, "")
+        if not (stated.isascii() and stated.isdigit() and len(stated) < 10 and int(stated)):
+            os.environ.pop(name, None)
     codecs.register_error("alula", escaped)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from reports.commands.ending import progress
+from reports.commands.options import CaseArgument, JsonOption, SetOption, ThreadsOption, folder_option
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -20,21 +21,17 @@ app = typer.Typer()
 
 @app.command()
 def frequencies(
-    case: Annotated[
-        str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
-    ],
+    case: CaseArgument,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", help="Folder; page, tables, result.json and pictures go to its subfolder frequencies."
-        ),
+        folder_option("Folder; page, tables, result.json and pictures go to its subfolder frequencies."),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")] = False,
-    overrides: Annotated[list[str] | None, typer.Option("--set", help="Override an entry of the case.")] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
     poses: Annotated[int, typer.Option(min=2, max=1000, help="Poses over the motion, ends included.")] = 25,
     count: Annotated[int, typer.Option(min=1, max=20, help="Natural frequencies of every pose and link.")] = 4,
     solid: Annotated[bool, typer.Option("--solid", help="Links by themselves as solids in place of beams.")] = False,
-    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads per library.")] = 2,
+    threads: ThreadsOption = 2,
 ) -> None:
     """Natural frequencies over the motion and of each link, and the harmonics of the drive that meet them."""
     from fea.common.threads import bounded

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from reports.commands.options import CaseArgument, SetOption, VariantsOption, WorkersOption, at_a_time, folder_option
 from reports.commands.study import stated
 
 if TYPE_CHECKING:
@@ -27,9 +28,7 @@ STEPS = 100
 
 @app.command()
 def size(
-    case: Annotated[
-        str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
-    ],
+    case: CaseArgument,
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -63,18 +62,15 @@ def size(
             "--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'
         ),
     ] = None,
-    overrides: Annotated[list[str] | None, typer.Option("--set", help="Override an entry of the case.")] = None,
+    overrides: SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model that decides: auto, beam or solid.")] = "auto",
     accuracy: Annotated[
         str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
     ] = None,
     analysis: Annotated[str, typer.Option(help="check or envelope.")] = "check",
-    workers: Annotated[
-        int | None, typer.Option(min=1, max=256, help="Processes; default: one a core.", show_default=False)
-    ] = None,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder that keeps what was computed, as of a study.")
-    ] = None,
+    threads: VariantsOption = None,
+    workers: WorkersOption = None,
+    output: Annotated[Path | None, folder_option("Folder that keeps what was computed, as of a study.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
@@ -94,7 +90,7 @@ def size(
         fidelity=fidelity,
         accuracy=accuracy,
         analysis=analysis,
-        workers=workers,
+        workers=at_a_time(threads, workers),
         folder=output,
         tell=_tell,
     )

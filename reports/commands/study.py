@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 import typer.core
 
+from reports.commands.options import VariantsOption, WorkersOption, at_a_time, folder_option
+
 if TYPE_CHECKING:
     from fea.study.study import Progress
     from loads.plans.plan import StudyPlan
@@ -43,7 +45,7 @@ def run(
         str,
         typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).", show_default=False),
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for study.sqlite, on a local disk.")],
+    output: Annotated[Path, folder_option("Folder for study.sqlite, on a local disk.")],
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -80,9 +82,8 @@ def run(
     mass: Annotated[
         bool | None, typer.Option("--mass/--no-mass", help="Weigh the links; default: where solids are built.")
     ] = None,
-    workers: Annotated[
-        int | None, typer.Option(min=1, max=256, help="Processes; default: one a core.", show_default=False)
-    ] = None,
+    threads: VariantsOption = None,
+    workers: WorkersOption = None,
     scheduler: Annotated[
         str,
         typer.Option("--scheduler", help="Dask scheduler whose workers compute, tcp://host:8786.", show_default=False),
@@ -91,13 +92,14 @@ def run(
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
     pictures: Annotated[
         Path | None,
-        typer.Option("--pictures", help="Folder for study.html and pictures, drawn at the end.", show_default=False),
+        folder_option("Folder for study.html and pictures, drawn at the end.", "--pictures"),
     ] = None,
 ) -> None:
     """Compute the variants of a case that are missing in a folder."""
     from fea.study.compute import compute_study
     from loads.plans.variants import Variants
 
+    workers = at_a_time(threads, workers)
     plan, folder = _plan(case, stated(vary, "--vary"), stated(link, "--link"), points, sample, seed, overrides, {
         "analysis": analysis, "fidelity": fidelity, "accuracy": accuracy, "mass": mass,
     })  # fmt: skip
@@ -197,7 +199,7 @@ def _refuse_many(variants: "Variants", workers: int | None) -> None:
     hours = len(variants) * answer.seconds / cores / 3600.0
     megabytes = len(variants) * (300 + 60 * len(answer.numbers)) / 1e6
     raise CaseError(
-        f"study: {len(variants)} points would take some {hours:.2g} hours with {cores} workers (the first took "
+        f"study: {len(variants)} points would take some {hours:.2g} hours with {cores} threads (the first took "
         f"{answer.seconds:.2g} s) and {megabytes:.2g} MB; add --yes to compute them, or vary less"
     )
 
@@ -258,8 +260,7 @@ def show(
     most: Annotated[int, typer.Option("--most", min=1, help="Rows of the table.")] = 40,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder for study.html and pictures, in its subfolder study.",
-                     show_default=False),
+        folder_option("Folder for study.html and pictures, in its subfolder study."),
     ] = None,
     numbers: Annotated[
         list[str] | None,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from reports.commands.ending import progress
+from reports.commands.options import CaseArgument, JsonOption, MemoryOption, SetOption, ThreadsOption, folder_option
 from reports.commands.study import stated
 
 if TYPE_CHECKING:
@@ -19,25 +20,21 @@ app = typer.Typer()
 
 @app.command()
 def tolerance(
-    case: Annotated[
-        str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
-    ],
+    case: CaseArgument,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", help="Folder; result.json, samples.npz and pictures go to its subfolder tolerance."
-        ),
+        folder_option("Folder; result.json, samples.npz and pictures go to its subfolder tolerance."),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")] = False,
-    overrides: Annotated[list[str] | None, typer.Option("--set", help="Override an entry of the case.")] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
     tolerances: Annotated[
         list[str] | None,
         typer.Option("--tolerance", help='Besides those of the case: pins="0.2 mm", links.AE.points.E="0.1 mm".'),
     ] = None,
     samples: Annotated[int, typer.Option(min=100, max=10_000_000, help="Independent samples.")] = 100_000,
     seed: Annotated[int, typer.Option(min=0, help="Of the samples.")] = 0,
-    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads per library.")] = 2,
-    memory: Annotated[str | None, typer.Option(help='Memory limit, such as "4 GB".', show_default=False)] = None,
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
     accuracy: Annotated[
         str | None,
         typer.Option(help='Discretisation error of the nominal solids, such as "5 %".', show_default=False),

@@ -10,6 +10,7 @@ from fea.common.verdict import CheckOutcome, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from fea.whole.size import size_limits
 from geometry.base.errors import CannotRunError, CaseError
+from loads.case.heights import layer_of
 from loads.statics.rounding import without_rounding
 from reports.notebook.shown import Picture, Row, Table, pick, summary
 from reports.tables.record import worst_load_case
@@ -133,7 +134,8 @@ class CheckReport:
         from reports.outlines.assembly import assembly_drawing
 
         if self.result.clearance is None:
-            raise CaseError("the case states no layers, so all links lie in one plane; state links.A.layer = 1")
+            layer = layer_of(self.result.case.links)
+            raise CaseError(f"the case states no layers, so all links lie in one plane; give every link one: {layer}")
         return Picture(assembly_drawing(self.result.clearance))
 
     def plot_box(self) -> Picture:
@@ -286,13 +288,14 @@ class CheckReport:
         Raises
         ------
         CaseError
-            Where files that alula did not write are in the way.
+            Where files that alula did not write are in the way, and for an empty name.
         CannotRunError
             Where the folder cannot be written.
         """
         from reports.page.folder import write_report
+        from reports.page.output import folder_named
 
-        write_report(self.result, Path(folder), progress=progress)
+        write_report(self.result, folder_named(folder), progress=progress)
 
     def __str__(self) -> str:
         checks = checks_of(self.result)

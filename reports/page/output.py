@@ -30,6 +30,27 @@ _PREFIX = ".alula-"
 _NEW, _OLD, _JOURNAL = "new", "old", "journal.json"
 
 
+def folder_named(name: str | os.PathLike[str]) -> Path:
+    """Return the folder of a name that a user stated.
+
+    Parameters
+    ----------
+    name : str or path
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    CaseError
+        For an empty name, which would mean the current folder.
+    """
+    if not os.fspath(name):
+        raise CaseError("output: the name of the folder is empty; name a folder, or '.' for the current one")
+    return Path(name)
+
+
 def place(output: Path, command: str) -> Path:
     """Return the folder that receives a command's files.
 

@@ -27,13 +27,26 @@ def limited(threads: int, memory: str | None = None) -> Iterator[None]:
     Raises
     ------
     CaseError
-        For a text that is not a positive amount of memory.
+        For a text that is not a positive amount of memory, and less than alula holds before it solves anything.
     """
     from fea.common import memory as process_memory
     from fea.common.threads import bounded
 
-    with bounded(threads), process_memory.limited(None if memory is None else _bytes(memory)):
+    with bounded(threads), process_memory.limited(None if memory is None else _enough(memory)):
         yield
+
+
+def _enough(memory: str) -> float:
+    """Return a limit [bytes] that leaves something beside the libraries."""
+    from fea.common.memory import with_libraries
+
+    limit, held = _bytes(memory), with_libraries()
+    if limit <= held:
+        raise CaseError(
+            f"memory: it is '{memory}', but alula and its libraries hold {1e-6 * held:.0f} MB before anything is "
+            'solved; write more, for example "4 GB"'
+        )
+    return limit
 
 
 def _bytes(memory: str) -> float:

@@ -65,7 +65,7 @@ def test_nothing_is_lost_and_nothing_twice(kills, points, tmp_path):
     time.
     """
     poses, workers = f"40..{39 + points} by 1", "1" if kills == 2 else "2"
-    asked = [*COMMAND, "--set", PLANAR, "--vary", f"motion.poses={poses}", "--workers", workers, "--retry"]
+    asked = [*COMMAND, "--set", PLANAR, "--vary", f"motion.poses={poses}", "--threads", workers, "--retry"]
     whole, broken = computed_here(tmp_path / "whole", poses), tmp_path / "broken"
     chance = random.Random(5)
     hit, before = 0, dict[int, tuple[object, ...]]()

@@ -168,7 +168,7 @@ def test_options_are_those_of_the_command():
 
 
 def test_a_study_is_kept_and_shown(tmp_path):
-    report = alula.study("four-bar-synthesis", {"motion.poses": (3, 5)}, tmp_path / "s", analysis="motion", workers=1)
+    report = alula.study("four-bar-synthesis", {"motion.poses": (3, 5)}, tmp_path / "s", analysis="motion", threads=1)
     assert [row["motion.poses"] for row in report.table()] == ["3", "5"]
     assert dict(report.counts) == {"pass": 2}  # of the clearance between its layers
     assert "<table>" in report._repr_html_()

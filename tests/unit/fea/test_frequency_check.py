@@ -223,7 +223,7 @@ def test_the_least_thickness_that_passes_is_found(tmp_path):
         "2 mm",
         "--fidelity",
         "beam",
-        "--workers",
+        "--threads",
         "1",
         "--set",
     )

@@ -9,7 +9,7 @@ import programs
 import pytest
 from edited_cases import PLANAR
 
-MOTION = ("study", "four-bar-synthesis", "--set", PLANAR, "--analysis", "motion", "--workers", "1")
+MOTION = ("study", "four-bar-synthesis", "--set", PLANAR, "--analysis", "motion", "--threads", "1")
 
 
 def test_a_study_of_motions_is_computed_and_shown(tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
         "--set",
         PLANAR,
     )
-    found = programs.inside(*arguments, "--fidelity", "beam", "--json", "--workers", "1", folder=tmp_path)
+    found = programs.inside(*arguments, "--fidelity", "beam", "--json", "--threads", "1", folder=tmp_path)
     record = json.loads(found.stdout)
     assert found.returncode == 0
     assert record["passing"] == "4 mm"  # README: 4 mm passes, 3.5 mm is undecided
@@ -112,7 +112,7 @@ def test_the_lightest_part_of_a_catalogue_is_told(tmp_path: Path) -> None:
         "--set",
         PLANAR,
     )
-    found = programs.inside(*arguments, "--json", "--workers", "1", folder=tmp_path)
+    found = programs.inside(*arguments, "--json", "--threads", "1", folder=tmp_path)
     record = json.loads(found.stdout)
     assert found.returncode == 0
     assert record["best"] == {"parts.tube": "rod-4mm"}

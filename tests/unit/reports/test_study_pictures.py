@@ -363,7 +363,7 @@ def test_mistakes_are_one_sentence(tmp_path):
 
 def test_the_command_draws_a_study_of_motions(tmp_path):
     """Without checks the first numbers that vary are drawn, or those that are asked for."""
-    arguments = ("study", "four-bar-synthesis", "--analysis", "motion", "--workers", "1", "--set", "motion.poses=31",
+    arguments = ("study", "four-bar-synthesis", "--analysis", "motion", "--threads", "1", "--set", "motion.poses=31",
                  "--set", PLANAR, "--vary", "links.a.points.A.0=1.6 m..1.7 m/4", "-o", "out", "--pictures")  # fmt: skip
     refused = programs.inside(*arguments, "out", folder=tmp_path)
     assert (refused.returncode, list(tmp_path.iterdir())) == (2, []), refused.stderr

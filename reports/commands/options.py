@@ -1,0 +1,84 @@
+"""Options that several commands have in common."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+CaseArgument = Annotated[
+    str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+ThreadsOption = Annotated[int, typer.Option(min=1, max=256, help="Threads per library, and child processes at a time.")]
+VariantsOption = Annotated[
+    int | None,
+    typer.Option(
+        "--threads",
+        min=1,
+        max=256,
+        help="Variants at a time, each computed by a process of one thread; default: one a core.",
+        show_default=False,
+    ),
+]
+WorkersOption = Annotated[int | None, typer.Option("--workers", min=1, max=256, hidden=True)]
+"""What ``VariantsOption`` was called; it goes with the version after 0.1."""
+MemoryOption = Annotated[
+    str | None,
+    typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.', show_default=False),
+]
+
+
+def folder_option(text: str, *names: str) -> Any:
+    """Return the option that names a folder to write into; an empty name is refused, which would mean the current one.
+
+    Parameters
+    ----------
+    text : str
+        Its help.
+    *names : str
+        Of the option; ``-o`` and ``--output`` unless given.
+
+    Returns
+    -------
+    object
+        As ``typer.Option`` returns it.
+    """
+    return typer.Option(*(names or ("-o", "--output")), help=text, parser=_folder, metavar="<path>")
+
+
+def _folder(text: str | Path) -> Path:
+    from reports.page.output import folder_named
+
+    return folder_named(text)
+
+
+def at_a_time(threads: int | None, workers: int | None) -> int | None:
+    """Return how many variants are computed at a time, with a warning where the old name of the option says so.
+
+    Parameters
+    ----------
+    threads, workers : int, optional
+        Of the options.
+
+    Returns
+    -------
+    int or None
+
+    Raises
+    ------
+    CaseError
+        Where both are given.
+    """
+    from geometry.base.errors import CaseError
+    from reports.commands.ending import progress
+
+    if workers is None:
+        return threads
+    if threads is not None:
+        raise CaseError("--workers: it is the old name of --threads, which is given too; leave --workers out")
+    progress("Warning: --workers is called --threads now; the old name goes with the next version.")
+    return workers
