@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
+from fea.common.at_temperature import as_known
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, load_scatter
@@ -257,6 +258,7 @@ def envelope_case(
     checks = over.outcomes(links, lasting=repetitions is not None)
     linkage = over_motion(moved, evaluated)
     checks += [*limit_load_outcomes(moved, linkage), *unloaded_outcomes(whole)]
+    checks = [*as_known(case, checks)]
     clock("frames")
     idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(

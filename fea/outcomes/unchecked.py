@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from fea.common.at_temperature import as_if_cold, cold_pins
 from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
 from loads.case.joint_rules import clearances
@@ -49,6 +50,7 @@ class Topic(StrEnum):
     MATERIAL = "material"
     LIMIT = "limit"
     PLAY = "play"
+    TEMPERATURE = "temperature"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +92,7 @@ def caveats(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Susta
     """
     return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case),
         *_bonds(case), *_pins(case),
-            *_limits(case), *_play(case))  # fmt: skip
+            *_limits(case), *_play(case), *_temperature(case))  # fmt: skip
 
 
 def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck)) -> tuple[str, ...]:
@@ -179,6 +181,11 @@ def _pins(case: Case) -> Iterator[Caveat]:
         )
 
 
+def _temperature(case: Case) -> Iterator[Caveat]:
+    """Yield the pins whose strength at the stated temperature is not known."""
+    yield from (Caveat(topic=Topic.TEMPERATURE, what=what, why=why) for what, why in cold_pins(case))
+
+
 def _limits(case: Case) -> Iterator[Caveat]:
     """Yield limits that let pass what fails under its own load."""
     for name, check in case.checks.items():
@@ -208,7 +215,7 @@ def _play(case: Case) -> Iterator[Caveat]:
 
 
 def unusual_materials(case: Case) -> list[str]:
-    """Return a sentence for what is unusual in materials of links and checked pins, and for what lacks a source.
+    """Return a sentence for what is unusual in materials of links and checked pins, lacks a source, or is not known.
 
     Parameters
     ----------
@@ -223,4 +230,5 @@ def unusual_materials(case: Case) -> list[str]:
         if isinstance(check, PinCheck):
             used += [case.joints[name].pin_material for name in check.joints or case.pinned_joints]
     cards = {name: case.all_materials[name] for name in dict.fromkeys(used)}
-    return [said for name, card in cards.items() for said in (*unusual(name, card), *untold(name, card))]
+    found = [said for name, card in cards.items() for said in (*unusual(name, card), *untold(name, card))]
+    return [*found, *as_if_cold(case)]
