@@ -25,7 +25,7 @@ from fea.links.solid_result import link_task
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
-from fea.motion.layer_envelope import layer_envelopes
+from fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
 from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
@@ -158,7 +158,8 @@ class _Envelope:
 
             own = scatter(STRESS[task.brittle])
             found = motion.envelope(repetitions=repetitions, refined=refined, scatter=own)
-            found = replace(found, notes=(*of_pair(case, link), *found.notes))
+            every = {x: built_in_any_direction(case, motion, one, own[x]) for x, one in found.load_cases.items()}
+            found = replace(found, notes=(*of_pair(case, link), *found.notes), load_cases=every)
             if layers is None or not found.worst.known:
                 return found
             return replace(found, layers=layer_envelopes(motion, layers, scatter("layers"), repetitions))
