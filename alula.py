@@ -236,16 +236,19 @@ def frequencies(
     Raises
     ------
     CaseError
-        For a case without a part.
+        For a case without a part, and where no card tells the stiffness of a link at the stated temperature.
     CannotRunError
         Where a stage fails.
     """
+    from fea.common.at_temperature import require_stiffness
     from fea.common.threads import bounded
     from fea.vibration.over_motion import case_frequencies
     from reports.notebook.frequency_report import FrequencyReport
 
+    stated = _case(case)
+    require_stiffness(stated)
     with bounded(threads):
-        return FrequencyReport(case_frequencies(_case(case), poses=poses, count=count, solid=solid, threads=threads))
+        return FrequencyReport(case_frequencies(stated, poses=poses, count=count, solid=solid, threads=threads))
 
 
 def envelope(

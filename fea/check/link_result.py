@@ -12,6 +12,7 @@ from fea.doubts.load_growth import Growths
 from fea.links.fidelity import DecidedLink, Decision, HandBands
 from fea.links.link_by_hand import LinkByHand
 from fea.links.solid_result import solid_result
+from fea.outcomes.layers import in_any_direction
 from fea.outcomes.result import HandResult, LinkResult, SolidResult
 from fea.outcomes.solid_buckling import solid_buckling, solid_growth
 from fea.refine.link_series import STRESS, PeakQuantity
@@ -78,15 +79,15 @@ def link_result(
     if layers is not None:
         factor = layer_scatter(material).times(widened("layers").inverse).on(layers.safety_factor)
         layers = replace(layers, safety_factor=factor)
+    von_mises, principal = widened("von_mises").on(result.von_mises_max), widened("principal").on(result.principal_max)
+    factor = strength_scatter(material).times(widened(STRESS[material.brittle]).inverse).on(result.safety_factor)
     return replace(
         result,
         layers=layers,
         notes=(*of_pair(case, link), *result.notes),
-        von_mises_max=widened("von_mises").on(result.von_mises_max),
-        principal_max=widened("principal").on(result.principal_max),
-        safety_factor=strength_scatter(material)
-        .times(widened(STRESS[material.brittle]).inverse)
-        .on(result.safety_factor),
+        von_mises_max=von_mises,
+        principal_max=principal,
+        safety_factor=in_any_direction(case, link, factor, principal, von_mises),
         displacement_max=compliance_scatter(material).times(widened("displacement")).on(result.displacement_max),
     )
 

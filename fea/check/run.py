@@ -16,6 +16,7 @@ from fea.check.link_result import by_hand_shares, link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
+from fea.common.at_temperature import as_known
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
@@ -266,6 +267,8 @@ class _LoadCase:
         )
         found = [reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, outcome) for outcome in every]
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
+        small = moved.state == "small" and self.forces.by_equilibrium
+        checks = as_known(case, checks, stiff=small)
         if self.idle:
             borne = {name: joint.magnitude for name, joint in reactions.joints.items()}
             checks = undecided(checks, load_case, self.size, borne)

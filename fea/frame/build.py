@@ -20,6 +20,7 @@ from geometry.linkage.pose import Pose
 from geometry.parts.part import Section
 from loads.case.case import Case
 from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
+from loads.records.conditions import at_temperature
 from loads.records.springs import Tendon, TurnSpring
 from loads.states.springs import spring_states
 from loads.statics.statics import Drive
@@ -227,7 +228,8 @@ class _Builder:
         if joint.pin_diameter is None or joint.type == "slider":
             self._stiff(root, end, z_axis=ALONG_X)
         else:
-            material, section = self.case.all_materials[joint.pin_material], ring(joint.pin_diameter, 0.0)
+            material = at_temperature(self.case.all_materials[joint.pin_material], self.case.conditions)
+            section = ring(joint.pin_diameter, 0.0)
             section = section if twists else replace(section, torsion=STIFF_IN_TWIST * section.torsion)
             young, poisson = material.youngs_modulus, material.poissons_ratio
             self.elements.append(

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
+from fea.common.at_temperature import as_known
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, load_scatter
@@ -24,7 +25,7 @@ from fea.links.solid_result import link_task
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
-from fea.motion.layer_envelope import layer_envelopes
+from fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
 from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
@@ -157,7 +158,8 @@ class _Envelope:
 
             own = scatter(STRESS[task.brittle])
             found = motion.envelope(repetitions=repetitions, refined=refined, scatter=own)
-            found = replace(found, notes=(*of_pair(case, link), *found.notes))
+            every = {x: built_in_any_direction(case, motion, one, own[x]) for x, one in found.load_cases.items()}
+            found = replace(found, notes=(*of_pair(case, link), *found.notes), load_cases=every)
             if layers is None or not found.worst.known:
                 return found
             return replace(found, layers=layer_envelopes(motion, layers, scatter("layers"), repetitions))
@@ -257,6 +259,7 @@ def envelope_case(
     checks = over.outcomes(links, lasting=repetitions is not None)
     linkage = over_motion(moved, evaluated)
     checks += [*limit_load_outcomes(moved, linkage), *unloaded_outcomes(whole)]
+    checks = [*as_known(case, checks)]
     clock("frames")
     idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(

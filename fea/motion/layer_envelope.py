@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from fea.common.band import Band
 from fea.common.scatter import Scatter, layer_scatter
 from fea.common.source import Source, SourceKind, distinct, pin_sources
-from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, VariantCurve
+from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import closed_history, not_closed, strength_at
 from fea.motion.layer_fatigue import LayerCycle, critical_layer
 from fea.motion.link_envelope import LinkMotion
+from fea.outcomes.layers import in_any_direction, may_lie_in_any_direction
 from fea.solid.layers import Layers
 from fea.superposition.peaks import ModeMeasures, largest_stress
 from geometry.base.ties import first_largest
+from loads.case.case import Case
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 Real = NDArray[np.float64]
@@ -53,6 +55,46 @@ def layer_envelopes(
         own = _over_motion(motion, layers, curves, value, place, upper, load)
         found[name] = replace(own, fatigue=fatigue, no_fatigue=lacking)
     return found
+
+
+def built_in_any_direction(
+    case: Case, motion: LinkMotion, envelope: LoadCaseEnvelope, load: Scatter
+) -> LoadCaseEnvelope:
+    """Return the envelope of a load case with the safety factor of all directions of building, where none is stated.
+
+    Parameters
+    ----------
+    case : Case
+    motion : LinkMotion
+        The link, solved on its finest mesh.
+    envelope : LoadCaseEnvelope
+        Along the layers, with all scatter.
+    load : Scatter
+        Of the loads.
+
+    Returns
+    -------
+    LoadCaseEnvelope
+    """
+    if not envelope.known or not may_lie_in_any_direction(case, motion.link):
+        return envelope
+    brittle = motion.material.brittle
+    other = Band.exact(load.high * _largest(motion, envelope.variants, brittle=not brittle))
+    principal, von_mises = (envelope.stress, other) if brittle else (other, envelope.stress)
+    factor = in_any_direction(case, motion.link, envelope.safety_factor, principal, von_mises)
+    return replace(envelope, safety_factor=factor)
+
+
+def _largest(motion: LinkMotion, curves: Sequence[VariantCurve], *, brittle: bool) -> float:
+    """Return the upper end of the largest stress of a load case, by the fourfold estimate on one mesh [MPa]."""
+    peaks = largest_stress(motion.solved.measures, motion.solved.combination, brittle=brittle)
+    count, found = int(motion.evaluated.sum()), []
+    for curve in curves:
+        number = curve.first + first_largest(peaks.value[curve.first : curve.first + count])
+        error = motion.local_error(number, int(motion.solved.nodes[peaks.node[number]]))
+        contact = 1.0 - CONTACT_SHORTFALL if curve.span == NARROW.span else 1.0
+        found.append((max(float(peaks.value[number]), 0.0) + error) / contact)
+    return max(found)
 
 
 def _lacking(motion: LinkMotion, repetitions: float | None) -> str:

@@ -9,7 +9,7 @@ from fea.common.scatter import Scatter
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.layers import layer_outcomes
+from fea.outcomes.layers import layer_outcomes, unless_built_otherwise
 from fea.outcomes.limits import least_safety_factor
 from fea.outcomes.pins import PinStress, pin_outcome
 from fea.outcomes.point_displacement import point_outcome
@@ -146,7 +146,7 @@ def safety_factor_outcome(
     """
     limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
     outcome = CheckOutcome.of(name, Subject.link(link), load_case, Quantity.SAFETY_FACTOR, factor, limit)
-    return _with_meshes(outcome, meshes)
+    return unless_built_otherwise(case, link, _with_meshes(outcome, meshes))
 
 
 def _with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckOutcome:

@@ -1,14 +1,19 @@
-"""Outcome of the check of a printed link's layers."""
+"""Outcome of the check of a printed link's layers, and what they leave open where the part states no direction."""
 
+import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from fea.common.band import Band
+from fea.common.scatter import layer_scatter
+from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.result import LinkResult
+from fea.solid.layers import in_worst_direction
 from loads.case.case import Case
 
 CHECK = "layers"
@@ -48,6 +53,81 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
             yield outcome(Band.unknown()).because(
                 "hand calculation tells nothing of the stress on layers; run the solid model"
             )
+
+
+def may_lie_in_any_direction(case: Case, link: str) -> bool:
+    """Return whether a link's layers are the weaker, as its card tells, and may have any direction.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    bool
+    """
+    known = case.material_of(link).strength_across_layers is not None
+    return known and case.part_of(link).build_direction is None
+
+
+def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_mises: Band) -> Band:
+    """Return a link's safety factor for all directions in which it may have been built.
+
+    The upper end is that along the layers. The lower end is that of the weakest direction, by a bound on what tension
+    across layers and shear along them make together.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    factor : Band
+        Along the layers.
+    principal, von_mises : Band
+        Largest stresses, with all that loads may be [MPa].
+
+    Returns
+    -------
+    Band
+        The same where the part states its direction, or the card knows nothing of layers.
+    """
+    material = case.material_of(link)
+    across, between = material.strength_across_layers, material.shear_strength_between_layers
+    if across is None or not may_lie_in_any_direction(case, link) or math.isnan(factor.low):
+        return factor
+    least = 0.0
+    if between is not None:
+        worst = in_worst_direction(principal.high, von_mises.high, across / between)
+        least = layer_scatter(material).low * across / worst if worst > 0.0 else math.inf
+    if not least < factor.low or factor.low == math.inf:
+        return factor
+    width = factor.low / least if least > 0.0 else math.inf
+    build = Source(kind=SourceKind.BUILD, detail="none is stated", width=width)
+    return replace(factor, low=least, sources=distinct(factor.sources, (build,)))
+
+
+def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> CheckOutcome:
+    """Return the outcome of a safety factor; one that is open for the direction of building says so.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    outcome : CheckOutcome
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    open_yet = outcome.verdict is Verdict.UNDECIDED
+    if not (open_yet and any(source.kind is SourceKind.BUILD for source in outcome.value.sources)):
+        return outcome
+    material, part = case.material_of(link), case.links[link].part
+    said = f"parts.{part} states no build_direction, and built in the weakest one its layers part first; state it"
+    if material.shear_strength_between_layers is None:
+        said = f"parts.{part} states no build_direction, and the card of '{material.title}' states no "
+        said += "shear_strength_between_layers, which may be the weakest; state both"
+    return outcome.because(f"{outcome.reason}; {said}")
 
 
 def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutcome:

@@ -5,6 +5,7 @@ Every feature tells its own, in its own file; here they are gathered.
 
 from collections.abc import Iterator
 
+from fea.common.at_temperature import as_if_cold, cold_pins
 from fea.outcomes.limits import limit_caveats
 from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.materials.plausible import untold, unusual
@@ -45,6 +46,7 @@ def caveats(case: Case, *, over_motion: bool = False) -> tuple[Caveat, ...]:
         *_pins(case),
         *limit_caveats(case),
         *tolerance_caveats(case),
+        *_temperature(case),
     )
 
 
@@ -105,8 +107,13 @@ def _pins(case: Case) -> Iterator[Caveat]:
         )
 
 
+def _temperature(case: Case) -> Iterator[Caveat]:
+    """Yield the pins whose strength at the stated temperature is not known."""
+    yield from (Caveat(topic=Topic.TEMPERATURE, what=what, why=why) for what, why in cold_pins(case))
+
+
 def unusual_materials(case: Case) -> list[str]:
-    """Return a sentence for what is unusual in materials of links and checked pins, and for what lacks a source.
+    """Return a sentence for what is unusual in materials of links and checked pins, lacks a source, or is not known.
 
     Parameters
     ----------
@@ -121,4 +128,5 @@ def unusual_materials(case: Case) -> list[str]:
         if isinstance(check, PinCheck):
             used += [case.joints[name].pin_material for name in check.joints or case.pinned_joints]
     cards = {name: case.all_materials[name] for name in dict.fromkeys(used)}
-    return [said for name, card in cards.items() for said in (*unusual(name, card), *untold(name, card))]
+    found = [said for name, card in cards.items() for said in (*unusual(name, card), *untold(name, card))]
+    return [*found, *as_if_cold(case)]

@@ -21,6 +21,7 @@ from fea.refine.link_buckling import SolidBuckling, link_buckling
 from fea.refine.link_series import (
     CasePrecision,
     Eye,
+    Measure,
     PeakQuantity,
     energy_errors,
     goals,
@@ -349,15 +350,26 @@ class _Link:
 
         Layers along a pull bear next to nothing, whose error no mesh makes small beside it.
         """
-        first, *layers = self._deciding(case)
-        wide = [s for s in (first, case.displacement, *layers) if s.index > self.effort.accuracy]
-        low, high = (case.low("layers"), case.high("layers")) if layers else (0.0, 0.0)
-        is_open = any(low <= limit <= high for ends in self.task.layer_limits for limit in ends)
-        return not wide or (not is_open and wide == layers)
+        return all(s.index <= self.effort.accuracy for s in (*self._deciding(case), case.displacement))
+
+    def _layers_open(self, case: CasePrecision) -> bool:
+        """Whether a limit lies in the band of the stress on layers, or near to one that may yet move."""
+        if case.layers is None:
+            return False
+        low, high = case.low("layers"), case.high("layers")
+        near = FAR if case.layers.suspect or case.layers.kind == "growing" else 1.0
+        return any(low <= near * limit and limit <= near * high for ends in self.task.layer_limits for limit in ends)
+
+    @property
+    def _unsettled(self) -> Sequence[Measure]:
+        """The stresses for which meshes are made finer: layers that are clear of their limit need none."""
+        first, *layers = self.task.measures
+        return (first, *(layers if any(map(self._layers_open, self.precision)) else ()))
 
     def _deciding(self, case: CasePrecision) -> list[GridConvergence]:
-        """Series of the stresses that decide."""
-        return [case.series(measure) for measure in self.task.measures]
+        """Series of the stresses that decide, without that of layers where it is clear of its limit."""
+        first, *layers = self.task.measures
+        return [case.series(measure) for measure in (first, *(layers if self._layers_open(case) else ()))]
 
     def _limits(self) -> Iterable[tuple[float, float, float]]:
         """Ends of every band, and a limit that it must clear."""
@@ -405,7 +417,7 @@ class _Link:
         ]
         wanted = [
             goal
-            for measure in (() if self.far else self.task.measures)
+            for measure in (() if self.far else self._unsettled)
             for goal in goals(
                 self.levels,
                 accuracy / SEVERAL,

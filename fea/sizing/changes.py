@@ -297,6 +297,8 @@ def _material(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> Mat
     """Return the strength or modulus that takes a check to its limit, where it follows."""
     quantity, subject, margin = check.quantity, check.subject, check.margin
     rule = case.all_checks.get(check.name)
+    if any(source.kind is SourceKind.BUILD for source in check.value.sources):
+        return None  # strengths along the layers and across them share in its ends
     if subject.kind == "pin":
         if not isinstance(rule, PinCheck):
             return None

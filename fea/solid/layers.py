@@ -122,6 +122,34 @@ def on_plane(sigma: Real, normal: ArrayLike) -> tuple[Real, Real]:
     return np.asarray(along), np.sqrt(rest[0] ** 2 + rest[1] ** 2 + rest[2] ** 2)
 
 
+def in_worst_direction(principal: float, von_mises: float, ratio: float) -> float:
+    """Return a bound on the stress of ``Layers.stress`` for layers of any direction.
+
+    For a given normal stress, Mohr's circle of the largest and the least principal stress, of centre c and radius r,
+    has the largest shear stress: σn = c + r x and τ² = r² (1 - x²). What it makes is convex in r where c = σ1 - r, so
+    that it is largest at r = 0 or at the largest radius, which is at most v/√3 at a von Mises stress v.
+
+    Parameters
+    ----------
+    principal : float
+        Largest principal stress of all places, not negative [MPa].
+    von_mises : float
+        Largest von Mises stress of all places [MPa].
+    ratio : float
+        Strength across the layers over that against shear along them, Rn/Rt.
+
+    Returns
+    -------
+    float
+        [MPa]
+    """
+    r, k = von_mises / math.sqrt(3.0), ratio
+    c = principal - r
+    x = 1.0 if k * k * r <= r + abs(c) else c / (r * (k * k - 1.0))
+    found = [max(c + r * x, 0.0) ** 2 + k * k * r * r * (1.0 - x * x) for x in (x, 0.0, 1.0)]
+    return math.sqrt(max(principal**2, *found))
+
+
 POLAR, AZIMUTH = 19, 72
 """Steps of 5° from the axis of the pins to the linkage's plane, and about it."""
 _NODES = 100

@@ -28,6 +28,7 @@ class Topic(StrEnum):
     FRICTION = "friction"
     BONDS = "bonds"
     MATERIAL = "material"
+    TEMPERATURE = "temperature"
     LIMIT = "limit"
     PLAY = "play"
     TOLERANCES = "tolerances"

@@ -12,8 +12,9 @@ from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Temperature
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress
 from geometry.materials.directional import directional
+from geometry.materials.temperature import TemperatureFactors, check_factors
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
 TOLD = (
@@ -26,8 +27,6 @@ TOLD = (
     "shear_strength_between_layers",
 )
 """Entries whose source and status every card should state, where it states the entry."""
-_ROOM = 23.0
-"""Temperature at which strengths are stated [°C] (ISO 291)."""
 
 
 def _ordered(value: tuple[float, float]) -> tuple[float, float]:
@@ -97,8 +96,10 @@ class Material(CaseModel):
     """Largest stress under a load that stays."""
     sustained_modulus: Annotated[Stress, POSITIVE] | None = None
     """Modulus under a load that stays (creep modulus)."""
-    temperature_factors: tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...] = ()
-    """(temperature, factor on strength), rising in temperature."""
+    temperature_factors: TemperatureFactors = ()
+    """(temperature, factor on strength), rising in temperature; linear between them, and unknown beyond."""
+    modulus_temperature_factors: TemperatureFactors = ()
+    """(temperature, factor on the modulus), as temperature_factors."""
     fatigue: Fatigue | None = None
     """Fatigue data; without them an envelope judges no fatigue of its links."""
     fatigue_across_layers: Fatigue | None = None
@@ -126,11 +127,8 @@ class Material(CaseModel):
                 "yield_strength {y} MPa is above ultimate_strength {u} MPa; check the units and the decimal points",
                 {"y": f"{self.yield_strength:g}", "u": f"{self.ultimate_strength:g}"},
             )
-        temperatures = [temperature for temperature, _ in self.temperature_factors]
-        if any(a >= b for a, b in itertools.pairwise(temperatures)):
-            raise PydanticCustomError(
-                "temperatures_not_rising", "temperature_factors must rise in temperature; sort them and state each once"
-            )
+        check_factors("temperature_factors", self.temperature_factors, "strength")
+        check_factors("modulus_temperature_factors", self.modulus_temperature_factors, "modulus")
         diameters = [diameter for diameter, _ in self.ultimate_strength_by_diameter]
         if any(a >= b for a, b in itertools.pairwise(diameters)):
             raise PydanticCustomError(
@@ -180,12 +178,6 @@ class Material(CaseModel):
                 raise refusal(
                     f"{entry} is {lasting:g} MPa, above {of}, {brief:g} MPa, though under a load that stays a material "
                     "bears less and gives more; correct one of them"
-                )
-        for (cooler, more), (warmer, less) in itertools.pairwise(((_ROOM, 1.0), *self.temperature_factors)):
-            if warmer >= _ROOM and less > more:
-                raise refusal(
-                    f"temperature_factors grow from {more:g} at {cooler:g} degC to {less:g} at {warmer:g} degC, though "
-                    "a strength falls as it gets warmer; they are shares of the strength at room temperature, at most 1"
                 )
         return self
 

@@ -30,7 +30,7 @@ from loads.records.check_spec import (
     SafetyFactorCheck,
     SustainedCheck,
 )
-from loads.records.conditions import Conditions, under
+from loads.records.conditions import Conditions, at_temperature, under
 from loads.records.flapping import Wing
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
@@ -215,12 +215,13 @@ class CoreCase(Revisable):
         Returns
         -------
         Material
-            Its card, with strength and modulus warm and after creep where conditions are stated.
+            Its card, with strength and modulus warm and after creep where conditions are stated; what the card does not
+            tell at the stated temperature is as at room temperature.
 
         Raises
         ------
         CaseError
-            Where the card lacks what the conditions ask for.
+            Where the card lacks what a load that lasts needs.
         """
         part = self.part_of(link)
         material = self.all_materials[part.material]
@@ -283,7 +284,7 @@ class CoreCase(Revisable):
         return owners[0], point
 
     def pin_material(self, joint: str) -> Material:
-        """Return the material of a joint's pin; the case's conditions, which are those of the links, leave it alone.
+        """Return the material of a joint's pin at the stated temperature; pins do not creep.
 
         Parameters
         ----------
@@ -296,7 +297,7 @@ class CoreCase(Revisable):
             Its card, with the strength of a wire of that diameter where the card has one.
         """
         record = self.joints[joint]
-        material = self.all_materials[record.pin_material]
+        material = at_temperature(self.all_materials[record.pin_material], self.conditions)
         if record.pin_diameter is None:
             return material
         return material.drawn(f"joints.{joint}.pin_diameter", record.pin_diameter)

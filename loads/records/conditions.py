@@ -1,12 +1,17 @@
 """How long and how warm: what a material bears and how stiff it is under the conditions of a case."""
 
-import itertools
 from typing import Annotated
 
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel
 from geometry.base.units import POSITIVE, Temperature, Time
-from geometry.materials.material import Material
+from geometry.materials.material import Fatigue, Material
+from geometry.materials.temperature import covered, factor_at
+
+_LAYERS = "strength_across_layers", "shear_strength_between_layers"
+_STRENGTHS = ("yield_strength", "ultimate_strength", "sustained_stress", "strength_range", *_LAYERS,
+              *(f"{entry}_range" for entry in _LAYERS), "fatigue", "fatigue_across_layers")  # fmt: skip
+_MODULI = "youngs_modulus", "youngs_modulus_range", "sustained_modulus"
 
 
 class Conditions(CaseModel):
@@ -16,50 +21,95 @@ class Conditions(CaseModel):
     """How long the loads stay; where stated, links creep (``sustained_modulus``) and their stress is set
     against ``sustained_stress``."""
     temperature: Temperature | None = None
-    """Where stated, strengths are multiplied by the material's temperature factor."""
+    """Where stated, strengths and moduli are multiplied by the factors of the material's card; what needs a strength or
+    a modulus that the card does not tell at this temperature is undecided."""
 
 
-def temperature_factor(material: Material, temperature: float) -> float:
-    """Return the factor on a material's strength, linear between those of its card; 1 below the first of them.
+def strength_unknown(material: Material, conditions: Conditions) -> str:
+    """Return why a material's strength is not known at the stated temperature.
 
     Parameters
     ----------
     material : Material
         The card.
-    temperature : float
-        Temperature [°C].
+    conditions : Conditions
 
     Returns
     -------
-    float
-        Factor on the strength.
-
-    Raises
-    ------
-    CaseError
-        For a material without factors, and above the last of them.
+    str
+        "" where it is known.
     """
-    points = material.temperature_factors
+    return _unknown(material, conditions, "temperature_factors", "strength")
+
+
+def modulus_unknown(material: Material, conditions: Conditions) -> str:
+    """Return why a material's modulus is not known at the stated temperature.
+
+    Parameters
+    ----------
+    material : Material
+        The card.
+    conditions : Conditions
+
+    Returns
+    -------
+    str
+        "" where it is known.
+    """
+    return _unknown(material, conditions, "modulus_temperature_factors", "modulus")
+
+
+def _unknown(material: Material, conditions: Conditions, entry: str, what: str) -> str:
+    temperature, points = conditions.temperature, getattr(material, entry)
+    if temperature is None or factor_at(points, temperature) is not None:
+        return ""
+    lost = f"so its {what} at {temperature:g} degC is not known; add them to its card"
     if not points:
-        raise CaseError(
-            f"conditions.temperature: '{material.title}' states no temperature_factors, so its strength at "
-            f"{temperature:g} degC is unknown; add them to its card or leave the temperature out"
-        )
-    if temperature > points[-1][0]:
-        raise CaseError(
-            f"conditions.temperature: {temperature:g} degC is above {points[-1][0]:g} degC, the last for which "
-            f"'{material.title}' states a factor; use another material or add one to its card"
-        )
-    if temperature <= points[0][0]:
-        return min(1.0, points[0][1])
-    for (t0, f0), (t1, f1) in itertools.pairwise(points):
-        if temperature <= t1:
-            return f0 + (f1 - f0) * (temperature - t0) / (t1 - t0)
-    raise AssertionError("the factors rise in temperature")
+        return f"'{material.title}' states no {entry}, {lost}"
+    first, last = covered(points)
+    side = f"above {last:g}" if temperature > last else f"below {first:g}"
+    return f"{temperature:g} degC is {side} degC, where the {entry} of '{material.title}' end, {lost}"
+
+
+def at_temperature(material: Material, conditions: Conditions) -> Material:
+    """Return a material as it is at the stated temperature; what its card does not tell is as at room temperature.
+
+    Strengths of all kinds, those of fatigue too, have the factor of the strength, moduli that of Young's modulus
+    (assumed of sustained stress, creep modulus and fatigue).
+
+    Parameters
+    ----------
+    material : Material
+        The card.
+    conditions : Conditions
+
+    Returns
+    -------
+    Material
+        The card with other values.
+    """
+    if conditions.temperature is None:
+        return material
+    changed: dict[str, object] = {}
+    for points, entries in (
+        (material.temperature_factors, _STRENGTHS),
+        (material.modulus_temperature_factors, _MODULI),
+    ):
+        factor = factor_at(points, conditions.temperature)
+        if factor is not None and factor != 1.0:
+            stated = {entry: value for entry in entries if (value := getattr(material, entry)) is not None}
+            changed |= {entry: _times(value, factor) for entry, value in stated.items()}
+    return material.model_copy(update=changed) if changed else material
+
+
+def _times(value: float | tuple[float, float] | Fatigue, factor: float) -> float | tuple[float, float] | Fatigue:
+    if isinstance(value, Fatigue):
+        return value.model_copy(update={"stress": factor * value.stress})
+    return (factor * value[0], factor * value[1]) if isinstance(value, tuple) else factor * value
 
 
 def under(material: Material, conditions: Conditions) -> Material:
-    """Return a material as it is under the conditions: its strengths warm, its modulus after creep.
+    """Return a material as it is under the conditions: warm, its modulus after creep.
 
     Parameters
     ----------
@@ -76,25 +126,15 @@ def under(material: Material, conditions: Conditions) -> Material:
     Raises
     ------
     CaseError
-        Where the card lacks what is needed.
+        Where the card lacks what a load that lasts needs.
     """
-    changed: dict[str, object] = {}
-    if conditions.temperature is not None:
-        factor = temperature_factor(material, conditions.temperature)
-        layers = "strength_across_layers", "shear_strength_between_layers"
-        for entry in ("yield_strength", "ultimate_strength", "sustained_stress", *layers):
-            if getattr(material, entry) is not None:
-                changed[entry] = getattr(material, entry) * factor
-        for entry in ("strength_range", *(f"{entry}_range" for entry in layers)):
-            if getattr(material, entry) is not None:
-                changed[entry] = tuple(factor * bound for bound in getattr(material, entry))
-    if conditions.duration is not None:
-        for entry in ("sustained_stress", "sustained_modulus"):
-            if getattr(material, entry) is None:
-                raise CaseError(
-                    f"conditions.duration: '{material.title}' states no {entry}, which a load that lasts needs; "
-                    "add it to its card or leave the duration out"
-                )
-        changed["youngs_modulus"] = material.sustained_modulus
-        changed["youngs_modulus_range"] = None
-    return material.model_copy(update=changed) if changed else material
+    warm = at_temperature(material, conditions)
+    if conditions.duration is None:
+        return warm
+    for entry in ("sustained_stress", "sustained_modulus"):
+        if getattr(material, entry) is None:
+            raise CaseError(
+                f"conditions.duration: '{material.title}' states no {entry}, which a load that lasts needs; "
+                "add it to its card or leave the duration out"
+            )
+    return warm.model_copy(update={"youngs_modulus": warm.sustained_modulus, "youngs_modulus_range": None})

@@ -34,12 +34,14 @@ def frequencies(
     threads: ThreadsOption = 2,
 ) -> None:
     """Natural frequencies over the motion and of each link, and the harmonics of the drive that meet them."""
+    from fea.common.at_temperature import require_stiffness
     from fea.common.threads import bounded
     from fea.vibration.over_motion import case_frequencies
     from loads.case.case_file import read_case
     from reports.page.output import refuse_unusable, write_folder
 
     parsed = read_case(case, overrides or ())
+    require_stiffness(parsed)
     refuse_unusable(output, "frequencies")
     with bounded(threads):
         found = case_frequencies(parsed, poses=poses, count=count, solid=solid, threads=threads)

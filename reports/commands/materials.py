@@ -83,7 +83,7 @@ def missing(material: "Material") -> tuple[str, ...]:
     lacking = {
         "fatigue": material.fatigue is None,
         "sustained load": lasting,
-        "temperature": not material.temperature_factors,
+        "temperature": not (material.temperature_factors and material.modulus_temperature_factors),
         "scatter of strength": material.strength_range is None,
         "scatter of E": material.youngs_modulus_range is None,
         "shear between layers": layers,

@@ -123,9 +123,9 @@ def _conditions(result: CheckResult) -> str:
     elif stated.temperature is None:
         held = "stiffness and stress are those after the stated time under load, at room temperature"
     elif stated.duration is None:
-        held = "strengths are short-term values at the stated temperature; the modulus is that at room temperature"
+        held = "strengths and moduli are short-term values at the stated temperature, as far as cards tell"
     else:
-        held = "strengths are those at the stated temperature, stiffness that after the stated time at room temperature"
+        held = "strengths and moduli are those at the stated temperature after the stated time, as far as cards tell"
     return (
         "Plastics lose strength and stiffness with time under load, temperature and age: "
         f"{held}. Moisture and ageing are not modelled."

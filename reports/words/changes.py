@@ -20,6 +20,7 @@ _NARROWED: dict[SourceKind, str] = {
     SourceKind.PLAY: "a smaller clearance of the joints",
     SourceKind.AIR: "a narrower normal_coefficient_range of the load case's air",
     SourceKind.POSES: "more poses of the motion",
+    SourceKind.BUILD: "build_direction of the part",
 }
 """What narrows a source of error, of those that an entry of the case or an option narrows."""
 

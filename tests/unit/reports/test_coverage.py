@@ -85,7 +85,7 @@ def test_conditions_that_are_stated_are_told(wing):
     warm = wing.case.conditions.model_copy(update={"temperature": 40.0})
     warmed = replace(wing, case=wing.case.model_copy(update={"conditions": warm}))
     assert (
-        "strengths are short-term values at the stated temperature"
+        "strengths and moduli are short-term values at the stated temperature"
         in told(warmed)["Creep, temperature, moisture, ageing"]
     )
 

@@ -31,7 +31,7 @@ def test_the_list_names_all_and_what_they_lack() -> None:
     listed = programs.inside("materials").stdout
     lines = {line.split()[0]: line for line in listed.splitlines() if line.strip()}
     assert library().keys() <= lines.keys()
-    assert re.search(r" 68\.9 .* yield 240 .* sustained load, temperature", lines["aluminium-6061-t6"])
+    assert re.search(r" 68\.9 .* yield 240 .* sustained load, scatter of strength", lines["aluminium-6061-t6"])
     assert "fatigue" in lines["steel-wire"].rpartition("by diameter")[2]
     assert "fatigue" not in missing(library()["pvc-u"])
     assert missing(library()["pvc-u"].model_copy(update={"sustained_modulus": None})) == (

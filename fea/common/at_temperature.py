@@ -1,0 +1,140 @@
+"""What is not known at the stated temperature: outcomes that need a strength or a modulus that no card tells."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from fea.common.band import Band
+from fea.common.verdict import CheckOutcome, Quantity
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.records.check_spec import PinCheck
+from loads.records.conditions import modulus_unknown, strength_unknown
+
+STRENGTH = (
+    Quantity.SAFETY_FACTOR,
+    Quantity.LAYERS,
+    Quantity.SUSTAINED_STRESS,
+    Quantity.FATIGUE_STRESS,
+    Quantity.FATIGUE_LIFE,
+)
+"""Quantities that set a stress against a strength."""
+STIFFNESS = (
+    Quantity.DEFLECTION,
+    Quantity.DISPLACEMENT,
+    Quantity.BUCKLING_FACTOR,
+    Quantity.LOAD_SHARE,
+    Quantity.LIMIT_LOAD,
+    Quantity.LAYER_GAP,
+    Quantity.FREQUENCY_RATIO,
+)
+"""Quantities that go with the moduli of the links."""
+
+
+def as_known(case: Case, outcomes: Iterable[CheckOutcome], *, stiff: bool = True) -> Iterator[CheckOutcome]:
+    """Yield outcomes; undecided and without a number where the stated temperature leaves strength or modulus open.
+
+    Parameters
+    ----------
+    case : Case
+    outcomes : iterable of CheckOutcome
+        By what cards tell; what they do not tell is as at room temperature.
+    stiff : bool, optional
+        True where forces are those of the undeformed linkage by equilibrium, so that stress needs no modulus.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    soft = stiffness_unknown(case)
+    for outcome in outcomes:
+        reason = _strength_unknown(case, outcome) if outcome.quantity in STRENGTH else ""
+        if outcome.quantity in STIFFNESS or (outcome.quantity in STRENGTH and not stiff):
+            reason = reason or soft
+        bears = outcome.applies and outcome.value.low != float("inf")
+        yield replace(outcome, value=Band.unknown(reason)).left_open(reason) if reason and bears else outcome
+
+
+def stiffness_unknown(case: Case) -> str:
+    """Return why the stiffness of a link is not known at the stated temperature.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    str
+        Of the first such link; "" where all are known.
+    """
+    cards = [case.all_materials[case.part_of(link).material] for link in case.checked_links]
+    return next(filter(None, (modulus_unknown(card, case.conditions) for card in cards)), "")
+
+
+def require_stiffness(case: Case) -> None:
+    """Refuse a case whose links' stiffness is not known at the stated temperature, where no verdict could say so.
+
+    Parameters
+    ----------
+    case : Case
+
+    Raises
+    ------
+    CaseError
+    """
+    if why := stiffness_unknown(case):
+        raise CaseError(f"conditions.temperature: {why}")
+
+
+def _strength_unknown(case: Case, outcome: CheckOutcome) -> str:
+    """Say why no strength is known for an outcome; "" where one is, and of pins whose card has no table (a caveat)."""
+    if outcome.subject.kind == "link":
+        names = [case.part_of(outcome.subject.name).material]
+    elif isinstance(case.all_checks[outcome.name], PinCheck):
+        pin = case.joints[outcome.subject.name].pin_material
+        names = [pin] if case.all_materials[pin].temperature_factors else []
+    else:  # bearing on eyes
+        links = case.joints[outcome.subject.name].links
+        names = [case.part_of(link).material for link in links if link in case.checked_links]
+    return next(filter(None, (strength_unknown(case.all_materials[name], case.conditions) for name in names)), "")
+
+
+def as_if_cold(case: Case) -> Iterator[str]:
+    """Yield a sentence for each property of links that numbers have as at room temperature, for a warning.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    str
+    """
+    for name in dict.fromkeys(case.part_of(link).material for link in case.checked_links):
+        for unknown in (strength_unknown, modulus_unknown):
+            if why := unknown(case.all_materials[name], case.conditions):
+                yield f"{why}, and until then numbers are those of room temperature"
+
+
+def cold_pins(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield the checked pins whose material tells nothing of the stated temperature, and why that matters.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    tuple of 2 str
+        What is not judged, and why.
+    """
+    asked = [check.joints or case.pinned_joints for check in case.all_checks.values() if isinstance(check, PinCheck)]
+    used = dict.fromkeys(case.joints[joint].pin_material for joints in asked for joint in joints)
+    left = [
+        name
+        for name in used
+        if not case.all_materials[name].temperature_factors
+        and strength_unknown(case.all_materials[name], case.conditions)
+    ]
+    if left:
+        at = f"{case.conditions.temperature:g} degC"
+        yield f"pins at {at}", f"no temperature_factors of {', '.join(left)}; its strength is that of room temperature"
