@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.facts import Bore, PartFacts
+from geometry.imported.facts import Bore, PartFacts, PartSurface
 
 Real = NDArray[np.float64]
 
@@ -221,7 +221,9 @@ def _letters(number: int) -> str:
 
 
 def single_frame(facts: PartFacts) -> LinkFrame | None:
-    """Return a frame of a link with a single pin: x along the axis of the file across the bore that reaches farthest.
+    """Return a frame of a link with a single pin: x from the bore towards the centroid of the part.
+
+    Where the centroid lies within the bore, x is the axis of the file across the bore that reaches farthest.
 
     Parameters
     ----------
@@ -238,30 +240,33 @@ def single_frame(facts: PartFacts) -> LinkFrame | None:
         return None
     z, arms = np.array(bore.axis), np.diag(np.subtract(facts.high, facts.low))
     across = arms - np.outer(arms @ z, z)
-    way = int(np.argmax(np.round(np.linalg.norm(across, axis=1) / np.linalg.norm(arms), 6)))
-    x = across[way] / np.linalg.norm(across[way])
-    if float(x @ np.subtract(facts.centroid, bore.centre)) < -COAXIAL * bore.diameter:
-        x = -x
+    way = across[int(np.argmax(np.round(np.linalg.norm(across, axis=1) / np.linalg.norm(arms), 6)))]
+    arm = np.subtract(facts.centroid, bore.centre)
+    arm -= (arm @ z) * z
+    if np.linalg.norm(arm) > bore.diameter / 2.0:
+        way = arm
+    x = way / np.linalg.norm(way)
     return LinkFrame(origin=np.array(bore.centre), axes=np.array([x, np.cross(z, x), z]), bores={"A": bore})
 
 
-def far_end(facts: PartFacts, frame: LinkFrame) -> float:
-    """Return how far a part reaches along x of a frame.
+def far_end(surface: PartSurface, frame: LinkFrame) -> tuple[float, float]:
+    """Return the end of a part along x of a frame.
 
     Parameters
     ----------
-    facts : PartFacts
-        What is found in its file.
+    surface : PartSurface
+        Of the part.
     frame : LinkFrame
         The frame.
 
     Returns
     -------
-    float
-        Greatest x of the corners of its bounds [mm].
+    tuple of float
+        (x, y) of the middle of what lies farthest along x [mm].
     """
-    corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
-    return float(frame.place(corners)[:, 0].max())
+    x, y, _ = frame.place(surface.points).T
+    last = y[x >= x.max() - COAXIAL * (x.max() - x.min())]
+    return float(x.max()), float(last.min() + last.max()) / 2.0
 
 
 def viewing_frame(facts: PartFacts) -> LinkFrame:

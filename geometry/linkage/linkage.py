@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema, field_validator
 
 from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name
+from geometry.base.model import CaseModel, Name, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 from geometry.parts.part import EyeSizes, HoleRow, Slot
 
@@ -29,13 +29,17 @@ TightIn = Annotated[
 """One link, or both as a list."""
 
 
+Place = tuple[Length, Length]
+
+
 class Link(CaseModel):
     """A rigid body of the linkage, described in a frame of its own whose x axis is the link's axis."""
 
     ground: bool = False
     """True for the one link that does not move; its frame is the global one."""
-    points: Annotated[dict[Name, tuple[Length, Length]], Field(min_length=2, max_length=100)]
-    """Pins and load points: name -> (x, y) in the link's frame, in order along the link."""
+    points: Annotated[dict[Name, Place], Field(min_length=1, max_length=100)]
+    """Pins and load points: name -> (x, y) in the link's frame, in order along the link. A link that moves has two or
+    more."""
     part: Name | None = None
     """The part (shape and material) that the link is made of; none for a link that is not checked."""
     held_at: Name | None = None
@@ -68,6 +72,13 @@ class Link(CaseModel):
     apart: Annotated[Length, POSITIVE] | None = None
     """Of a pair: the distance of the mid-planes of its plates, evenly about the link's own height. Left out, it is
     twice layer_spacing, so that the other link of a joint lies in between."""
+
+    @field_validator("points")
+    @classmethod
+    def _tell_a_direction(cls, points: dict[Name, Place], info: ValidationInfo) -> dict[Name, Place]:
+        if len(points) < 2 and not info.data.get("ground"):
+            raise refusal("it has 1, but at least 2 must be there in a link that moves; add what is missing")
+        return points
 
     @property
     def pieces(self) -> tuple[tuple[Name, Name], ...]:

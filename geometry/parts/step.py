@@ -58,8 +58,9 @@ class FilePart(Printable):
     diameter_tolerance: Annotated[Length, NOT_NEGATIVE] = 0.3
     """How much the diameter of a bore may differ from that of its pin."""
     along: Direction | None = None
-    """Direction of the link's x axis in the frame of the file; needed where the link has a single pin, and allowed only
-    there. What it has along the pin is left out."""
+    """Direction of the link's x axis in the frame of the file; needed where the link has a single pin and the part
+    names the bore of no other of its points, and allowed only with a single pin. What it has along the pin is left
+    out."""
     flip: bool = False
     """Whether the part lies the other way up, where its bores alone do not tell."""
     plane: Length | None = None

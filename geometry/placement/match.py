@@ -7,6 +7,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,12 @@ STEEPEST = math.radians(1.0)
 """Least angle between the bore of a single pin and a stated direction; the direction's part across the bore counts."""
 
 
-def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fit:
+def place(
+    part: FilePart,
+    bores: Sequence[Bore],
+    wanted: Sequence[Wanted],
+    others: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+) -> Fit:
     """Find how a part lies in its link.
 
     Parameters
@@ -34,6 +40,9 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
         All bores of its solid.
     wanted : sequence of Wanted
         The pinned points of the link.
+    others : mapping of str to tuple of float, optional
+        Its points without a joint, (x, y) in its frame [mm]; beside a single pin, those whose bores the part names tell
+        how it lies.
 
     Returns
     -------
@@ -49,7 +58,7 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
     if not wanted:
         raise CaseError("an imported part is placed by the bores of its pins, but the link has no joint; add one")
     if len(wanted) == 1:
-        return _placed_along(part, candidates[0], wanted[0])
+        return _placed_about(part, bores, candidates[0], wanted[0], others)
     if part.along is not None:
         raise CaseError("along: the pins of the link tell how the part lies; leave it out")
     _check_named_parallel(part, wanted, candidates)
@@ -77,8 +86,14 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
     return either_way_up[-1 if part.flip else 0]
 
 
-def _placed_along(part: FilePart, bores: Sequence[Bore], one: Wanted) -> Fit:
-    """Return how a part lies in a link with a single pin, by the direction that the part states."""
+def _placed_about(
+    part: FilePart,
+    all_bores: Sequence[Bore],
+    bores: Sequence[Bore],
+    one: Wanted,
+    others: Mapping[str, tuple[float, float]],
+) -> Fit:
+    """Return how a part lies in a link with a single pin, by the direction or the other bores that the part states."""
     if len(bores) > 1:
         raise CaseError(
             f"the pin at {one.name} fits {', '.join(bore.told for bore in bores[:12])}; state which it is, in the "
@@ -86,21 +101,41 @@ def _placed_along(part: FilePart, bores: Sequence[Bore], one: Wanted) -> Fit:
         )
     if one.slot is not None:
         raise CaseError(f"the link has no joint but one in a slot, {one.name}, which does not hold it; add a joint")
-    if part.along is None:
-        raise CaseError(
-            f"the link has a single pin, {one.name}, which does not tell how the part lies; state along = [x, y, z], "
-            "the direction of the link's x axis in the frame of the file"
-        )
     [bore] = bores
+    if part.along is not None:
+        return _placed_along(part, bore, one, np.asarray(part.along, dtype=float), np.array([1.0, 0.0]))
+    beside: dict[str, Real] = {}
+    for name, at in others.items():
+        if name in part.bores and at != one.place and not (named := _named(part, all_bores, name)).slot:
+            _check_parallel({one.name: bore, name: named})
+            beside[name] = _across(np.subtract(named.centre, bore.centre), np.asarray(bore.axis))
+    arms = {name: arm for name, arm in beside.items() if np.linalg.norm(arm) > part.place_tolerance}
+    if not arms:
+        raise CaseError(
+            f"the link has a single pin, {one.name}, which does not tell how the part lies; name the bore of a second "
+            "point in the part's bores, or state along = [x, y, z], the direction of the link's x axis in the frame of "
+            "the file"
+        )
+    far = max(arms, key=lambda name: round(float(np.linalg.norm(arms[name])), 6))
+    fits = [
+        _placed_along(part.model_copy(update={"flip": over}), bore, one, arms[far], np.subtract(others[far], one.place))
+        for over in (part.flip, not part.flip)
+    ]
+    off = [max(math.dist((fit.turn @ arm)[:2] + one.place, others[name]) for name, arm in arms.items()) for fit in fits]
+    return fits[1] if off[1] <= part.place_tolerance < off[0] else fits[0]
+
+
+def _placed_along(part: FilePart, bore: Bore, one: Wanted, towards: Real, link: Real) -> Fit:
+    """Return how a part lies about its pin, where a direction of its file is one of the link."""
     z = _senses(bore)[-1 if part.flip else 0]
-    across = _across(np.asarray(part.along, dtype=float), z)
-    size = float(np.linalg.norm(across) / np.linalg.norm(part.along))
+    across = _across(towards, z)
+    size = float(np.linalg.norm(across) / np.linalg.norm(towards))
     if size < math.sin(STEEPEST):
         raise CaseError(
-            f"along = {list(part.along)} is the direction of {bore.name}, but the link's x axis lies across its pins; "
+            f"along = {towards.tolist()} is the direction of {bore.name}, but the link's x axis lies across its pins; "
             "state one across the bore"
         )
-    turn = _turned(across, np.array([1.0, 0.0]), z)
+    turn = _turned(across, link, z)
     shift = np.append(one.place, -(part.plane or 0.0)) - turn @ np.asarray(bore.centre)
     return Fit(turn=turn, shift=shift, bores={one.name: bore})
 

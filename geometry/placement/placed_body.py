@@ -111,7 +111,7 @@ def placed_body(
 def _placed(
     part: FilePart, facts: PartFacts, wanted: tuple[Wanted, ...], others: Mapping[str, tuple[float, float]]
 ) -> Body:
-    placement = with_loaded_bores(part, place(part, facts.bores, wanted), facts.bores, others)
+    placement = with_loaded_bores(part, place(part, facts.bores, wanted, others), facts.bores, others)
     loaded = [
         Wanted(name=name, place=others[name], diameter=bore.diameter)
         for name, bore in placement.bores.items()

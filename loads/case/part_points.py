@@ -92,7 +92,7 @@ def _placed(name: str, link: dict[str, Any], part: FilePart, joints: object) -> 
         places = _places(points)
         taken = {*(one.name for one in wanted), *part.faces}
         others = {point: at for point, at in places.items() if point not in taken}
-        fit = with_loaded_bores(part, place(part, bores_of(part), wanted), bores_of(part), others)
+        fit = with_loaded_bores(part, place(part, bores_of(part), wanted, others), bores_of(part), others)
         points = _with_faces(part, fit, points, places)
     except AlulaError as error:
         raise type(error)(f"links.{name}, part {Path(part.file).name}: {error}") from None

@@ -4,25 +4,17 @@ import json as jsonlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geometry.base.errors import AlulaError, CaseError
 from geometry.base.version import result_stamp
-from geometry.imported.arrangement import (
-    LinkFrame,
-    angle_between,
-    coaxial,
-    far_end,
-    link_frame,
-    parallel_groups,
-    single_frame,
-)
+from geometry.imported.arrangement import angle_between, coaxial, parallel_groups
 from geometry.imported.facts import MESH_FORMATS, Bore, PartFacts, Vector
-from geometry.imported.read import part_facts, part_surface
+from geometry.imported.read import part_facts
 from geometry.materials.material import Material, library
 from geometry.parts.mesh_part import UNITS
+from loads.exchange.part import FoundPart, part_entries
 from loads.text.explain import printable
 from reports.tables.data import entries
 from reports.words.terminal import KEPT, say, say_table
@@ -33,8 +25,6 @@ if TYPE_CHECKING:
 
 ENTRIES, PICTURE, RECORD = "parts.toml", "part.png", "result.json"
 """Files that go to the output folder."""
-ASSUMED_MATERIAL = "pla-fdm-xy"
-"""Material in the entries where none is named."""
 MOST_FACES = 40
 """Flat faces in the printed list."""
 GRAMS = 1e6
@@ -42,25 +32,8 @@ GRAMS = 1e6
 
 
 @dataclass(frozen=True, kw_only=True)
-class Inspection:
-    """What is found in the file of a part, with a material.
-
-    Attributes
-    ----------
-    path : Path
-        The file.
-    facts : PartFacts
-        What is found in it.
-    material : str or None
-        Name of the material; None where none is named.
-    unit : str or None
-        Unit of length of a mesh; None of a STEP file, which states its own.
-    """
-
-    path: Path
-    facts: PartFacts
-    material: str | None
-    unit: str | None = None
+class Inspection(FoundPart):
+    """What is found in the file of a part, with a material."""
 
     @property
     def card(self) -> Material | None:
@@ -71,24 +44,6 @@ class Inspection:
     def mass(self) -> float | None:
         """Mass [tonne]; None without a material."""
         return None if self.card is None else self.facts.volume * self.card.density
-
-    @cached_property
-    def frame(self) -> LinkFrame | None:
-        """The frame of the link that the part may be."""
-        return link_frame(self.facts.bores)
-
-    @property
-    def mesh_unit(self) -> float | None:
-        """Unit of length of a mesh [mm]; None of a STEP file."""
-        return None if self.unit is None else UNITS[self.unit]
-
-    @property
-    def name(self) -> str:
-        """Name of part and link in the entries: that of the file, as far as it is one."""
-        kept = "".join(c if c.isalnum() or c in "-_+ " else "-" for c in self.path.stem).strip("-_+ ")
-        while len(kept.encode()) > 60:
-            kept = kept[:-1].rstrip("-_+ ")
-        return kept or "part"
 
 
 def inspect_file(path: Path, material: str | None, unit: str | None = None) -> Inspection:
@@ -160,7 +115,7 @@ def record(found: Inspection) -> dict[str, Any]:
         "link_points": {} if frame is None else {name: list(at) for name, at in frame.points.items()},
         "link_bores": {} if frame is None else {name: bore.name for name, bore in frame.bores.items()},
         "link_slots": {} if frame is None else {name: list(ends) for name, ends in frame.slots.items()},
-        "entries": case_entries(found),
+        "entries": part_entries(found),
     }
 
 
@@ -176,66 +131,6 @@ def as_json(found: Inspection) -> str:
     str
     """
     return jsonlib.dumps(record(found), indent=2, ensure_ascii=False)
-
-
-def case_entries(found: Inspection) -> str:
-    """Return the entries of a case file for a part, as TOML.
-
-    Parameters
-    ----------
-    found : Inspection
-
-    Returns
-    -------
-    str
-        Empty where the part has no bore that may be a pin's.
-    """
-    frame, along = found.frame, ""
-    if frame is None:
-        single = single_frame(found.facts)
-        if single is None:
-            return ""
-        frame, along = single, f"along = [{', '.join(_exact(value) for value in single.axes[0])}]"
-    name, points, slots = _quoted(found.name), frame.points, frame.slots
-    lines = [
-        (f"[parts.{name}]", ""),
-        *(
-            [('shape = "mesh"', ""), (f'unit = "{found.unit}"', "the file states none: check it")]
-            if found.unit
-            else [('shape = "step"', "")]
-        ),
-        (f"file = {_quoted(found.path.name, bare=False)}", "beside the case file"),
-        (
-            f'material = "{found.material or ASSUMED_MATERIAL}"',
-            "" if found.material else "assumed: state the part's own",
-        ),
-        *((f'bores.{point} = "{bore.name}"', "") for point, bore in frame.bores.items()),
-        *([(along, "x of the link in the file: correct it")] if along else []),
-        ("", ""),
-        (f"[links.{name}]", ""),
-        (f"part = {_quoted(found.name, bare=False)}", ""),
-        *(
-            (
-                f'points.{point} = ["{_exact(x)} mm", "{_exact(y)} mm"]',
-                f"{'slot' if point in slots else 'pin'} of {_short(frame.bores[point].diameter)} mm",
-            )
-            for point, (x, y) in points.items()
-        ),
-        *(
-            [(f'points.P = ["{_exact(far_end(found.facts, frame))} mm", "0 mm"]', "a load point: correct it")]
-            if along
-            else []
-        ),
-        *(
-            (
-                f'slots.{point} = {{ first = "{_exact(first)} mm", last = "{_exact(last)} mm" }}',
-                'for a joint of type "pin-in-slot", this link first',
-            )
-            for point, (first, last) in slots.items()
-        ),
-    ]
-    wide = max(len(line) for line, told in lines if told)
-    return "".join(f"{line:<{wide}}  # {told}\n" if told else f"{line}\n" for line, told in lines)
 
 
 def print_inspection(found: Inspection, console: "Console") -> None:
@@ -265,7 +160,7 @@ def print_inspection(found: Inspection, console: "Console") -> None:
         say(console, line)
     if facts.faces:
         _faces(found, console)
-    text = case_entries(found)
+    text = part_entries(found)
     if text:
         say(console, "\nEntries of the case file")
         print(f"\n{text}", end="", flush=True)
@@ -285,14 +180,14 @@ def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], 
     from reports.figures.part_picture import part_picture
 
     try:
-        picture, trouble = part_picture(found.facts, part_surface(found.path, found.mesh_unit))
+        picture, trouble = part_picture(found.facts, found.surface)
     except AlulaError as error:
         picture, trouble = None, str(error)
     if picture is None:
         progress(f"Warning: no picture: {trouble}")
     else:
         (folder / PICTURE).write_bytes(picture)
-    if text := case_entries(found):
+    if text := part_entries(found):
         (folder / ENTRIES).write_text(text, encoding="utf-8")
     (folder / RECORD).write_text(as_json(found) + "\n", encoding="utf-8")
 
@@ -395,14 +290,3 @@ def _place(value: float) -> str:
 
 def _short(value: float) -> str:
     return plain(round(value, 4))
-
-
-def _exact(value: float) -> str:
-    return f"{round(value, 6) + 0.0:.6f}".rstrip("0").rstrip(".")
-
-
-def _quoted(text: str, *, bare: bool = True) -> str:
-    """Return a text as a key of TOML, bare where it may be, or as a string."""
-    if bare and text.isascii() and all(c.isalnum() or c in "-_" for c in text):
-        return text
-    return jsonlib.dumps(text.encode(errors="replace").decode(), ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,5 +1,7 @@
 """``alula cases``, ``alula new`` and ``alula schema``: what a case of one's own starts from."""
 
+import itertools
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Literal
@@ -8,8 +10,7 @@ import typer
 
 STARTER = "four-bar"
 """The built-in case that ``alula new`` writes where none is named."""
-Unit = Literal["mm", "cm", "m", "in"]
-_MILLIMETRES: dict[Unit, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+Unit = Literal["um", "mm", "cm", "m", "in"]
 app = typer.Typer()
 
 
@@ -53,14 +54,25 @@ def new(
     pmks: Annotated[
         Path | None, typer.Option("--from-pmks", metavar="FILE", help="Start from a text file with a link of PMKS+.")
     ] = None,
-    unit: Annotated[Unit, typer.Option("--unit", help="Unit of the lengths, which pylinkage does not state.")] = "mm",
+    step: Annotated[
+        Path | None,
+        typer.Option(
+            "--from-step",
+            metavar="FILE",
+            help="Start from a part (STEP file or mesh): what holds and loads it is guessed from its bores.",
+        ),
+    ] = None,
+    unit: Annotated[
+        Unit | None,
+        typer.Option("--unit", help="Unit of the lengths, which pylinkage and a mesh do not state.", show_default="mm"),
+    ] = None,
 ) -> None:
-    """Write a commented case to start from: a four-bar linkage, or any built-in case with the files that it names."""
+    """Write a commented case to start from: a four-bar linkage, any built-in case, or one for a part from CAD."""
     from geometry.base.errors import CaseError
     from reports.words.wording import joined
 
     if listed:
-        if path is not None or start is not None or study or pylinkage or pmks:
+        if path is not None or start is not None or study or pylinkage or pmks or step:
             raise CaseError("--list: it lists the built-in cases and writes nothing; leave out all else")
         cases()
         return
@@ -70,10 +82,18 @@ def new(
         raise CaseError(
             "--from: it names a built-in case, but --study writes the plan of a study; leave out one of them"
         )
-    if sum([start is not None, study, pylinkage is not None, pmks is not None]) > 1:
-        raise CaseError("--from, --from-pylinkage, --from-pmks, --study: they name different things; keep one of them")
+    sources = {"--from": start, "--from-pylinkage": pylinkage, "--from-pmks": pmks, "--from-step": step}
+    if sum(source is not None for source in (*sources.values(), study or None)) > 1:
+        raise CaseError(f"{', '.join(sources)}, --study: they name different things; keep one of them")
+    if step is not None:
+        from loads.exchange.part import part_case
+        from reports.commands.inspect_part import inspect_file
+
+        write_new({path: part_case(inspect_file(step, None, unit), path).encode()})
+        print(f"Wrote {path}. Correct its lines marked GUESS. Check it with: alula check {path} -o out")
+        return
     if pylinkage is not None or pmks is not None:
-        write_new({path: sketched(pylinkage, pmks, unit)})
+        write_new({path: sketched(pylinkage, pmks, unit or "mm")})
         print(f"Wrote {path}. It has no parts yet. See its joint forces with: alula statics {path}")
         return
     contents = {path: _text("loads.plans", "starter-study.toml.txt")} if study else case_files(start or STARTER, path)
@@ -104,6 +124,7 @@ def sketched(pylinkage: Path | None, pmks: Path | None, unit: Unit) -> bytes:
     CaseError
         For a file that cannot be read, or whose linkage is no case.
     """
+    from geometry.parts.mesh_part import UNITS
     from loads.exchange.exchange import case_of_linkage
     from loads.text.explain import printable
     from loads.text.file_text import file_text
@@ -117,7 +138,7 @@ def sketched(pylinkage: Path | None, pmks: Path | None, unit: Unit) -> bytes:
         empty="the file is empty; save the mechanism anew",
     )
     name = printable(source.name)  # it stands in a comment of the case
-    return case_of_linkage("pylinkage" if pylinkage else "pmks", text, name, _MILLIMETRES[unit]).encode()
+    return case_of_linkage("pylinkage" if pylinkage else "pmks", text, name, UNITS[unit]).encode()
 
 
 def case_files(name: str, path: Path) -> dict[Path, bytes]:
@@ -133,7 +154,8 @@ def case_files(name: str, path: Path) -> dict[Path, bytes]:
     Returns
     -------
     dict of Path to bytes
-        The case first.
+        The case first. A file that stands there already as it ships is left out; beside one of its name with another
+        content it gets another name, in the case too.
 
     Raises
     ------
@@ -154,9 +176,20 @@ def case_files(name: str, path: Path) -> dict[Path, bytes]:
     beside = [text for text in _texts(read_tables(name)) if text in shipped]
     if path.name in beside:
         raise CaseError(f"PATH: '{printable(path.name)}' is a file that the case names; choose another name")
-    return {path: _text("loads.cases", f"{name}.toml")} | {
-        path.parent / file: _text("loads.cases", file) for file in beside
-    }
+    case, companions = _text("loads.cases", f"{name}.toml"), dict[Path, bytes]()
+    for file in beside:
+        content = _text("loads.cases", file)
+        place = _place_for(path.parent / file, content)
+        case = case.replace(f'"{file}"'.encode(), f'"{place.name}"'.encode())
+        if not place.exists():
+            companions[place] = content
+    return {path: case, **companions}
+
+
+def _place_for(file: Path, content: bytes) -> Path:
+    """Return where a file with this content may stand: its own place, unless something else stands there."""
+    places = itertools.chain([file], (file.with_stem(f"{file.stem}-{k}") for k in itertools.count(2)))
+    return next(p for p in places if not os.path.lexists(p) or (p.is_file() and p.read_bytes() == content))
 
 
 def _texts(entry: object) -> Iterator[str]:

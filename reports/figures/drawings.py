@@ -74,8 +74,12 @@ class _Drawing:
         self.per_newton = _ARROW * self.size / self.largest if self.largest > 0.0 else 0.0
         tips = [at + f * self.per_newton for _, at, f in (*self._joint_forces(), *self._loads())]
         everything = np.vstack([corners, *[t[None] for t in tips]])
-        margin = 0.11 * self.size
-        self._lay_out(everything.min(axis=0) - margin, everything.max(axis=0) + margin)
+        low, high = everything.min(axis=0) - 0.11 * self.size, everything.max(axis=0) + 0.11 * self.size
+        for link in self.linkage.links:
+            if (nodes := self._nodes(link)) is not None:  # a part may reach far beyond its points
+                low = np.minimum(low, nodes.min(axis=0) - 0.02 * self.size)
+                high = np.maximum(high, nodes.max(axis=0) + 0.02 * self.size)
+        self._lay_out(low, high)
 
     def _lay_out(self, low: Real, high: Real) -> None:
         """Choose sheet and scale, the same along x and y, for what lies between two corners."""
@@ -180,20 +184,33 @@ class _Drawing:
                 found += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
         return found
 
-    def _silhouette(self, link: str) -> Real | None:
-        """Draw a part that is no uniform beam as it is seen along its pins, where a solid tells; returns its points."""
+    def _seen(self, link: str) -> SolidResult | None:
+        """Return the solid as which a link is drawn: that of a part that is no uniform beam."""
         found, case = self.result.load_cases[self.name].links.get(link), self.result.case
         if not isinstance(found, SolidResult) or (case.part_of(link).is_beam and not case.body(link).cuts):
             return None
-        space, place = found.stress.space, self.pose.placement
-        places = place.origin(link) + place.direction(link) * (space.nodes[:, 0] + 1j * space.nodes[:, 1])
-        flat = self.axes.at(np.column_stack([places.real, places.imag]))
+        return found
+
+    def _nodes(self, link: str) -> Real | None:
+        """Return the nodes (n, 2) of the solid as which a link is drawn [mm]."""
+        if (found := self._seen(link)) is None:
+            return None
+        nodes, place = found.stress.space.nodes, self.pose.placement
+        places = place.origin(link) + place.direction(link) * (nodes[:, 0] + 1j * nodes[:, 1])
+        return np.column_stack([places.real, places.imag])
+
+    def _silhouette(self, link: str) -> Real | None:
+        """Draw a part that is no uniform beam as it is seen along its pins, where a solid tells; returns its points."""
+        found, nodes = self._seen(link), self._nodes(link)
+        if found is None or nodes is None:
+            return None
+        space, flat = found.stress.space, self.axes.at(nodes)
         triangles, edges = silhouette(space.nodes, space.boundary)
         for triangle in outlines(flat[triangles]):
             self.sheet.area(triangle, LINK, LINK, 0.3)
         for edge in curves(flat[edges]):
             self.sheet.line(edge, INK, 0.6)
-        return np.column_stack([places.real, places.imag])[np.unique(edges)[::5]]
+        return nodes[np.unique(edges)[::5]]
 
     def _joints(self) -> list[Real]:
         """Draw the joints; returns points of them."""

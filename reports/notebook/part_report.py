@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from geometry.base.errors import CannotRunError
-from geometry.imported.read import part_surface
-from reports.commands.inspect_part import GRAMS, Inspection, case_entries
+from loads.exchange.part import part_entries
+from reports.commands.inspect_part import GRAMS, Inspection
 from reports.notebook.shown import Picture, Row, Table
 
 
@@ -33,7 +33,7 @@ class PartReport:
     @property
     def entries(self) -> str:
         """The entries of a case file for the part, as TOML; empty where it has no bore for a pin."""
-        return case_entries(self.result)
+        return part_entries(self.result)
 
     def table(self) -> Table:
         """Return one row a bore: diameter, length and centre [mm] in the frame of the file."""
@@ -63,8 +63,7 @@ class PartReport:
         """
         from reports.figures.part_picture import part_picture
 
-        facts = self.result.facts
-        picture, trouble = part_picture(facts, part_surface(self.result.path, self.result.mesh_unit))
+        picture, trouble = part_picture(self.result.facts, self.result.surface)
         if picture is None:
             raise CannotRunError(trouble)
         return Picture(picture)

@@ -98,9 +98,10 @@ def test_links_without_length() -> None:
         _ = linkage.longest
 
 
-def test_a_link_with_one_point_and_a_joint_of_three_links_are_refused() -> None:
+def test_a_moving_link_with_one_point_and_a_joint_of_three_links_are_refused() -> None:
     with pytest.raises(ValidationError, match="at least 2"):
         link(A=(0, 0))
+    assert link(ground=True, A=(0, 0)).points == {"A": (0.0, 0.0)}  # one pin may be all that it holds
     with pytest.raises(ValidationError):
         Joint(links=("a", "b", "c"))  # type: ignore[arg-type]
 

@@ -158,10 +158,27 @@ def test_a_single_pin_needs_a_direction_of_which_the_part_across_the_bore_counts
     assert over.middle("A") == pytest.approx([7.0, -2.0, -2.0])
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("pin", POINTS)
+def test_named_bores_without_a_joint_tell_how_a_part_on_a_single_pin_lies(seed, pin):
+    """As all pins do together; the third point tells which side is up, and of two alone ``flip`` does."""
+    turn, shift, names = rotation(seed), np.array([3.0, -40.0, 12.0]), {"A": "bore 1", "B": "bore 2", "C": "bore 3"}
+    bores, loaded = moved(turn, shift), {name: at for name, at in POINTS.items() if name != pin}
+    found = place(part(bores=names), bores, wanted({pin: POINTS[pin]}), loaded)
+    assert np.allclose(found.turn, turn.T, atol=1e-12)
+    assert list(found.bores) == [pin]
+    other = max(loaded)
+    two = {point: names[point] for point in (pin, other)}
+    sides = [place(part(bores=two, flip=f), bores, wanted({pin: POINTS[pin]}), {other: POINTS[other]}) for f in (0, 1)]
+    assert sides[0].turn[2] == pytest.approx(-sides[1].turn[2])
+    for side in sides:
+        assert side.turn @ bores["ABC".index(other)].centre + side.shift == pytest.approx([*POINTS[other], 0.0])
+
+
 @pytest.mark.parametrize(
     ("entries", "points", "said"),
     [
-        ({}, ONE, r"single pin, A, which does not tell how the part lies; state along = \[x, y, z\]"),
+        ({}, ONE, r"single pin, A, which does not tell how the part lies; name the bore of a second point"),
         ({"along": (0.0, 0.01, 1.0)}, ONE, "is the direction of bore 1, but the link's x axis lies across its pins"),
         ({"along": (1.0, 0.0, 0.0)}, POINTS, "along: the pins of the link tell how the part lies; leave it out"),
         ({"along": (1.0, 0.0, 0.0)}, {}, "the link has no joint; add one"),

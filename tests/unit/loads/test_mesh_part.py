@@ -17,7 +17,8 @@ from geometry.meshing.element_geometry import jacobian_coefficients
 from geometry.meshing.file_mesh import read_mesh
 from geometry.meshing.mesh import export_step, mass_properties, mesh_body, reentrant_edges
 from loads.case.case_file import read_case
-from reports.commands.inspect_part import case_entries, inspect_file
+from loads.exchange.part import part_entries
+from reports.commands.inspect_part import inspect_file
 
 FORMATS = {"msh": "gmsh", "vtu": "vtu", "inp": "abaqus"}
 STAND = Rotation.from_rotvec(np.radians(50.0) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))
@@ -261,4 +262,4 @@ def test_inspect_reads_a_mesh_in_a_stated_unit(tmp_path, mesh):
     path = write(tmp_path / "own.msh", mesh.points / 25.4, mesh.cells)
     found = inspect_file(path, None, "inch")
     assert found.facts.volume == pytest.approx(mesh.volume, rel=1e-5)
-    assert 'unit = "in" ' in case_entries(found)
+    assert 'unit = "in" ' in part_entries(found)

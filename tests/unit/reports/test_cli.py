@@ -55,7 +55,7 @@ def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) ->
 
 @pytest.mark.parametrize("name", built_in_cases())
 def test_a_case_starts_from_any_built_in_one_with_the_files_that_it_names(name: str, tmp_path: Path) -> None:
-    """The copy says what the built-in case says; what is in the way of its files is left, and nothing added."""
+    """The copy says what the built-in case says; a second one in the same folder shares its files."""
     path = tmp_path / "my-case.toml"
     done = programs.inside("new", "--from", name, str(path))
     written = sorted(file.name for file in tmp_path.iterdir())
@@ -74,13 +74,23 @@ def test_a_case_starts_from_any_built_in_one_with_the_files_that_it_names(name: 
     )
     if case.published_statics is not None:
         assert read_companion(str(path), case.published_statics.exact)
-    for number, file in enumerate(written):  # each of them in the way, by itself
-        other = tmp_path / str(number)
-        other.mkdir()
-        (other / file).write_text("mine")
-        again = programs.inside("new", "--from", name, str(other / "my-case.toml"))
-        assert (again.returncode, [each.name for each in other.iterdir()]) == (2, [file])
-        assert (other / file).read_text() == "mine"
+    second = tmp_path / "second.toml"
+    assert programs.inside("new", "--from", name, str(second)).returncode == 0
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted([*written, "second.toml"])
+    assert read_case(str(second)) == case
+
+
+def test_what_is_in_the_way_of_a_new_case_stays_and_its_part_gets_another_name(tmp_path: Path) -> None:
+    (tmp_path / "bell-crank.step").write_text("mine")
+    (tmp_path / "bell-crank-2.step").mkdir()
+    (tmp_path / "other.toml").write_text("mine")
+    done = programs.inside("new", "--from", "step", "other.toml", folder=tmp_path)
+    assert (done.returncode, "'other.toml' exists" in done.stderr) == (2, True)
+    done = programs.inside("new", "--from", "step", "own.toml", folder=tmp_path)
+    assert done.stdout.startswith("Wrote own.toml and bell-crank-3.step.")
+    assert Path(read_case(str(tmp_path / "own.toml")).parts["bell-crank"].file).name == "bell-crank-3.step"
+    assert {(tmp_path / file).read_text() for file in ("bell-crank.step", "other.toml")} == {"mine"}
+    assert len(list(tmp_path.iterdir())) == 5
 
 
 def test_new_lists_the_built_in_cases() -> None:

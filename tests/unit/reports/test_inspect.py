@@ -19,8 +19,9 @@ from geometry.parts.step import StepPart
 from geometry.placement.fit import Wanted
 from geometry.placement.match import place, points_of_part
 from geometry.placement.placed_body import bores_of
+from loads.exchange.part import part_entries
 from reports.commands.cli import app
-from reports.commands.inspect_part import case_entries, inspect_file, record
+from reports.commands.inspect_part import inspect_file, record
 from reports.figures import figures
 from reports.figures.part_picture import part_picture
 from reports.sheet import style
@@ -70,7 +71,7 @@ def test_it_says_what_kinds_of_holes_there_are(name, sentences):
 def test_the_entries_name_part_points_and_bores(tmp_path):
     file = tmp_path / "Kniehebel 1ß.step"
     shutil.copy(FILES / "bell_crank.step", file)
-    assert tomllib.loads(case_entries(inspect_file(file, None))) == {
+    assert tomllib.loads(part_entries(inspect_file(file, None))) == {
         "parts": {
             "Kniehebel 1ß": {
                 "shape": "step",
@@ -92,7 +93,7 @@ def test_the_entries_name_part_points_and_bores(tmp_path):
 def test_a_link_with_these_entries_has_its_part_where_they_say(name):
     """A case finds how the part lies from points and diameters by least squares; here it is the frame of the list."""
     found = inspect_file(FILES / f"{name}.step", None)
-    tables = tomllib.loads(case_entries(found))
+    tables = tomllib.loads(part_entries(found))
     stated = tables["parts"][found.name]
     part = StepPart.model_validate(stated, context={"folder": str(FILES)})
     slots = tables["links"][found.name].get("slots", {})
@@ -120,7 +121,7 @@ def test_a_part_with_a_single_pin_gets_entries_with_along(name, tmp_path):
     """Both reach farthest along x of their files; a link of these entries has its pin and its far end there."""
     shutil.copy(FILES / f"{name}.step", tmp_path / "own.step")
     found = inspect_file(tmp_path / "own.step", None)
-    text = case_entries(replace(found, facts=replace(found.facts, bores=found.facts.bores[-1:])))
+    text = part_entries(replace(found, facts=replace(found.facts, bores=found.facts.bores[-1:])))
     tables = tomllib.loads(text)
     part = StepPart.model_validate(tables["parts"]["own"], context={"folder": str(tmp_path)})
     [(point, bore)], link = part.bores.items(), tables["links"]["own"]["points"]
@@ -137,7 +138,7 @@ def test_a_part_with_a_single_pin_gets_entries_with_along(name, tmp_path):
 )
 def test_the_name_of_the_part_is_that_of_the_file_as_far_as_it_is_a_name(file, name, tmp_path):
     shutil.copy(FILES / "inch.step", tmp_path / file)
-    assert list(tomllib.loads(case_entries(inspect_file(tmp_path / file, None)))["parts"]) == [name]
+    assert list(tomllib.loads(part_entries(inspect_file(tmp_path / file, None)))["parts"]) == [name]
 
 
 def test_record_entries_and_picture_go_to_the_folder(tmp_path):
