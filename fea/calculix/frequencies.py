@@ -5,7 +5,6 @@ of ``fea.vibration.rigid_regions`` as unknowns. CalculiX integrates the mass of 
 which is not exact: on coarse meshes its frequencies are up to 0.1 % off those of the exact mass.
 """
 
-
 import numpy as np
 from numpy.typing import NDArray
 
