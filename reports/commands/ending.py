@@ -34,6 +34,7 @@ def run(app: Callable[[], object]) -> NoReturn:
     """
     end_cleanly_on_signals()
     make_writable()
+    place_for_matplotlib()
     try:
         try:
             app()
@@ -99,8 +100,34 @@ def make_writable() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         elif isinstance(stream, io.TextIOWrapper) and stream.encoding.lower().replace("-", "") != "utf8":
             stream.reconfigure(errors="alula")
-    # It tells of a folder for its cache where HOME cannot be written.
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # of a MPLCONFIGDIR that cannot be written
+
+
+def place_for_matplotlib() -> None:
+    """Give matplotlib one folder for its caches where HOME cannot be written, which goes with this process.
+
+    By itself it makes one in every process, and those of children that are killed stay.
+    """
+    homes = {"XDG_CONFIG_HOME": "~/.config", "XDG_CACHE_HOME": "~/.cache"}
+    places = [os.path.expanduser(os.environ.get(name) or usual) for name, usual in homes.items()]
+    if os.environ.get("MPLCONFIGDIR") or all(map(_can_be_written, places)):
+        return
+    import atexit
+    import shutil
+    import tempfile
+
+    from geometry.base.tidying import owed
+
+    with contextlib.suppress(OSError):
+        made = os.environ["MPLCONFIGDIR"] = tempfile.mkdtemp(prefix="alula-")
+        atexit.register(owed(lambda: shutil.rmtree(made, ignore_errors=True)))
+
+
+def _can_be_written(folder: str) -> bool:
+    """Say whether a folder takes a new one, or can be made."""
+    while not os.path.lexists(folder) and os.path.dirname(folder) != folder:
+        folder = os.path.dirname(folder)
+    return os.path.isdir(folder) and os.access(folder, os.W_OK)
 
 
 def end_cleanly_on_signals() -> None:

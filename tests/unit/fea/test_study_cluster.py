@@ -150,7 +150,7 @@ def other_server():
                 asking.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n" * 10)
 
         threading.Thread(target=serve, daemon=True).start()
-        yield "tcp://127.0.0.1:{}".format(server.getsockname()[1])
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
         server.shutdown(socket.SHUT_RDWR)
 
 
@@ -164,7 +164,7 @@ def test_what_is_no_scheduler_is_one_sentence_in_time(who, other_server, monkeyp
     monkeypatch.setattr(on_cluster, "CONNECTING", 0.5)
     begun = time.monotonic()
     with (
-        pytest.raises(CannotRunError, match="no Dask scheduler answers at .*dask scheduler"),
+        pytest.raises(CannotRunError, match=r"no Dask scheduler answers at .*dask scheduler"),
         cluster_engine("tcp://127.0.0.1:9" if who == "nobody" else other_server, {}),
     ):
         pass
