@@ -103,3 +103,5 @@ $(INSTALLED): requirements.lock pyproject.toml | libraries
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	@touch $@
+# Other users of the machine may run it, whatever the umask: pip keeps to that.
+	@chmod -R a+rX $(VENV)

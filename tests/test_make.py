@@ -52,6 +52,18 @@ def test_the_test_fails_where_any_of_its_parts_does(tmp_path, failing):
     assert ("mypy ran" in result.stdout) == (failing != "ruff")
 
 
+def test_others_may_read_and_run_what_set_up_installs(tmp_path):
+    """With a umask of 077 pip leaves all it installs to its user alone."""
+    venv = tmp_path / "venv"
+    (venv / "bin").mkdir(parents=True)
+    install = f"umask 077; mkdir -p {venv}/lib; touch {venv}/lib/module.py; install -m 700 /bin/true {venv}/bin/alula"
+    program(venv / "bin", "python", f'case "$*" in *requirements.lock*) {install};; esac')
+    result = make(f"{venv}/.installed", f"VENV={venv}", "PYTHON=true")
+    assert result.returncode == 0, result.stderr
+    modes = {path.name: path.stat().st_mode & 0o777 for path in venv.rglob("*")}
+    assert (modes["lib"], modes["module.py"], modes["alula"]) == (0o755, 0o644, 0o755)
+
+
 @pytest.fixture
 def python(tmp_path) -> Path:
     """Stand in for a Python on a system that lacks libGLU."""

@@ -5,9 +5,6 @@ of ``fea.vibration.rigid_regions`` as unknowns. CalculiX integrates the mass of 
 which is not exact: on coarse meshes its frequencies are up to 0.1 % off those of the exact mass.
 """
 
-import tempfile
-from pathlib import Path
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +13,7 @@ from fea.elements.space import DisplacementSpace
 from fea.vibration.link_solid import LinkSolid, conditions, regions
 from fea.vibration.rigid_regions import reduced
 from geometry.base.errors import CannotRunError
+from geometry.base.tidying import scratch_folder
 
 
 def calculix_frequencies(
@@ -48,8 +46,8 @@ def calculix_frequencies(
     if solid.carried:
         raise CannotRunError("CalculiX is asked for links alone, without what they carry")
     free, whole = solid.holding.free, regions(solid, space)
-    with tempfile.TemporaryDirectory(prefix="alula-calculix-") as scratch:
-        deck = Path(scratch) / "link.inp"
+    with scratch_folder("alula-calculix-") as scratch:
+        deck = scratch / "link.inp"
         reduction = reduced(space.nodes, whole)
         inner = space.unknowns
         # Unknowns of the regions stand last in the reduction; in the deck they stand after those of the mesh.
@@ -76,5 +74,5 @@ def calculix_frequencies(
             count=count + free,
             title="natural frequencies",
         )
-        dat, _ = calculix.run(deck, Path(scratch), threads=threads, time_limit=time_limit)
+        dat, _ = calculix.run(deck, scratch, threads=threads, time_limit=time_limit)
         return calculix.read_frequencies(dat)[free:]

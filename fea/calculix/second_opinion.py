@@ -1,6 +1,5 @@
 """A second opinion on every link: CalculiX on the same mesh, material, supports and nodal loads."""
 
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +16,7 @@ from fea.outcomes.result import CheckResult, SolidResult
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.stress import StressField, von_mises
 from geometry.base.errors import CannotRunError
+from geometry.base.tidying import scratch_folder
 
 TIME_LIMIT = 900.0
 """Seconds that CalculiX may take for one link."""
@@ -141,9 +141,9 @@ def ask(
     """
     space = stress.space
     count = stress.at_points.shape[1]
-    with tempfile.TemporaryDirectory(prefix="alula-calculix-") as scratch:
+    with scratch_folder("alula-calculix-") as scratch:
         started = time.perf_counter()
-        dat, frd = calculix.run(deck, Path(scratch), threads=threads, time_limit=time_limit)
+        dat, frd = calculix.run(deck, scratch, threads=threads, time_limit=time_limit)
         seconds = time.perf_counter() - started
         u, s = calculix.read_dat(dat, nodes=len(space.nodes), elements=len(space.cells), points=count)
         nodal = calculix.read_frd_stress(frd)

@@ -7,14 +7,42 @@ Dask sends a task and the files of its parts, starts a task anew on another work
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
+from urllib.parse import urlsplit
 
 from fea.study.engine import IN_FLIGHT, Engine
 from fea.study.evaluate import evaluate, versions
-from geometry.base.errors import CannotRunError
+from geometry.base.errors import CannotRunError, CaseError
 
+CONNECTING = 5.0
+"""Seconds within which the scheduler must answer."""
 PATIENCE = 30.0
-"""Seconds within which the scheduler and a first worker must answer."""
+"""Seconds within which a first worker must be there."""
+_SCHEMES = ("tcp", "tls", "ws", "wss", "ucx")
 _AGAIN = "the same command goes on with the study"
+
+
+def require_address(address: str) -> None:
+    """Refuse what is not the address of a scheduler on a network.
+
+    Parameters
+    ----------
+    address : str
+        Such as ``"tcp://host:8786"``, or ``"host:8786"``.
+
+    Raises
+    ------
+    CaseError
+        For another form.
+    """
+    try:
+        found = urlsplit(address if "://" in address else f"tcp://{address}")
+        if found.scheme in _SCHEMES and found.hostname and found.port:
+            return
+    except ValueError:  # a port that is none
+        pass
+    raise CaseError(
+        f"--scheduler: it is '{address}', but must name protocol, host and port; write for example tcp://host:8786"
+    )
 
 
 @contextmanager
@@ -28,7 +56,7 @@ def cluster_engine(address: str, contents: Mapping[str, bytes], *, patience: flo
     contents : mapping of str to bytes
         The files of the case's parts; they are sent once.
     patience : float
-        Within which scheduler and workers must answer [s].
+        Within which a first worker must be there [s].
 
     Yields
     ------
@@ -43,10 +71,15 @@ def cluster_engine(address: str, contents: Mapping[str, bytes], *, patience: flo
         import distributed
     except ImportError:
         raise CannotRunError('--scheduler: it needs Dask; install it with: pip install "alula[cluster]"') from None
+
+    class Client(distributed.Client):
+        def __del__(self) -> None:
+            """Wait for nothing: one that was never connected would do so for a minute, and fail."""
+
     try:
-        make: Any = distributed.Client
-        client: Any = make(address, timeout=patience, set_as_default=False)
-    except (OSError, ValueError) as error:  # a time-out is an OSError
+        make: Any = Client
+        client: Any = make(address, timeout=CONNECTING, set_as_default=False)
+    except Exception as error:  # whatever Dask makes of the answer of another server
         why = type(error).__name__
         raise CannotRunError(
             f"--scheduler: no Dask scheduler answers at '{address}' ({why}); start one with: dask scheduler"

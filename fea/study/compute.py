@@ -44,10 +44,14 @@ def compute_study(
     Raises
     ------
     CaseError
-        For a folder of another study, or one that another study is writing.
+        For a folder of another study, or one that another study is writing, and an address that is none.
     CannotRunError
         Where the disk refuses or the workers are gone; what was finished stands.
     """
+    if scheduler:
+        from fea.study.cluster import require_address
+
+        require_address(scheduler)
     with Store.writing(output) as store:
         study = Study(variants=variants, store=store, retry=retry, tell=tell)
         return study.run(lambda: engine_for(variants, output, workers=workers, scheduler=scheduler)), store.counts()

@@ -5,7 +5,6 @@ import pickle
 import queue
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -17,6 +16,7 @@ from fea.study.numbers import VariantResult
 from geometry.base import child
 from geometry.base.child_server import ChildEndedError, ChildServer
 from geometry.base.errors import CannotRunError
+from geometry.base.tidying import scratch_folder
 
 IN_FLIGHT = 3
 """Tasks a worker that are handed out at once: one computed, two waiting."""
@@ -68,16 +68,15 @@ def local_engine(
     """
     for left in folder.glob(f"{_WORK}*"):  # of a study that was killed
         shutil.rmtree(left, ignore_errors=True)
-    work = tempfile.mkdtemp(prefix=_WORK, dir=folder)
     command = child.module_command("fea.study.worker")
-    environment = child.environment(TMPDIR=work, OMP_NUM_THREADS="1", MKL_NUM_THREADS="1")
+    environment = child.environment(OMP_NUM_THREADS="1", MKL_NUM_THREADS="1")
     idle: queue.SimpleQueue[ChildServer] = queue.SimpleQueue()
 
     def take() -> ChildServer:
         try:
             return idle.get_nowait()
         except queue.Empty:
-            server = ChildServer(command, environment)
+            server = ChildServer(command, environment | {"TMPDIR": str(work)})
             server.ask(pickle.dumps(dict(contents)), time_limit)
             return server
 
@@ -96,13 +95,13 @@ def local_engine(
         return found
 
     pool = ThreadPoolExecutor(workers)
-    try:
-        yield Engine(submit=lambda task: pool.submit(compute, task), capacity=lambda: IN_FLIGHT * workers)
-    finally:
-        pool.shutdown(wait=not child.stopped(), cancel_futures=True)
-        while not idle.empty():
-            idle.get().end()
-        shutil.rmtree(work, ignore_errors=True)
+    with scratch_folder(_WORK, folder) as work:
+        try:
+            yield Engine(submit=lambda task: pool.submit(compute, task), capacity=lambda: IN_FLIGHT * workers)
+        finally:
+            pool.shutdown(wait=not child.stopped(), cancel_futures=True)
+            while not idle.empty():
+                idle.get().end()
 
 
 def _why(ended: ChildEndedError) -> str:

@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 from fea.study.numbers import VariantResult, Weighs
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.base.tidying import owed
 from geometry.base.version import alula_version
 
 Analysis = Literal["check", "motion", "envelope"]
@@ -122,7 +123,7 @@ def _folder(contents: tuple[tuple[str, bytes], ...]) -> str:
     if not contents:
         return ""
     folder = Path(tempfile.mkdtemp(prefix="alula-parts-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    atexit.register(owed(lambda: shutil.rmtree(folder, ignore_errors=True)))
     for name, content in contents:
         if hashlib.sha256(content).hexdigest() != name.partition(".")[0] or Path(name).name != name:
             raise CannotRunError("the content of a part's file changed on its way; start the study anew")

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
@@ -106,9 +105,10 @@ def check(
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=tell)
         decks = None
         if second_opinion:
+            from geometry.base.tidying import scratch_folder
             from reports.tables.second_opinion import with_second_opinions
 
-            decks = Path(scratch.enter_context(TemporaryDirectory(prefix="alula-")))
+            decks = scratch.enter_context(scratch_folder("alula-"))
             result = with_second_opinions(result, decks, threads=threads, progress=progress)
         _show(result, as_json if json else None, print_result)
         if output is not None:

@@ -7,7 +7,9 @@ import io
 import logging
 import os
 import sys
-from collections.abc import Callable
+import threading
+import time
+from collections.abc import Callable, Collection
 from typing import NoReturn
 
 from geometry.base.errors import AlulaError
@@ -16,6 +18,10 @@ INTERRUPTED = 130
 CRASHED = 4
 PIPE_CLOSED = 141
 """As in a shell: 128 and the number of SIGPIPE."""
+GRACE = 1.0
+"""Seconds from a signal to the end of a process whose threads do not come back, such as from a factorisation."""
+
+_told = threading.Event()
 
 
 def run(app: Callable[[], object]) -> NoReturn:
@@ -28,6 +34,7 @@ def run(app: Callable[[], object]) -> NoReturn:
     """
     end_cleanly_on_signals()
     make_writable()
+    place_for_matplotlib()
     try:
         try:
             app()
@@ -97,12 +104,41 @@ def make_writable() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         elif isinstance(stream, io.TextIOWrapper) and stream.encoding.lower().replace("-", "") != "utf8":
             stream.reconfigure(errors="alula")
-    # It tells of a folder for its cache where HOME cannot be written.
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # of a MPLCONFIGDIR that cannot be written
+
+
+def place_for_matplotlib() -> None:
+    """Give matplotlib one folder for its caches where HOME cannot be written, which goes with this process.
+
+    By itself it makes one in every process, and those of children that are killed stay.
+    """
+    homes = {"XDG_CONFIG_HOME": "~/.config", "XDG_CACHE_HOME": "~/.cache"}
+    places = [os.path.expanduser(os.environ.get(name) or usual) for name, usual in homes.items()]
+    if os.environ.get("MPLCONFIGDIR") or all(map(_can_be_written, places)):
+        return
+    import atexit
+    import shutil
+    import tempfile
+
+    from geometry.base.tidying import owed
+
+    with contextlib.suppress(OSError):
+        made = os.environ["MPLCONFIGDIR"] = tempfile.mkdtemp(prefix="alula-")
+        atexit.register(owed(lambda: shutil.rmtree(made, ignore_errors=True)))
+
+
+def _can_be_written(folder: str) -> bool:
+    """Say whether a folder takes a new one, or can be made."""
+    while not os.path.lexists(folder) and os.path.dirname(folder) != folder:
+        folder = os.path.dirname(folder)
+    return os.path.isdir(folder) and os.access(folder, os.W_OK)
 
 
 def end_cleanly_on_signals() -> None:
-    """Let a signal to end do what Ctrl-C does: stop the children, remove half-written folders, end with 130."""
+    """Let a signal to end do what Ctrl-C does: stop the children, remove half-written folders, end with 130.
+
+    Blocks that the interruption leaves do so. Where one does not come to its end in time, it is done without them.
+    """
     import signal
 
     def end(number: int, frame: object) -> None:
@@ -129,6 +165,45 @@ def end_cleanly_on_signals() -> None:
     ending = [number for number in found if signal.getsignal(number) is not signal.SIG_IGN]
     for number in ending:
         signal.signal(number, end)
+    _end_at_the_latest(ending)
+
+
+def _end_at_the_latest(ending: Collection[int]) -> None:
+    """End the process ``GRACE`` after a signal even if no thread of it comes back from native code.
+
+    Python runs the handler of a signal in the main thread, when that comes back. The system's own handler tells the
+    number of the signal to a socket at once, and a thread waits there.
+    """
+    import signal
+    import socket
+
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    signal.set_wakeup_fd(theirs.detach(), warn_on_full_buffer=False)
+
+    def wait() -> None:
+        while ours.recv(1)[0] not in ending:
+            pass
+        time.sleep(GRACE)
+        from geometry.base.child import stop_all
+        from geometry.base.tidying import tidy_all
+
+        stop_all()
+        tidy_all()
+        if not _told.is_set():
+            _tell_now("interrupted")
+        os._exit(INTERRUPTED)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def _tell_now(sentence: str) -> None:
+    """Write to standard error past Python's own stream, which another thread may hold, if that does not block."""
+    import select
+
+    with contextlib.suppress(OSError, ValueError):
+        if select.select([], [2], [], 0.0)[1]:
+            os.write(2, f"alula: {sentence}\n".encode())
 
 
 def progress(message: str) -> None:
@@ -163,5 +238,6 @@ def _abandon_output() -> None:
 
 
 def _stop(sentence: str, status: int) -> NoReturn:
+    _told.set()
     print(f"alula: {' '.join(sentence.split())}", file=sys.stderr)
     sys.exit(status)

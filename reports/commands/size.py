@@ -5,7 +5,6 @@ import sys
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -166,6 +165,7 @@ def find_size(
     from fea.study.compute import engine_for
     from fea.study.store import Store
     from geometry.base.errors import CaseError
+    from geometry.base.tidying import scratch_folder
     from loads.case.case_file import read_case
     from loads.plans.plan import plan_of
     from loads.plans.variants import Variants
@@ -182,7 +182,7 @@ def find_size(
     data |= {"fidelity": fidelity, "accuracy": accuracy, "analysis": analysis, "set": dict(values)}
     plan = plan_of(data)
     with ExitStack() as stack:
-        kept = folder or Path(stack.enter_context(TemporaryDirectory(prefix="alula-")))
+        kept = folder or stack.enter_context(scratch_folder("alula-"))
         longest = max(1 if a.is_range else len(a.values) for a in axes)
         points = [{a.path: a.values[max(i - longest, -len(a.values))] for a in axes} for i in range(longest)]
         variants = Variants(plan, Path(), points=points)

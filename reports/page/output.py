@@ -19,6 +19,7 @@ from typing import Any
 from geometry.base import child
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.locks import locked
+from geometry.base.tidying import tidied
 
 MARK = "result.json"
 """The last file to be put and the first to be taken: a folder that holds it holds a whole result."""
@@ -93,8 +94,16 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
     """
     target = place(output, command)
     made = [folder for folder in (target, *target.parents) if not os.path.lexists(folder)]
-    work, mine = None, None
-    try:
+    work: Path | None = None
+
+    def tidy() -> None:
+        if work is not None and not (work / _JOURNAL).exists():
+            shutil.rmtree(work, ignore_errors=True)
+        for folder in made:
+            with contextlib.suppress(OSError):  # it holds the result
+                folder.rmdir()
+
+    with contextlib.ExitStack() as held, tidied(tidy):
         try:
             _refuse_no_folder(output, target)
             target.mkdir(parents=True, exist_ok=True)
@@ -103,6 +112,8 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
                 _refuse_in_the_way(target, command, ())
                 work = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=target))
                 mine = locked(work)
+                if mine is not None:
+                    held.callback(os.close, mine)
         except OSError as error:
             raise _unwritable(target, error) from None
         try:
@@ -111,14 +122,6 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
             begun = (work / _JOURNAL).exists()
             state = "the next run into it restores what was there" if begun else "nothing was changed there"
             raise CannotRunError(f"output: writing to '{target}' failed ({error.strerror or error}); {state}") from None
-    finally:
-        if work is not None and not (work / _JOURNAL).exists():
-            shutil.rmtree(work, ignore_errors=True)
-        if mine is not None:
-            os.close(mine)
-        for folder in made:
-            with contextlib.suppress(OSError):  # it holds the result
-                folder.rmdir()
 
 
 def refuse_unusable(output: Path | None, command: str, names: Iterable[str] = (MARK,)) -> None:

@@ -233,6 +233,59 @@ def test_calculix_ends_with_the_run(tmp_path: Path, number: signal.Signals) -> N
     assert _all_ended([solver])
 
 
+# Neither thread comes back from native code for minutes: what the interpreter would clear away has to be gone all the
+# same, the child process with it.
+NATIVE = """
+import hashlib, threading
+from concurrent.futures import ThreadPoolExecutor
+import reports.commands.ending as ending
+from geometry.base import child
+from geometry.base.tidying import scratch_folder
+def native():
+    sleeper = child.start([sys.executable, "-c", "import time; time.sleep(100)"])
+    print(sleeper.pid, flush=True)
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 10**9)
+def fill_and_stay(folder):
+    fill("half")(folder)
+    if sys.argv[2] == "main":
+        native()
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(native).result()
+def app():
+    with scratch_folder("alula-"):
+        write_folder(Path(sys.argv[1]), fill_and_stay)
+ending.run(app)
+"""
+
+
+@pytest.mark.parametrize(("number", "thread"), [(signal.SIGTERM, "main"), (signal.SIGINT, "pool")])
+def test_a_run_in_native_code_ends_within_two_seconds(tmp_path: Path, number: signal.Signals, thread: str) -> None:
+    """A factorisation went on for four minutes after SIGTERM, since handlers run between Python's own steps alone."""
+    out, scratch = tmp_path / "new" / "out", tmp_path / "scratch"
+    scratch.mkdir()
+    command = [sys.executable, "-c", programs.WRITING + NATIVE, str(out), thread]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        command, env=programs.environment(scratch), stdout=pipe, stderr=pipe, text=True
+    ) as process:  # fmt: skip
+        try:
+            assert process.stdout is not None
+            sleeper = int(process.stdout.readline())
+            time.sleep(0.2)
+            begun = time.monotonic()
+            process.send_signal(number)
+            _, told = process.communicate(timeout=20)
+            took = time.monotonic() - begun
+        finally:
+            process.kill()
+    assert process.returncode == 130
+    assert took < 2.0 + 2.0  # on a busy machine
+    assert told == "alula: interrupted\n"
+    assert _all_ended([sleeper])
+    assert list(scratch.iterdir()) == []
+    assert not out.parent.exists()
+
+
 def test_interrupted_while_it_writes(tmp_path: Path) -> None:
     """The folder that was being filled is removed, and the exit status is neither a pass nor a failed check."""
     out, scratch = tmp_path / "out", tmp_path / "scratch"

@@ -3,12 +3,15 @@
 import json
 import os
 import subprocess
+import sys
 from importlib.resources import files
 from pathlib import Path
 
 import programs
 import pytest
 import rocker_case
+
+from reports.commands import ending
 
 STATICS = ("statics", "owl-wing-static")
 """It prints letters beyond ASCII."""
@@ -57,9 +60,35 @@ def test_a_home_that_cannot_be_written(tmp_path: Path) -> None:
     home = tmp_path / "file"
     home.write_text("no folder")
     settings = {"HOME": str(home), "XDG_CONFIG_HOME": "", "XDG_CACHE_HOME": "", "MPLCONFIGDIR": ""}
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    settings["TMPDIR"] = str(scratch)
     done = shell("", "synth", "-o", str(tmp_path / "out"), **settings)
     assert done.returncode == 0
     assert done.stderr == ""
+    assert list(scratch.iterdir()) == []
+    # One folder for all processes: children that are killed left theirs.
+    text = (
+        "from reports.commands import ending\n"
+        "from geometry.base import child\n"
+        "ending.run(lambda: print(child.environment()['MPLCONFIGDIR']))\n"
+    )
+    environment = programs.environment(**settings)
+    told = subprocess.run([sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=False)
+    assert Path(told.stdout.strip()).parent == scratch, told.stderr
+    assert list(scratch.iterdir()) == []
+
+
+def test_a_home_that_can_be_written_keeps_matplotlibs_caches(tmp_path: Path, monkeypatch) -> None:
+    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME", "MPLCONFIGDIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path / "new"))
+    ending.place_for_matplotlib()
+    assert "MPLCONFIGDIR" not in os.environ
+    monkeypatch.setenv("MPLCONFIGDIR", "mine")
+    monkeypatch.setenv("HOME", "/dev/null")
+    ending.place_for_matplotlib()
+    assert os.environ["MPLCONFIGDIR"] == "mine"
 
 
 PLAIN = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}

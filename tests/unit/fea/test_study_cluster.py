@@ -1,9 +1,13 @@
 """A study on Dask's workers, in processes of their own: the same answers, and it survives what dies."""
 
+import gc
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
+import time
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
@@ -11,11 +15,13 @@ import programs
 import pytest
 import studies
 
+from fea.study import cluster as on_cluster
 from fea.study.cluster import _require_fit, cluster_engine
+from fea.study.compute import compute_study
 from fea.study.evaluate import versions
 from fea.study.store import Store
 from fea.study.study import Study
-from geometry.base.errors import CannotRunError
+from geometry.base.errors import CannotRunError, CaseError
 from loads.plans.plan import plan_of
 from loads.plans.variants import Variants
 
@@ -130,10 +136,45 @@ def test_workers_that_would_answer_otherwise_are_refused(threads, found, sentenc
         _require_fit(Client(threads, found), "tcp://one:0", 1.0)
 
 
-def test_what_answers_at_no_address_is_one_sentence():
-    """Nobody is there; the remedy is the command that starts a scheduler."""
+@pytest.fixture
+def other_server():
+    """The address of a server that is no scheduler: it answers as the web's do."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve():
+            while True:
+                try:
+                    asking, _ = server.accept()
+                except OSError:  # closed
+                    return
+                asking.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n" * 10)
+
+        threading.Thread(target=serve, daemon=True).start()
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        server.shutdown(socket.SHUT_RDWR)
+
+
+@pytest.mark.parametrize("who", ["nobody", "another server"])
+def test_what_is_no_scheduler_is_one_sentence_in_time(who, other_server, monkeypatch, capfd):
+    """The remedy is the command that starts one.
+
+    The first bytes of another server were taken for a length, for which memory did not suffice; then the client waited
+    a minute for its own end, and told of that with a traceback.
+    """
+    monkeypatch.setattr(on_cluster, "CONNECTING", 0.5)
+    begun = time.monotonic()
     with (
-        pytest.raises(CannotRunError, match="dask scheduler"),
-        cluster_engine("tcp://127.0.0.1:9", {}, patience=0.5),
+        pytest.raises(CannotRunError, match=r"no Dask scheduler answers at .*dask scheduler"),
+        cluster_engine("tcp://127.0.0.1:9" if who == "nobody" else other_server, {}),
     ):
         pass
+    gc.collect()
+    assert time.monotonic() - begun < 10.0
+    assert "Traceback" not in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("address", ["file:///tmp/x", "nonsense", "tcp://", "tcp://host", "host:port", "tcp://h:99999"])
+def test_an_address_of_another_form_is_refused_before_anything_is_written(address, tmp_path):
+    with pytest.raises(CaseError, match=f"--scheduler: it is '{address}', but .*tcp://host:8786"):
+        compute_study(variants("5..8 by 1"), tmp_path / "out", scheduler=address)
+    assert not (tmp_path / "out").exists()
