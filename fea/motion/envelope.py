@@ -353,7 +353,8 @@ def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growt
         found.append(f"{left_out} of {len(evaluated)} poses are left out, since no drive torque balances them")
     others = [name for name, check in case.all_checks.items() if not isinstance(check, FOLLOWED)]
     if others:
-        found.append(f"checks {', '.join(others)} concern single poses or the motor: use alula check for them")
+        named = f"checks {', '.join(others)} concern" if len(others) > 1 else f"check {others[0]} concerns"
+        found.append(f"{named} single poses or the motor: alula check looks at that")
     if case.large_displacement != "off":
         found.append("links are rigid in the motion: equilibrium is that of the undeformed linkage")
     return found

@@ -74,11 +74,12 @@ def least_margin(result: VariantResult) -> tuple[float, float, float]:
     Returns
     -------
     tuple of float
-        Value, low and high; the value is NaN where no check's value is known.
+        Value, low and high; the value is NaN where that of a check is not known, which may be the least.
     """
-    bands = [margin_band(number) for number in result.numbers if number.verdict is not None]
-    value = min((value for value, _, _ in bands if not math.isnan(value)), default=math.nan)
-    return value, min(low for _, low, _ in bands), min(high for _, _, high in bands)
+    values, lows, highs = zip(
+        *(margin_band(number) for number in result.numbers if number.verdict is not None), strict=True
+    )
+    return math.nan if any(map(math.isnan, values)) else min(values), min(lows), min(highs)
 
 
 def counterpart(result: VariantResult, number: VariantNumber) -> VariantNumber | None:

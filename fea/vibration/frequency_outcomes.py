@@ -254,8 +254,15 @@ def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
     met = meetings(history)
     if met:
         first = met[0]
+        if (history.low[:, first.mode - 1] <= 0.0).all():
+            last = max(one.harmonic for one in met if one.mode == first.mode)
+            up_to = f"harmonics up to the {ordinal(last)}, {_plain(last * history.driving)} Hz, may meet"
+            return f"{up_to} the {ordinal(first.mode)} natural frequency, since its band goes down to 0"
         return f"the {ordinal(first.harmonic)} harmonic, {_plain(first.frequency)} Hz, {_meets(case, history, first)}"
-    driving, (low, high) = history.driving, (history.low, history.high)
+    if not np.isfinite(history.high[:, 0]).all():
+        return "which harmonics meet a natural frequency is not known, since the lowest one has no band"
+    known = np.isfinite(history.high).all(axis=0)
+    driving, low, high = history.driving, history.low[:, known], history.high[:, known]
     if float(low.min()) > HIGHEST * driving:
         return f"all harmonics up to the {ordinal(HIGHEST)}, {_plain(HIGHEST * driving)} Hz, stay below it"
     apart = {n: np.maximum(low / (n * driving), n * driving / np.maximum(high, 1e-12)) for n in range(1, HIGHEST + 1)}
@@ -263,7 +270,7 @@ def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
     i, k = np.unravel_index(first_least(np.ravel(apart[nearest])), low.shape)
     return (
         f"no harmonic up to the {ordinal(HIGHEST)} meets a natural frequency; the {ordinal(nearest)}, "
-        f"{_plain(nearest * driving)} Hz, comes nearest to the {ordinal(int(k) + 1)} one"
+        f"{_plain(nearest * driving)} Hz, comes nearest to the {ordinal(int(np.flatnonzero(known)[k]) + 1)} one"
         f"{at_value(case, float(history.at[i]))}"
     )
 

@@ -16,6 +16,7 @@ from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import caveats, unchecked
 from geometry.base.version import result_stamp
 from geometry.materials.material import Material
+from reports.page.motion_pages import envelope_headline
 from reports.page.output import MARK, write_folder
 from reports.tables.console import say_checks, verdict_line
 from reports.tables.data import check_records, data, entries, finite
@@ -23,7 +24,7 @@ from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.friction import motion_friction_lines, motion_friction_record
 from reports.tables.meshes import solver_record
 from reports.words.terminal import say, say_table
-from reports.words.wording import band, besides, fixed, number, sentence
+from reports.words.wording import band, fixed, number, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -289,14 +290,13 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
         On a narrow one, lines break at spaces.
     """
     verdict_line(result.verdict, result.case.title, console)
+    say(console, envelope_headline(result))
     coordinate, (first, last) = result.moved.motion.coordinate, np.degrees(result.angles[[0, -1]])
     say(
         console,
         f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses.",
     )
-    if left_out := besides(caveats(result.case, over_motion=True)):
-        say(console, left_out)
     _links(result, console)
     fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}
     if fatigued:

@@ -12,7 +12,9 @@ from reports.vibration.pictures import campbell_name, shapes_name
 PAGE = "frequencies.html"
 
 
-def frequencies_view(found: CaseFrequencies | None, pictures: Mapping[str, bytes]) -> dict[str, Any] | None:
+def frequencies_view(
+    found: CaseFrequencies | None, pictures: Mapping[str, bytes], *, opened: bool = False
+) -> dict[str, Any] | None:
     """Return what the section of natural frequencies shows.
 
     Parameters
@@ -20,6 +22,8 @@ def frequencies_view(found: CaseFrequencies | None, pictures: Mapping[str, bytes
     found : CaseFrequencies or None
     pictures : mapping
         Name -> PNG; the page omits missing ones.
+    opened : bool, optional
+        Whether its tables are shown from the start.
 
     Returns
     -------
@@ -46,6 +50,7 @@ def frequencies_view(found: CaseFrequencies | None, pictures: Mapping[str, bytes
         "links": [row for row in rows if not row["load_case"]],
         "moves": found.case.motion is not None,
         "left_out": LEFT_OUT,
+        "opened": opened,
     }
 
 
@@ -64,6 +69,5 @@ def frequencies_page(found: CaseFrequencies, pictures: Mapping[str, bytes], *, n
     -------
     str
     """
-    return fill(
-        "frequencies_page.html.jinja", case=found.case, name=name, frequencies=frequencies_view(found, pictures)
-    )
+    view = frequencies_view(found, pictures, opened=True)
+    return fill("frequencies_page.html.jinja", case=found.case, name=name, frequencies=view)

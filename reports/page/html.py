@@ -4,13 +4,14 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject, Verdict, by_nearness, reason_for
+from fea.common.verdict import CheckOutcome, Subject, by_nearness
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.materials.material import Material
 from loads.case.forks import forked_link
 from loads.statics.rounding import without_rounding
 from reports.page.coverage import not_covered
+from reports.page.decided import held, meaning, reasons
 from reports.page.frequencies_page import frequencies_view
 from reports.page.pictures import (
     ASSEMBLY,
@@ -40,13 +41,6 @@ from reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from reports.turnable.script import viewer
 from reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
 
-MEANING = {
-    Verdict.PASS: "In this pose and under these loads every check keeps its limit, even at the unfavourable end of "
-    "its error band. The last section lists what the model does not cover.",
-    Verdict.FAIL: "At least one check misses its limit, even at the favourable end of its error band.",
-    Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
-    "decide it. This is neither a pass nor a fail.",
-}
 MOST_CHECKS = 8
 """That the first page shows; the others stand below."""
 _PROPERTIES = (
@@ -96,12 +90,12 @@ def render(
         several=len(result.load_cases) > 1,
         verdict=result.verdict.value,
         headline=headline(result),
-        meaning=MEANING[result.verdict],
+        meaning=meaning(result.verdict, "In this pose"),
         checks=checks,
         most_checks=MOST_CHECKS,
         applicable=[check for check in checks if check.applies],
-        bands=_bands(checks_of(result)),
-        reasons=_reasons(checks),
+        bands=held(checks_of(result)),
+        reasons=reasons(checks),
         drawings=_drawings(result, checks, figures),
         assembly=figures.get(ASSEMBLY),
         contact=figures.get(CONTACT),
@@ -176,35 +170,6 @@ def _caption(result: CheckResult, name: str) -> str:
     if stated.air:
         told.append("The air’s force is drawn as far as it lies in the plane.")
     return " ".join(told)
-
-
-def _bands(checks: Sequence[CheckOutcome]) -> dict[str, tuple[str, ...]]:
-    """Return the kinds of sources of error in the bands: name of the check -> each kind once, without particulars.
-
-    A check without any width stands there only where its values say why.
-    """
-    wide = {check.name for check in checks if check.value.low < check.value.high}
-    found: dict[str, dict[str, None]] = {}
-    for check in checks:
-        band = check.value
-        texts = [str(source.kind) for source in band.sources] if check.name in wide else []
-        if band.without:
-            texts.append(f"{'no error of the model' if texts else 'nothing'} ({band.without})")
-        for text in texts:
-            found.setdefault(check.name, {})[text] = None
-    return {name: tuple(texts) for name, texts in found.items()}
-
-
-def _reasons(checks: Sequence[CheckOutcome]) -> list[str]:
-    """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
-    telling = (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.LAYER_GAP, Quantity.DISPLACEMENT, *UNLOADED_QUANTITIES)
-    return [
-        ""
-        if check.quantity not in telling
-        and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
-        else check.reason
-        for check in checks
-    ]
 
 
 def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:

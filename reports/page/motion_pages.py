@@ -6,14 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from fea.common.verdict import by_nearness
-from fea.motion.envelope_result import EnvelopeResult
+from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
+from fea.outcomes.unchecked import caveats
 from loads.states.case_motion import CaseMotion
 from reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
 from reports.motion.rates import rates_record
+from reports.page.decided import held, meaning, reasons
 from reports.page.template import fill
 from reports.turnable.moving import ENVELOPE_CAPTION, MOTION_CAPTION, envelope_linkage, motion_linkage
 from reports.turnable.pack import data_block
 from reports.turnable.script import viewer
+from reports.words.wording import besides, decision
 
 ENVELOPE, MOTION = "envelope.html", "motion.html"
 STYLES = ("report.css", "turnable.css")
@@ -46,11 +49,7 @@ def envelope_page(result: EnvelopeResult, curves: bytes, plots: Mapping[str, byt
     -------
     str
     """
-    rows = [
-        (name, load_case, link, found, math.degrees(float(result.angles[found.pose])))
-        for name, link in result.links.items()
-        for load_case, found in link.load_cases.items()
-    ]
+    checks, several = by_nearness(result.checks), len(result.moved.forces) > 1
     return fill(
         "envelope.html.jinja",
         styles=STYLES,
@@ -60,16 +59,54 @@ def envelope_page(result: EnvelopeResult, curves: bytes, plots: Mapping[str, byt
         coordinate=result.moved.motion.coordinate,
         first=math.degrees(float(result.angles[0])),
         last=math.degrees(float(result.angles[-1])),
-        checks=by_nearness(result.checks),
-        reasons=(),
-        several=len(result.moved.forces) > 1,
-        rows=rows,
+        headline=envelope_headline(result),
+        meaning=meaning(result.verdict, "Over the motion"),
+        checks=checks,
+        reasons=reasons(checks),
+        bands=held(checks),
+        several=several,
+        rows=worst_poses(result),
         curves=curves,
         plots=plots,
         linkage_model=data_block(envelope_linkage(result)),
         linkage_caption=ENVELOPE_CAPTION,
         linkage_still="",
     )
+
+
+def worst_poses(result: EnvelopeResult) -> list[tuple[str, str, LinkEnvelope, LoadCaseEnvelope, float]]:
+    """Return the worst pose of each link under each load case, the least safety factor first.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    list of tuple
+        Link, load case, what was found of both, and the value of the coordinate [deg].
+    """
+    rows = [
+        (name, load_case, link, found, math.degrees(float(result.angles[found.pose])))
+        for name, link in result.links.items()
+        for load_case, found in link.load_cases.items()
+    ]
+    return sorted(rows, key=lambda row: row[3].severity)
+
+
+def envelope_headline(result: EnvelopeResult) -> str:
+    """Return the verdict of an envelope, what decides it and what it stands on besides.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    str
+    """
+    told = decision(result.verdict, by_nearness(result.checks), several=len(result.moved.forces) > 1)
+    return " ".join(filter(None, (told, besides(caveats(result.case, over_motion=True)))))
 
 
 def motion_page(result: CaseMotion, pictures: Mapping[str, bytes], animation: bytes, *, name: str) -> str:

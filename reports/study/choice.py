@@ -97,13 +97,14 @@ def chosen(study: StudyColumns) -> Iterator[_Drawn | str]:
                    histogram(shown.value, label=response.label, outcome=study.outcome))  # fmt: skip
     if not few:
         yield _parallel(study)
-    if study.margin is not None and study.margin.limit == 1.0:
+    margin = study.margin
+    if margin is not None and margin.limit == 1.0 and np.isfinite(margin.value).any():
         yield (
             "margins",
             "Distribution of the least margin",
             "How often the nearest check keeps its limit by which factor. A bar left of the limit holds points whose "
             "value misses it; the verdict is decided on the whole band.",
-            histogram(study.margin.value, study.margin.limit, label=study.margin.label, outcome=study.outcome),
+            histogram(margin.value, margin.limit, label=margin.label, outcome=study.outcome),
         )
     yield from _pareto(study)
 
@@ -144,9 +145,10 @@ def _over(
     elif len(quantities) == 2:
         title = f"{'Verdict' if response is study.margin else _title(response)} over {names[0]} and {names[1]}"
         what = "the least margin (1 at the limit, a thick line)" if response is study.margin else response.label
+        lines = f" Lines are contours of {what}, interpolated linearly between the values of neighbouring points."
         caption = (
-            f"A mark is a point{', its shape and colour the verdict' if verdicts else ''}. Lines are contours of "
-            f"{what}, interpolated linearly between the values of neighbouring points.{each}"
+            f"A mark is a point{', its shape and colour the verdict' if verdicts else ''}."
+            f"{lines if np.isfinite(response.value).any() else ''}{each}"
         )
         drawn = verdict_map((quantities[0], quantities[1]), response, study.outcome, panels)
         yield f"map{ending}", title, caption, drawn

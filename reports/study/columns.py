@@ -107,7 +107,7 @@ class StudyColumns:
     rows : tuple of Row
         Of the table: all points, or the best, the first undecided and the worst; the first where nothing is checked.
     extremes : mapping of str to Row
-        ``best`` and ``worst`` by verdict and margin; empty where nothing is checked.
+        ``best`` and ``worst`` by verdict and margin; empty where nothing is checked, or none is better than another.
     """
 
     facts: Mapping[str, Any]
@@ -222,8 +222,7 @@ class _Gathered:
     @property
     def extremes(self) -> dict[str, Row]:
         """The best and the worst point."""
-        ends = {"best": self.chosen.best, "worst": self.chosen.worst}
-        return {which: found[0] for which, found in ends.items() if found}
+        return self.chosen.ends
 
     @property
     def table(self) -> tuple[Row, ...]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fea.common.verdict import Verdict
 from fea.study.store import NAME, Store
 from geometry.base.errors import CaseError
 from loads.case.case_file import built_in_cases
@@ -15,7 +16,7 @@ from reports.page.output import place, refuse_unusable, write_folder
 from reports.page.template import fill
 from reports.study.choice import StudyPicture, pictures
 from reports.study.columns import Parameter, StudyColumns, read_study
-from reports.study.rows import Row, number_text
+from reports.study.rows import ALIKE, Row, number_text
 from reports.study.style import LOOKS, tick
 from reports.words.wording import joined, number
 
@@ -106,15 +107,15 @@ def render(study: StudyColumns, drawn: Sequence[StudyPicture], notes: Sequence[s
     plan, heads = study.facts["plan"], _heads(study)
     lost = [(state, why, count) for (state, why), count in study.sentences.items()]
     extremes = [(which, row, number_text(row.nearest)) for which, row in study.extremes.items() if row.nearest]
-    if len(extremes) == 2 and extremes[0][1].position == extremes[1][1].position:
-        extremes = extremes[:1]
+    open_points = study.counts.get(Verdict.UNDECIDED.value, 0)
     return fill(
         "study.html.jinja",
         case=Path(plan["case"]).name,
         plan=plan,
         versions=study.facts["versions"],
         headline=headline(study),
-        extremes=extremes if len(study.outcome) > 1 else (),
+        extremes=extremes,
+        alike=ALIKE if open_points > 1 and not extremes else "",
         stated=_stated,
         varies=[(one.path, *_values(one)) for one in study.parameters],
         linked=plan["link"],

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
+ALIKE = "No point is best or worst: each is open by a check that is not known, or whose band leaves no margin."
+
+
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """A point with what became of it.
@@ -178,10 +181,11 @@ def print_study(store: Store, console: "Console", most: int) -> None:
     told = ", ".join(f"{number} {name}" for name, number in sorted(store.counts().items()))
     what, total = f"{facts['plan']['case']} ({facts['plan']['analysis']})", facts["points"]
     say(console, f"Study of {what}: {count} of {total} points; {told or 'none yet'}.")
-    for which, found in (("Best", chosen.best), ("Worst", chosen.worst)):
-        for row in found[:1]:
-            stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
-            say(console, f"{which}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")
+    for which, row in chosen.ends.items():
+        stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
+        say(console, f"{which.capitalize()}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")
+    if len(chosen.undecided) > 1 and not chosen.ends:
+        say(console, ALIKE)
     if chosen.undecided:
         say(console, f"Undecided: {_numbers(chosen.undecided)}.")
     heads = [("point", True), *((path, False) for path in paths), ("verdict", False), ("nearest to its limit", False)]
@@ -226,6 +230,13 @@ class Chosen:
     def worst(self) -> list[Row]:
         """The worst points, the worst first; of equal ones, the first."""
         return [row for *_, row in self._worst]
+
+    @property
+    def ends(self) -> dict[str, Row]:
+        """The best and the worst point; empty where no point is better than another."""
+        if not self._best or self.best[0].merit == self.worst[0].merit:
+            return {}
+        return {"best": self.best[0], "worst": self.worst[0]}
 
     def add(self, row: Row) -> None:
         """Take a point into account.
@@ -289,5 +300,5 @@ def number_text(found: VariantNumber) -> str:
     """
     value = Band(value=found.value, low=found.low, high=found.high)
     unit = "" if found.unit == "1" else f" {found.unit}"
-    sign = sense_of(found).value
-    return f"{found.quantity} of {found.subject} {band(value)}{unit} ({sign} {found.limit:g}{unit})"
+    shown = band(value) if value.unknowable else f"{band(value)}{unit}"
+    return f"{found.quantity} of {found.subject} {shown} ({sense_of(found).value} {found.limit:g}{unit})"

@@ -4,11 +4,13 @@ W. Campbell, The Protection of Steam-Turbine Disk Wheels from Axial Vibration, T
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.vibration.frequency_outcomes import ordinal
 from fea.vibration.harmonics import HIGHEST, Meeting, meetings
 from fea.vibration.over_motion import FrequencyHistory
 from reports.sheet.canvas import Canvas, faint
@@ -18,14 +20,16 @@ from reports.sheet.style import GROUND, INK, JOINT_FORCE, WIDTH
 Real = NDArray[np.float64]
 COLOURS = ("#0067a8", "#00795a", "#7a4fa3", "#8a5200")
 """Of the natural frequencies, from the lowest up; they begin anew after the last."""
-_HEIGHT, _ABOVE, _BELOW, _RIGHT, _LETTERS = 230.0, 20.0, 75.0, 26.0, 8.5
+_HEIGHT, _ABOVE, _BELOW, _RIGHT, _LETTERS = 230.0, 20.0, 88.0, 26.0, 8.5
 """Of the panels, the room about them and the size of letters [points]."""
+UPPER_ENDS = "Bands that go down to 0 are not filled: thin lines are their upper ends"
+NO_BANDS = "Frequencies without a band are lines alone"
 _SHORT = 3.0
 """Length of a mark at least [points]."""
 _FASTER = 1.5
 """Times the stated speed up to which speeds are drawn."""
-_OPEN = 1.3
-"""Times the highest natural frequency at which a band without an end is drawn to end."""
+_APART = 3.0
+"""Distance of lines of harmonics at least, of which others are left out from the highest down [points]."""
 _FAR = 4.0
 """Natural frequencies that begin above so many times the least one and the driving frequency are not drawn."""
 
@@ -64,9 +68,9 @@ def campbell_sheet(history: FrequencyHistory, *, coordinate: str, unit: str, loa
     -------
     Canvas
     """
-    history = _bounded(history)
+    history = _everywhere(history)
     shown = _shown(history)
-    top = 1.08 * max(float(history.high[:, shown - 1].max()), 1.2 * history.driving)
+    top = 1.08 * max(float(_upper(history)[:, :shown].max()), 1.2 * history.driving) or 1.0
     left = 40.0 + widest(ticks(0.0, top, most=8))
     over_motion, over_speed = len(history.at) > 1, history.driving > 0.0
     panels = over_motion + over_speed
@@ -88,11 +92,21 @@ def campbell_sheet(history: FrequencyHistory, *, coordinate: str, unit: str, loa
     return sheet
 
 
-def _bounded(history: FrequencyHistory) -> FrequencyHistory:
-    """Return a history without the frequencies that not every pose has, and whose bands end on the sheet."""
+def _everywhere(history: FrequencyHistory) -> FrequencyHistory:
+    """Return a history without the frequencies that not every pose has."""
     there = np.isfinite(history.frequencies).all(axis=0)
     low, value, high = (c[:, there] for c in (history.low, history.frequencies, history.high))
-    return replace(history, low=low, frequencies=value, high=np.minimum(high, _OPEN * float(value.max())))
+    return replace(history, low=low, frequencies=value, high=high)
+
+
+def _upper(history: FrequencyHistory) -> Real:
+    """Return the upper ends of bands, and the values of frequencies whose bands have none."""
+    return np.where(np.isfinite(history.high), history.high, history.frequencies)
+
+
+def _filled(history: FrequencyHistory) -> NDArray[np.bool_]:
+    """Return which natural frequencies have bands with two ends; others would cover the whole diagram."""
+    return np.asarray((np.isfinite(history.high) & (history.low > 0.0)).all(axis=0))
 
 
 def _box(left: float, wide: float) -> tuple[float, float, float, float]:
@@ -101,8 +115,11 @@ def _box(left: float, wide: float) -> tuple[float, float, float, float]:
 
 def _shown(history: FrequencyHistory) -> int:
     """Return how many natural frequencies fit on one scale beside the lowest one."""
-    least = max(float(history.low[:, 0].max()), history.driving)
-    near = history.low.min(axis=0) <= _FAR * least
+    begin = np.where(_filled(history), history.low, history.frequencies)
+    swinging = begin.max(axis=0)[begin.max(axis=0) > 0.0]  # at 0 it departs
+    if not len(swinging):
+        return int(begin.shape[1])
+    near = begin.min(axis=0) <= _FAR * max(float(swinging[0]), history.driving)
     return int(np.argmin(near)) if not near.all() else len(near)
 
 
@@ -111,23 +128,27 @@ def _colour(k: int) -> str:
 
 
 def _over_motion(sheet: Canvas, axes: Axes, history: FrequencyHistory, at: Real, shown: int, label: str) -> None:
-    sheet.write("Over the motion", (axes.box[0], axes.box[1] - 5.0), anchor="left bottom", bold=True)
-    x = at if len(at) > 1 else np.array(axes.x)
-    curves = [np.broadcast_to(c[:, :shown], (len(x), shown)) for c in (history.low, history.high, history.frequencies)]
-    low, high, value = curves
-    for k in reversed(range(shown)):
+    moves = len(at) > 1
+    title = "Over the motion" if moves else "In the stated pose"
+    sheet.write(title, (axes.box[0], axes.box[1] - 5.0), anchor="left bottom", bold=True)
+    x, filled = at if moves else np.array(axes.x), _filled(history)
+    curves = (history.low, history.high, history.frequencies)
+    low, high, value = (np.broadcast_to(c[:, :shown], (len(x), shown)) for c in curves)
+    for k in reversed(np.flatnonzero(filled[:shown])):
         edge = np.vstack([np.column_stack([x, low[:, k]]), np.column_stack([x, high[:, k]])[::-1]])
         sheet.area(axes.at(edge), faint(_colour(k), 0.28))
-    for _, level in _levels(history, axes):
+    for _, level in _drawn(_levels(history, axes), axes):
         sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), GROUND, 0.6, dashes=(4.0, 2.5))
     for k in range(shown):
-        for curve, width in ((low, 0.5), (high, 0.5), (value, 1.5)):
-            sheet.line(axes.at(np.column_stack([x, curve[:, k]])), _colour(k), width)
+        for curve, width, there in ((low, 0.5, filled[k]), (high, 0.5, True), (value, 1.5, True)):
+            if there and np.isfinite(curve[:, k]).all():
+                sheet.line(axes.at(np.column_stack([x, curve[:, k]])), _colour(k), width)
     _mark(sheet, axes, history, shown, at)
     axes.frame(sheet)
-    axes.scale_x(sheet, label, most=6)
+    if moves:
+        axes.scale_x(sheet, label, most=6)
     axes.scale_y(sheet, "frequency [Hz]", label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
-    _name_harmonics(sheet, axes, history)
+    _name_harmonics(sheet, axes, _levels(history, axes))
 
 
 def _mark(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int, at: Real) -> None:
@@ -142,7 +163,9 @@ def _mark(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int, at: 
 
 
 def _met(history: FrequencyHistory, shown: int) -> list[Meeting]:
-    return [met for met in meetings(history) if met.mode <= shown]
+    """Return the meetings with natural frequencies whose bands are filled."""
+    filled = _filled(history)
+    return [met for met in meetings(history) if met.mode <= shown and filled[met.mode - 1]]
 
 
 def _levels(history: FrequencyHistory, axes: Axes) -> list[tuple[int, float]]:
@@ -151,29 +174,44 @@ def _levels(history: FrequencyHistory, axes: Axes) -> list[tuple[int, float]]:
     return [(n, level) for n, level in found if level < axes.y[1]]
 
 
-def _name_harmonics(sheet: Canvas, axes: Axes, history: FrequencyHistory) -> None:
-    """Write 1×, 2×, ... beside their lines, those that have room."""
-    last = math.inf
-    for harmonic, level in _levels(history, axes):
+def _drawn(levels: Sequence[tuple[int, float]], axes: Axes) -> list[tuple[int, float]]:
+    """Return the harmonics whose lines lie apart, from the highest down."""
+    kept: list[tuple[int, float]] = []
+    for harmonic, level in reversed(levels):
+        if not kept or axes.at([0.0, level])[1] - axes.at([0.0, kept[-1][1]])[1] >= _APART:
+            kept.append((harmonic, level))
+    return kept
+
+
+def _name_harmonics(sheet: Canvas, axes: Axes, levels: Sequence[tuple[int, float]]) -> None:
+    """Write 1×, 2×, ... beside the ends of their lines: the highest, then from the lowest up those that have room."""
+    taken: list[float] = []
+    drawn = _drawn(levels, axes)
+    for harmonic, level in (*drawn[:1], *reversed(drawn[1:])):
         x, y = axes.at([axes.x[1], level])
-        if last - y >= 1.15 * _LETTERS:
+        if all(abs(y - one) >= 1.15 * _LETTERS for one in taken):
             sheet.write(f"{harmonic}×", (x + 4.0, y), anchor="left middle", colour=GROUND, size=_LETTERS)
-            last = float(y)
+            taken.append(float(y))
 
 
 def _over_speed(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int) -> None:
     sheet.write("Over the speed of the drive", (axes.box[0], axes.box[1] - 5.0), anchor="left bottom", bold=True)
-    low, high = history.low[:, :shown].min(axis=0), history.high[:, :shown].max(axis=0)
+    filled, value = _filled(history)[:shown], history.frequencies[:, :shown]
+    low = np.where(filled, history.low[:, :shown], value).min(axis=0)
+    high = np.where(filled, history.high[:, :shown], value).max(axis=0)
+    upper = _upper(history)[:, :shown].max(axis=0)
     for k in reversed(range(shown)):
         corners = [(x, y) for x, y in zip((*axes.x, *axes.x[::-1]), (low[k], low[k], high[k], high[k]), strict=True)]
         sheet.area(axes.at(corners), faint(_colour(k), 0.28))
-        for level in (low[k], high[k]):
-            sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), _colour(k), 0.8)
+        for level, width in ((low[k], 0.8), (high[k], 0.8), (upper[k], 0.5)):
+            sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), _colour(k), width)
+    drawn = {harmonic for harmonic, _ in _drawn(_rays(axes), axes)}
     for harmonic in range(1, HIGHEST + 1):
         rise = harmonic / 60.0
         end = min(axes.x[1], axes.y[1] / rise)
-        sheet.line(axes.at([(0.0, 0.0), (end, rise * end)]), GROUND, 0.6, dashes=(4.0, 2.5))
-        for k in range(shown):
+        if harmonic in drawn:
+            sheet.line(axes.at([(0.0, 0.0), (end, rise * end)]), GROUND, 0.6, dashes=(4.0, 2.5))
+        for k in (k for k in range(shown) if filled[k]):
             first, last = low[k] / rise, min(high[k] / rise, end)
             if first <= last:
                 ray = axes.at([(first, rise * first), (last, rise * last)])
@@ -181,7 +219,7 @@ def _over_speed(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int
     stated = 60.0 * history.driving
     sheet.line(axes.at([(stated, 0.0), (stated, axes.y[1])]), INK, 1.2)
     for _, level in _levels(history, axes):
-        if np.any((low <= level) & (level <= high)):
+        if np.any(filled & (low <= level) & (level <= high)):
             sheet.ring(axes.at([stated, level]), 3.6, JOINT_FORCE, 1.3)
     axes.frame(sheet)
     axes.scale_x(sheet, "speed of the drive [rpm]", most=5)
@@ -189,16 +227,15 @@ def _over_speed(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int
     _name_rays(sheet, axes)
 
 
+def _rays(axes: Axes) -> list[tuple[int, float]]:
+    """Return every harmonic and its frequency at the highest speed that is drawn."""
+    return [(n, n / 60.0 * axes.x[1]) for n in range(1, HIGHEST + 1)]
+
+
 def _name_rays(sheet: Canvas, axes: Axes) -> None:
     """Write 1×, 2×, ... at the ends of the rays: at the right side, then along the top; those that have room."""
-    last_y, last_x = math.inf, -math.inf
-    for harmonic in range(1, HIGHEST + 1):
-        rise = harmonic / 60.0
-        if rise * axes.x[1] <= axes.y[1]:
-            x, y = axes.at([axes.x[1], rise * axes.x[1]])
-            if last_y - y >= 1.15 * _LETTERS:
-                sheet.write(f"{harmonic}×", (x + 4.0, y), anchor="left middle", colour=GROUND, size=_LETTERS)
-                last_y = float(y)
+    _name_harmonics(sheet, axes, [(n, level) for n, level in _rays(axes) if level <= axes.y[1]])
+    last_x = -math.inf
     for harmonic in range(HIGHEST, 0, -1):
         rise = harmonic / 60.0
         if rise * axes.x[1] > axes.y[1]:
@@ -210,19 +247,28 @@ def _name_rays(sheet: Canvas, axes: Axes) -> None:
 
 def _legend(sheet: Canvas, history: FrequencyHistory, shown: int, load_case: str) -> None:
     """Say below the panels what the colours mean."""
-    x, y = 14.0, sheet.height - 35.0
+    filled = _filled(history)[:shown]
+    x, y = 14.0, sheet.height - 48.0
     for k in range(shown):
-        sheet.area([(x, y - 4.0), (x + 18.0, y - 4.0), (x + 18.0, y + 4.0), (x, y + 4.0)], faint(_colour(k), 0.28))
+        if filled[k]:
+            sheet.area([(x, y - 4.0), (x + 18.0, y - 4.0), (x + 18.0, y + 4.0), (x, y + 4.0)], faint(_colour(k), 0.28))
         sheet.line([(x, y), (x + 18.0, y)], _colour(k), 1.5)
-        text = f"{k + 1}. natural frequency" if k == shown - 1 else f"{k + 1}."
+        text = f"{ordinal(k + 1)} natural frequency" if k == shown - 1 else ordinal(k + 1)
         x = sheet.write(text, (x + 23.0, y), anchor="left middle", size=_LETTERS).box[2] + 12.0
     if history.driving > 0.0:
         x, y = 14.0, y + 13.0
         sheet.line([(x, y), (x + 18.0, y)], GROUND, 0.6, dashes=(4.0, 2.5))
         x = sheet.write("harmonic of the drive", (x + 23.0, y), anchor="left middle", size=_LETTERS).box[2] + 12.0
-        sheet.line([(x, y), (x + 18.0, y)], JOINT_FORCE, 2.4)
-        sheet.write(
-            "harmonic within the band of a natural frequency", (x + 23.0, y), anchor="left middle", size=_LETTERS
-        )
+        if filled.any():
+            sheet.line([(x, y), (x + 18.0, y)], JOINT_FORCE, 2.4)
+            sheet.write(
+                "harmonic within the band of a natural frequency", (x + 23.0, y), anchor="left middle", size=_LETTERS
+            )
         speed = f"load case {load_case}: {60.0 * history.driving:.4g} rpm (upright line), {history.driving:.3g} Hz"
-        sheet.write(speed, (14.0, y + 13.0), anchor="left middle", size=_LETTERS)
+        y += 13.0
+        sheet.write(speed, (14.0, y), anchor="left middle", size=_LETTERS)
+    if not filled.all():
+        ended = np.isfinite(history.high[:, :shown][:, ~filled]).all()
+        text, harmonics = (UPPER_ENDS, "any harmonic below") if ended else (NO_BANDS, "any harmonic")
+        text += f"; {harmonics} may meet them." if history.driving > 0.0 else "."
+        sheet.write(text, (14.0, y + 13.0), anchor="left middle", size=_LETTERS)

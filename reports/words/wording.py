@@ -216,7 +216,8 @@ def headline(result: "CheckResult") -> str:
     str
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
-    return " ".join(filter(None, (_headline(result), besides(caveats(result.case)))))
+    told = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
+    return " ".join(filter(None, (told, besides(caveats(result.case)))))
 
 
 def besides(found: Iterable[Caveat]) -> str:
@@ -239,19 +240,34 @@ def besides(found: Iterable[Caveat]) -> str:
     return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)
 
 
-def _headline(result: "CheckResult") -> str:
-    checks = checks_of(result)
+def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool) -> str:
+    """Return a verdict and what decides it.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    checks : sequence of CheckOutcome
+        All of them.
+    several : bool
+        Whether there are several load cases, which are then named.
+
+    Returns
+    -------
+    str
+        A sentence or two, such as ``Undecided: 1 of 2 checks is open: safety factor of rod. Safety factor of rod: its
+        band 1.9 to 2.2 straddles the limit 2.``
+    """
     if not checks:
         return "Undecided: the case contains no check."
     count = len(checks)
-    if result.verdict is Verdict.PASS:
+    if verdict is Verdict.PASS:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
-        closest = _with_limit(result, by_nearness(checks)[0])
+        closest = _with_limit(by_nearness(checks)[0], several=several)
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
-    decisive = [c for c in checks if c.verdict is result.verdict and c.applies]
-    names = joined(list(dict.fromkeys(named(c) for c in decisive)))
+    decisive = [c for c in checks if c.verdict is verdict and c.applies]
+    names = _all_named(decisive)
     share = f"{len(decisive)} of {count} checks"
-    if result.verdict is Verdict.UNDECIDED:
+    if verdict is Verdict.UNDECIDED:
         first = decisive[0]
         verb = "is" if len(decisive) == 1 else "are"
         return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
@@ -259,8 +275,8 @@ def _headline(result: "CheckResult") -> str:
     collapses = [c for c in decisive if c.quantity is Quantity.LOAD_SHARE]
     if collapses:
         worst = min(collapses, key=lambda c: c.value.value)
-        return f"Fail: {_under(result, worst)}{gives_way(worst)}. {missed}: {names}."
-    return f"Fail: {missed}: {names}. Worst: {_with_limit(result, by_nearness(decisive)[0])}."
+        return f"Fail: {_under(worst, several=several)}{gives_way(worst)}. {missed}: {names}."
+    return f"Fail: {missed}: {names}. Worst: {_with_limit(by_nearness(decisive)[0], several=several)}."
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:
@@ -335,16 +351,28 @@ def named(check: CheckOutcome, *, long: bool = False) -> str:
     return f"{check.quantity} of {check.subject.long if long else check.subject}"
 
 
-def _under(result: "CheckResult", check: CheckOutcome) -> str:
-    if check.shared or len(result.load_cases) == 1:
+def _all_named(checks: Iterable[CheckOutcome]) -> str:
+    """Return what checks are about, each quantity once: ``safety factor of AE and BC; buckling factor of AE``."""
+    groups: dict[Quantity, dict[str, CheckOutcome]] = {}
+    for check in checks:
+        groups.setdefault(check.quantity, {}).setdefault(str(check.subject), check)
+    texts = [
+        named(next(iter(own.values()))) if len(own) == 1 else f"{quantity} of {joined(list(own))}"
+        for quantity, own in groups.items()
+    ]
+    return joined(texts) if len(texts) == sum(map(len, groups.values())) else "; ".join(texts)
+
+
+def _under(check: CheckOutcome, *, several: bool) -> str:
+    if check.shared or not several:
         return ""
     return f"under load case {check.load_case} "
 
 
-def _with_limit(result: "CheckResult", check: CheckOutcome) -> str:
+def _with_limit(check: CheckOutcome, *, several: bool) -> str:
     """Return a check's quantity, its value with the band, and its limit."""
     unit = f" {check.quantity.unit}".rstrip()
-    under = f" {_under(result, check)}".rstrip()
+    under = f" {_under(check, several=several)}".rstrip()
     sign = check.quantity.sense.value
     return f"{named(check, long=True)}{under}, {band(check.value)}{unit}; limit {sign} {plain(check.limit)}{unit}"
 

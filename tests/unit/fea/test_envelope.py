@@ -1,6 +1,7 @@
 """Envelopes of a crank-rocker: its loads over the motion, peaks among all nodes, dead points, verdicts, output."""
 
 import csv
+import html
 import itertools
 import json
 import math
@@ -576,6 +577,25 @@ def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch
     [values] = [one for one in model["values"] if one["label"] == worst.name]
     assert values["links"]["rocker"][worst.pose] == pytest.approx(worst.stress.value, rel=1e-3)
     assert max(values["links"]["rocker"]) == values["links"]["rocker"][worst.pose]
+
+
+def test_the_page_says_why_a_check_is_open_what_is_not_checked_and_lists_the_worst_link_first(result):
+    from reports.page.motion_pages import envelope_headline, envelope_page, worst_poses
+
+    strong = result.links["rocker"]
+    weak = {name: replace(one, safety_factor=one.safety_factor.times(0.5)) for name, one in strong.load_cases.items()}
+    both = replace(result, links={"strong": strong, "weak": replace(strong, load_cases=weak)})
+    assert [row[0] for row in worst_poses(both)] == ["weak"] * len(weak) + ["strong"] * len(weak)
+
+    first, *others = result.checks
+    why = "no model of this part decides"
+    opened = replace(first, value=Band.unknown(why), verdict=Verdict.UNDECIDED, reason=why)
+    open_result = replace(result, verdict=Verdict.UNDECIDED, checks=(*others, opened))
+    assert f"is open: {opened.quantity} of rocker." in envelope_headline(open_result)
+    assert "Not checked: " in envelope_headline(open_result)
+    page = envelope_page(open_result, b"", {})
+    assert page.count(f"{why.capitalize()}.") == 1, "in the row of the check"
+    assert envelope_headline(open_result) in html.unescape(page)
 
 
 def test_console_names_link_angle_and_verdict(result):

@@ -139,6 +139,10 @@ def test_no_driving_frequency_has_no_harmonics():
         ([29.0, 29.0], [31.0, 31.0], "the 3rd harmonic, 30 Hz, meets the 1st natural frequency in every pose"),
         ([32.0, 33.0], [33.0, 37.0], "no harmonic up to the 10th meets a natural frequency; the 3rd, 30 Hz, comes "
          "nearest to the 1st one at lever = 0.0 deg"),
+        ([0.0, 0.0], [35.0, 34.0], "harmonics up to the 3rd, 30 Hz, may meet the 1st natural frequency, since its band "
+         "goes down to 0"),
+        ([0.0, 0.0], [math.inf, math.inf], "which harmonics meet a natural frequency is not known, since the "
+         "lowest one has no band"),
         ([101.0, 120.0], [110.0, 130.0], "all harmonics up to the 10th, 100 Hz, stay below it"),
     ],
 )  # fmt: skip

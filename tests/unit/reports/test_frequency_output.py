@@ -18,10 +18,10 @@ from fea.common.band import Band
 from fea.vibration.over_motion import case_frequencies
 from geometry.base.errors import CaseError
 from reports.commands.frequencies import as_json
-from reports.sheet.marks import Stroke
-from reports.sheet.style import JOINT_FORCE, LINK, LOAD
+from reports.sheet.marks import Area, Stroke
+from reports.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
 from reports.tables.record import field_units
-from reports.vibration.campbell import campbell_sheet
+from reports.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_sheet
 from reports.vibration.shapes import axis_lines, shapes_sheet
 
 
@@ -108,11 +108,11 @@ def test_campbells_diagram_has_units_harmonics_and_marks_where_they_meet():
             "Over the motion",
             "Over the speed of the drive",
         ),
-        *("1.", "2. natural frequency", "harmonic of the drive", "harmonic within the band of a natural frequency"),
+        *("1st", "2nd natural frequency", "harmonic of the drive", "harmonic within the band of a natural frequency"),
         "load case flapping: 180 rpm (upright line), 3 Hz",
         *("2×", "10×"),
     }
-    assert "3. natural frequency" not in written(sheet)  # at 300 Hz the others would lie on the axis
+    assert "3rd natural frequency" not in written(sheet)  # at 300 Hz the others would lie on the axis
     assert_legible(sheet)
     assert strokes(sheet, JOINT_FORCE)
     apart = replace(history(1), driving=0.1)  # 20 Hz is 200 times that
@@ -120,17 +120,35 @@ def test_campbells_diagram_has_units_harmonics_and_marks_where_they_meet():
     assert len(quiet) == 1  # of the legend
 
 
-def test_a_band_without_end_ends_on_the_sheet():
-    """Of parts from files no beam gives a band: it goes from nothing to infinity."""
+def test_harmonics_far_below_the_frequencies_are_one_line_with_the_name_of_the_highest():
+    """At 0.05 Hz ten of them lie within 0.5 Hz of a scale of 30 Hz, on 4 of 230 points."""
+    slow = replace(history(1), driving=0.05)
+    sheet = campbell_sheet(slow, coordinate="crank", unit="deg", load_case="flapping")
+    assert "10×" in written(sheet)
+    assert not {f"{n}×" for n in range(1, 10)} & written(sheet)
+    levels = {float(one.points[0][1]) for one in strokes(sheet, GROUND) if one.dashes and len(one.points) == 2}
+    assert len(levels) <= 5
+
+
+@pytest.mark.parametrize(
+    ("end", "told"),
+    [(np.inf, f"{NO_BANDS}; any harmonic may meet them."), (1.1, f"{UPPER_ENDS}; any harmonic below may meet them.")],
+)
+def test_a_band_without_two_ends_is_not_filled(end, told):
+    """Of parts from files no beam gives a band, and where pins may run it goes down to 0: it would cover all others."""
     own = history()
     missing = np.where(np.arange(3) < 2, own.frequencies, np.inf)
     sheet = campbell_sheet(
-        replace(own, frequencies=missing, low=0.0 * own.low, high=np.full_like(own.high, np.inf)),
+        replace(own, frequencies=missing, low=0.0 * own.low, high=end * own.frequencies),
         coordinate="crank",
         unit="deg",
         load_case="flapping",
     )
     assert_legible(sheet)
+    assert told in written(sheet)
+    assert not strokes(sheet, JOINT_FORCE), "no harmonic is marked as within a band that is not shown"
+    tallest = max(float(np.ptp(mark.points[:, 1])) for mark in sheet.marks if isinstance(mark, Area))
+    assert tallest < 60.0, "of 230 points: the range of the values over the motion"
     for mark in sheet.marks:
         assert np.isfinite(mark.points).all()
         assert (mark.points >= 0.0).all()
@@ -190,3 +208,14 @@ def test_a_notebook_has_table_and_pictures():
     assert report.plot_shapes().png.startswith(b"\x89PNG")
     with pytest.raises(CaseError, match="there is no load case 'turn'; did you mean 'turning'"):
         report.plot_campbell("turn")
+
+
+def test_a_linkage_that_departs_still_has_a_diagram():
+    """Its lowest natural frequency is 0, and in one pose without a drive nothing else sets the scale."""
+    own = replace(history(poses=1), driving=0.0)
+    for still in (own.frequencies * [[0.0, 1.0, 1.0]], 0.0 * own.frequencies):
+        sheet = campbell_sheet(
+            replace(own, frequencies=still, low=still, high=still), coordinate="pose", unit="deg", load_case="flapping"
+        )
+        assert_legible(sheet)
+        assert "In the stated pose" in written(sheet)

@@ -25,7 +25,7 @@ from reports.study.many import front, parallel, pareto
 from reports.study.maps import verdict_map
 from reports.study.page import write_study
 from reports.study.regression import regression
-from reports.study.rows import Chosen, Row
+from reports.study.rows import ALIKE, Chosen, Row
 from reports.study.spread import histogram, tornado
 from reports.study.style import LOOKS
 
@@ -107,6 +107,31 @@ def test_a_load_that_is_held_whole_says_nothing_of_the_margin():
     found = VariantResult(state="done", verdict=Verdict.PASS, numbers=(held, factor))
     assert nearest(found) is factor
     assert least_margin(found) == (4.5, 4.0, 5.0)
+
+
+UNKNOWN = checked(math.nan, math.nan, math.nan, 2.0, "buckling factor")
+
+
+def test_the_least_margin_is_not_known_where_that_of_a_check_is_not():
+    """The unknown one may be the least, so that no contour goes through its point."""
+    found = VariantResult(state="done", verdict=Verdict.UNDECIDED, numbers=(checked(9.0, 8.0, 10.0, 2.0), UNKNOWN))
+    assert least_margin(found) == pytest.approx((math.nan, 0.0, 5.0), nan_ok=True)
+
+
+def test_points_that_are_open_alike_have_no_best_and_no_worst(tmp_path):
+    alike = VariantResult(state="done", verdict=Verdict.UNDECIDED, numbers=(UNKNOWN,))
+    points = [({"a": f"{i} mm", "b": f"{j} mm"}, alike) for i in (1, 2) for j in (1, 2)]
+    assert columns_of(tmp_path / "alike", points).extremes == {}
+    page = write_study(tmp_path / "alike", tmp_path / "out").read_text(encoding="utf-8")
+    assert ALIKE in page
+    assert "The report of the best point" not in page
+    assert "not known (≥ 2)" in page
+    assert "contours" not in page
+    assert "Distribution of the least margin" not in page
+    [one, other] = [columns_of(tmp_path / name, points[:1] + more).extremes for name, more in
+                    (("one", []), ("other", [({"a": "3 mm", "b": "1 mm"}, answer(3.0))]))]  # fmt: skip
+    assert one == {}
+    assert (other["best"].position, other["worst"].position) == (1, 0)
 
 
 def test_a_point_that_passes_is_better_than_one_with_more_margin_that_nobody_can_decide(tmp_path):
