@@ -12,9 +12,9 @@ from fea.beam import loads as beam
 from fea.beam.cut_beam import changes
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
-from geometry.bodies.body import extent, hand_section
+from geometry.bodies.body import extent, hand_section, mouth
 from geometry.linkage.placement import Placement
-from geometry.parts.part import Body, Pin
+from geometry.parts.part import Body, Pin, PlainEnd
 from loads.records.applied import BodyForce, FrictionLoad, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
 from loads.statics.statics import Equilibrium
 
@@ -93,7 +93,7 @@ def link_loads(
             else ()
         ),
         ends=tuple(
-            EndLoad(name=end.name, point=np.array([end.x, end.y, 0.0]), wrench=wrenches[end.name])
+            _end_load(body, end, wrenches[end.name])
             for end in body.ends
             if end.name in wrenches
         ),
@@ -101,6 +101,13 @@ def link_loads(
         inertia=inertia,
     )
     return found if held_at is None else _supported(found, held_at)
+
+
+def _end_load(body: Body, end: PlainEnd, wrench: Real) -> EndLoad:
+    """Return the load of an end from its wrench (..., 6) about the link's point; of a clamped end about its mouth."""
+    point, at = np.array([end.x, end.y, 0.0]), np.array([mouth(body, end), end.y, 0.0])
+    moved = shifted(wrench, point - at) if np.any(point != at) else wrench
+    return EndLoad(name=end.name, point=at, wrench=moved, clamped=end.clamped and body.part.is_beam)
 
 
 def _supported(loads: LinkLoads, held_at: str) -> LinkLoads:

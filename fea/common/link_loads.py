@@ -87,6 +87,8 @@ class EndLoad:
         [mm].
     wrench : array (..., 6)
         About ``point`` [N, N mm].
+    clamped : bool
+        True of an end of a tube or bar that a clamp holds; ``point`` is then at the mouth of the clamp.
     """
 
     VECTORS: ClassVar[tuple[str, ...]] = ("wrench",)
@@ -94,6 +96,7 @@ class EndLoad:
     name: str
     point: Real
     wrench: Real
+    clamped: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

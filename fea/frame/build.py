@@ -14,6 +14,7 @@ from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
 from fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from fea.frame.spring import FrameSpring
 from geometry.base.errors import CaseError
+from geometry.bodies.body import patch_span
 from geometry.bodies.section import ring
 from geometry.linkage.placement import vector
 from geometry.linkage.pose import Pose
@@ -281,6 +282,8 @@ class _Builder:
         slots = flanks_of(self.case.body(link)) if record.slots else ()
         wanted += [x for slot in slots for x in (slot.first, slot.last)]
         body = self.case.body(link)
+        clamps = [patch_span(body, end) for end in body.ends if end.clamped] if body.part.is_beam else []
+        wanted += [x for clamp in clamps for x in clamp]
         changing = changes(body)
         wanted += [x for x in changing if min(wanted) < x < max(wanted)]
         xs: list[float] = []
@@ -322,7 +325,8 @@ class _Builder:
         for (x0, a), (x1, b) in itertools.pairwise(stations):
             if not any(slot.first < (x0 + x1) / 2.0 < slot.last for slot in slots):
                 here = body.section_at((x0 + x1) / 2.0) if changing else section
-                self._along(link, (x0, a), (x1, b), here, lines)
+                held = any(low < (x0 + x1) / 2.0 < high for low, high in clamps)
+                self._along(link, (x0, a), (x1, b), here, lines, held=held)
         for slot in slots:
             own = [s for s in stations if slot.first - self.slack <= s[0] <= slot.last + self.slack]
             inner = [(x, self._node(link, x, 0.0, f"x = {x:g} mm of the slot's other flank")) for x, _ in own[1:-1]]
@@ -348,19 +352,29 @@ class _Builder:
         lines: Sequence[LineLoad],
         across: Real | None = None,
         share: float = 1.0,
+        *,
+        held: bool = False,
     ) -> None:
-        """Add a beam between two stations, ``across`` (3,) off the link's axis, under a share of its line loads."""
+        """Add a beam between two stations, ``across`` (3,) off the link's axis, under a share of its line loads.
+
+        Where a clamp holds it, it does not give.
+        """
         (x0, a), (x1, b) = start, end
         first, last = _line_between(lines, x0, x1)
         aside = np.zeros(3) if across is None else across
         material = self.case.material_of(link)
-        self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
+        young = self.case.links[link].count * material.youngs_modulus  # twice the section of a pair
+        if held:
+            section, young = self._unyielding()
+        else:
+            self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
         self.elements.append(
             FrameElement(
                 nodes=(a, b),
                 section=section,
-                young=self.case.links[link].count * material.youngs_modulus,  # twice the section of a pair
+                young=young,
                 poisson=material.poissons_ratio,
+                rigid=held,
                 offsets=np.array([self.arms.get(node, np.zeros(3)) + aside for node in (a, b)]),
                 load_first=share * first,
                 load_last=share * last,
@@ -409,13 +423,14 @@ class _Builder:
                 at = arm + self.pose.placement.axes(link) @ _acts_at(load)
                 self.node_loads.append(NodeLoad(node=node, wrench=wrench, lever=np.array([at, wrench[:3]])))
 
-    def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
+    def _unyielding(self) -> tuple[Section, float]:
+        """Return section and Young's modulus [MPa] of a body that is rigid beside all links."""
         links = self.case.bending_links
         young = max(self.case.material_of(link).youngs_modulus for link in links)
         sections = [self.case.part_of(link).section for link in links]
         second = RIGID * max(max(s.i_y, s.i_z) for s in sections)
         size = max(s.half_y for s in sections)
-        section = Section(
+        return Section(
             area=RIGID * max(s.area for s in sections),
             i_y=second,
             i_z=second,
@@ -423,7 +438,10 @@ class _Builder:
             half_y=size,
             half_z=size,
             round=True,
-        )
+        ), young
+
+    def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
+        section, young = self._unyielding()
         self.elements.append(
             FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, z_axis=z_axis, rigid=True)
         )

@@ -10,6 +10,7 @@ from fea.beam.theory import BeamCheck
 from fea.buckling.solid_holding import solid_holding
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
+from fea.elements.mouth import reference_surfaces
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
 from fea.outcomes.compare import compare_sections
 from fea.outcomes.layer_stress import LayerStress
@@ -50,7 +51,7 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
         E=material.youngs_modulus,
         nu=material.poissons_ratio,
         density=material.density,
-        line=(f"bore:{body.pins[0].name}", f"bore:{body.pins[-1].name}"),
+        line=reference_surfaces(body),
         brittle=material.brittle,
         stress_limits=stress_limits(case, link),
         displacement_limits=displacement_limits(case, link),

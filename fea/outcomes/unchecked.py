@@ -128,7 +128,7 @@ def _left_out(case: Case, strength: Sequence[Strength]) -> Iterator[Caveat]:
     left = [link for link in case.checked_links if link not in stressed]
     if left:
         yield Caveat(topic=Topic.STRESS, what=f"stress of {', '.join(left)}", why="no check")
-    pins = [name for name, joint in case.joints.items() if joint.type != "slider"]
+    pins = [name for name, joint in case.joints.items() if joint.type != "slider" and not joint.clamped]
     loose = [name for name in pins if name not in pinned]
     if loose:
         which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"
@@ -162,9 +162,10 @@ def _vibration(case: Case) -> Iterator[Caveat]:
 
 def _bonds(case: Case) -> Iterator[Caveat]:
     """Yield the joints that state that their links hold together, which no check judges."""
-    bonded = [name for name, joint in case.joints.items() if joint.bonded]
-    if bonded:
-        yield Caveat(topic=Topic.BONDS, what=f"bonds {', '.join(bonded)}", why="what holds them is not judged")
+    for what, clamped in (("bonds", False), ("clamps", True)):
+        held = [name for name, joint in case.joints.items() if joint.bonded and joint.clamped == clamped]
+        if held:
+            yield Caveat(topic=Topic.BONDS, what=f"{what} {', '.join(held)}", why="what holds them is not judged")
 
 
 def _pins(case: Case) -> Iterator[Caveat]:

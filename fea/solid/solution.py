@@ -164,9 +164,9 @@ def solve_solid(
         Of the material [tonne/mm³].
     loads : sequence of LinkLoads
         One per load case.
-    line : tuple of 2 str
+    line : tuple of 2 str or Mouth
         Names of the surfaces at the link's first and last pin (``bore:A``, ``bore:B``): displacements are relative to
-        the line through them.
+        the line through them, or to the section at the mouth of a clamp.
     laws : sequence of PressureLaw, optional
         Of pin pressure.
     transfers : sequence of Transfer, optional

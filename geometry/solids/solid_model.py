@@ -97,8 +97,8 @@ def scaled(body: Body, unit: float) -> Body:
             for p in body.pins
         ),
         ends=tuple(
-            PlainEnd(
-                name=e.name,
+            replace(
+                e,
                 x=s(e.x),
                 patch=s(e.patch),
                 y=s(e.y),
