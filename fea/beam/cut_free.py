@@ -265,6 +265,9 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
         wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, couple.torque])
         points.append(beam.PointLoad(point=centres[couple.pin], wrench=wrench))
     points += [beam.PointLoad(point=end.point, wrench=end.wrench) for end in loads.ends]
+    # What a clamp holds is part of the beam, though nothing is in it.
+    held = [end.x for end in body.ends if mouth(body, end) != end.x]
+    points += [beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=np.zeros(6)) for x in held]
     lines = [
         beam.LineLoad(start=line.start, end=line.end, first=line.at_start, last=line.at_end) for line in loads.lines
     ]

@@ -34,6 +34,7 @@ class SourceKind(StrEnum):
     PLAY = "play of pins"
     AIR = "air on wings that flap"
     FRICTION = "friction of joints"
+    CLAMP = "edge of a clamp"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -118,15 +118,17 @@ def _check_drive(case: CoreCase) -> None:
             )
     mobility = case.linkage.mobility
     if case.drive is not None and case.joints[case.drive.joint].bonded:
+        held_as = "clamped" if case.joints[case.drive.joint].clamped else "bonded"
         raise CaseError(
-            f"drive.joint: joint '{case.drive.joint}' is bonded, so it bears the moment that a drive would; drive "
+            f"drive.joint: joint '{case.drive.joint}' is {held_as}, so it bears the moment that a drive would; drive "
             "another joint, or leave out one of the two"
         )
     let_go = case.pose.equilibrium
     drives = 1 if case.drive or let_go else 0
     held = sum(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
-    if mobility <= drives + held and held:
-        return  # statics tells whether these bonds hold the linkage
+    clamped = any(joint.clamped for joint in case.joints.values())
+    if mobility <= drives + held and (held or clamped):
+        return  # the pose tells whether clamps fit together, and statics whether these bonds hold the linkage
     if mobility > 0 and case.drive is None and not let_go:
         raise CaseError(
             f"drive: the linkage has mobility {mobility}, but nothing drives it; add a [drive] with its link and joint"
