@@ -35,8 +35,8 @@ JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot":
 ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
-"""How many times the section of the stiffest part that of a link without part has in large displacements; in small ones
-it does not give (``FrameElement.rigid``)."""
+"""How many times the section of the stiffest part that of a link without part has in large displacements, and how many
+times its own modulus a beam has where a clamp holds it; in small ones neither gives (``FrameElement.rigid``)."""
 _SAME_PLACE = 1e-9
 
 
@@ -357,22 +357,19 @@ class _Builder:
     ) -> None:
         """Add a beam between two stations, ``across`` (3,) off the link's axis, under a share of its line loads.
 
-        Where a clamp holds it, it does not give.
+        Where a clamp holds it, it does not give, and has its mass all the same.
         """
         (x0, a), (x1, b) = start, end
         first, last = _line_between(lines, x0, x1)
         aside = np.zeros(3) if across is None else across
         material = self.case.material_of(link)
         young = self.case.links[link].count * material.youngs_modulus  # twice the section of a pair
-        if held:
-            section, young = self._unyielding()
-        else:
-            self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
+        self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
         self.elements.append(
             FrameElement(
                 nodes=(a, b),
                 section=section,
-                young=young,
+                young=RIGID * young if held else young,
                 poisson=material.poissons_ratio,
                 rigid=held,
                 offsets=np.array([self.arms.get(node, np.zeros(3)) + aside for node in (a, b)]),
@@ -423,14 +420,13 @@ class _Builder:
                 at = arm + self.pose.placement.axes(link) @ _acts_at(load)
                 self.node_loads.append(NodeLoad(node=node, wrench=wrench, lever=np.array([at, wrench[:3]])))
 
-    def _unyielding(self) -> tuple[Section, float]:
-        """Return section and Young's modulus [MPa] of a body that is rigid beside all links."""
+    def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
         links = self.case.bending_links
         young = max(self.case.material_of(link).youngs_modulus for link in links)
         sections = [self.case.part_of(link).section for link in links]
         second = RIGID * max(max(s.i_y, s.i_z) for s in sections)
         size = max(s.half_y for s in sections)
-        return Section(
+        section = Section(
             area=RIGID * max(s.area for s in sections),
             i_y=second,
             i_z=second,
@@ -438,10 +434,7 @@ class _Builder:
             half_y=size,
             half_z=size,
             round=True,
-        ), young
-
-    def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
-        section, young = self._unyielding()
+        )
         self.elements.append(
             FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, z_axis=z_axis, rigid=True)
         )
