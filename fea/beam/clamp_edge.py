@@ -14,6 +14,7 @@ A1-A11; in Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., se
 from fea.beam.critical_locations import forces_at
 from fea.beam.section_stress import equivalent_stress
 from fea.beam.theory import BeamCheck
+from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from geometry.bodies.body import clamped_end, mouth
 from geometry.parts.part import Body
@@ -21,6 +22,8 @@ from geometry.parts.part import Body
 EDGE = 1.95
 """Most that the edge of a clamp makes of the nominal stress at its mouth."""
 CLAMP = Source(kind=SourceKind.CLAMP, detail=f"up to {EDGE:g} times the nominal stress at its mouth", width=EDGE)
+CLAMP_SCATTER = Scatter(low=1.0, high=EDGE, sources=(CLAMP,))
+"""The same for the largest stress of a link, where it is not told from that at the mouth."""
 
 
 def edge_stress(body: Body, beam: BeamCheck, largest: float) -> float:

@@ -75,6 +75,9 @@ def link_loads(
             lines.append(own)
         else:
             inertia = own
+    for point in _pressed(place, link):  # a shaft that is pressed in turns its bore by shear
+        turned_by = wrenches.get(point, np.zeros(6)) * np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        rubbed[point] = rubbed.get(point, np.zeros(6)) + turned_by
     nothing = np.zeros((*place.shape, 6))
     drive, torque = reactions.drive, np.asarray(reactions.torque_on(link), dtype=float)[()]
     held_at = place.linkage.links[link].held_at
@@ -101,6 +104,12 @@ def link_loads(
         inertia=inertia,
     )
     return found if held_at is None else _supported(found, held_at)
+
+
+def _pressed(place: Placement, link: str) -> set[str]:
+    """Points of a link at which a clamped joint holds it."""
+    linkage = place.linkage
+    return {linkage.point_of(name, link) for name in linkage.joints_of(link) if linkage.joints[name].clamped}
 
 
 def _end_load(body: Body, end: PlainEnd, wrench: Real) -> EndLoad:

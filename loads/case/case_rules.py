@@ -274,6 +274,13 @@ def _check_minimum(name: str, title: str, material: Material, of: str) -> None:
 def _check_pins(case: CoreCase, name: str, check: PinCheck | BearingCheck) -> None:
     bearing = isinstance(check, BearingCheck)
     known = case.bearing_joints if bearing else case.pinned_joints
+    clamped = [joint for joint in check.joints or case.joints if joint in case.joints and case.joints[joint].clamped]
+    if clamped and (check.joints or not known):
+        what = "bears on a bore" if bearing else "could be judged"
+        raise CaseError(
+            f"checks.{name}: joint '{clamped[0]}' is clamped and has no pin that {what}; leave "
+            f"{'it' if check.joints else 'the check'} out"
+        )
     for joint in check.joints:
         rule = f"is no revolute joint{' or slot' if bearing else ''} of a link with a part"
         require(f"checks.{name}.joints", joint, known, rule)
