@@ -95,11 +95,7 @@ def link_loads(
             if drive is not None and np.any(torque)
             else ()
         ),
-        ends=tuple(
-            _end_load(body, end, wrenches[end.name])
-            for end in body.ends
-            if end.name in wrenches
-        ),
+        ends=tuple(_end_load(body, end, wrenches[end.name]) for end in body.ends if end.name in wrenches),
         lines=tuple(lines),
         inertia=inertia,
     )

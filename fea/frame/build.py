@@ -35,8 +35,12 @@ JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot":
 ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
-"""How many times the section of the stiffest part that of a link without part has in large displacements, and how many
-times its own modulus a beam has where a clamp holds it; in small ones neither gives (``FrameElement.rigid``)."""
+"""How many times the section of the stiffest part that of a link without part has in large displacements; in small ones
+it does not give (``FrameElement.rigid``)."""
+YIELDS_NOT = 3e3
+"""How many times less a beam bends where a clamp holds it than all of it would, in large displacements, which puts the
+tip of a cantilever 0.1 % too far; in small ones it does not give. Measured on a portal frame with clamps of 0.5 % to
+45 % of its links: equilibrium is followed with 2e3 to 2e4, and with 1e5 no more."""
 _SAME_PLACE = 1e-9
 
 
@@ -364,12 +368,15 @@ class _Builder:
         aside = np.zeros(3) if across is None else across
         material = self.case.material_of(link)
         young = self.case.links[link].count * material.youngs_modulus  # twice the section of a pair
+        stations = self.stations[link]
+        # Stiffer by one factor for all, a short clamp would be too stiff for equilibrium to be followed.
+        stiffer = max(YIELDS_NOT * (x1 - x0) / (stations[-1][0] - stations[0][0]), 1.0) if held else 1.0
         self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
         self.elements.append(
             FrameElement(
                 nodes=(a, b),
                 section=section,
-                young=RIGID * young if held else young,
+                young=stiffer * young,
                 poisson=material.poissons_ratio,
                 rigid=held,
                 offsets=np.array([self.arms.get(node, np.zeros(3)) + aside for node in (a, b)]),

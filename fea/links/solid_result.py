@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.beam.clamp_edge import CLAMP, EDGE, edge_stress
 from fea.beam.theory import BeamCheck
 from fea.buckling.solid_holding import solid_holding
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.elements.mouth import reference_surfaces
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
+from fea.elements.mouth import reference_surfaces
+from fea.links.clamp_edge import CLAMP, EDGE, edge_stress
 from fea.outcomes.compare import compare_sections
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.limits import displacement_limits, layer_limits, layers_of, stress_limits

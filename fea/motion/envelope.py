@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.clamp_edge import CLAMP_SCATTER
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
 from fea.common.clock import Clock
@@ -21,6 +20,7 @@ from fea.common.scatter import Scatter, load_scatter
 from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.elements.space import DisplacementSpace, displacement_space
+from fea.links.clamp_edge import CLAMP_SCATTER
 from fea.links.solid_result import link_task
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes

@@ -10,8 +10,8 @@ from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, strength_scatter
 from fea.common.source import Source, SourceKind, distinct, pin_sources
-from fea.elements.space import DisplacementSpace
 from fea.elements.mouth import reference_surfaces
+from fea.elements.space import DisplacementSpace
 from fea.elements.supports import LineReference
 from fea.motion.along import stress_along
 from fea.motion.critical import critical_nodes

@@ -165,8 +165,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
 
 
 def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
-    """Return the loads of a link with what they leave unbalanced taken by its first clamp, or the pin with the largest
-    force, in no slot.
+    """Return the loads of a link with what they leave unbalanced taken by a clamp, or by its strongest pin in no slot.
 
     Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
     is but ``NOTHING`` of the whole load, it is what the iteration left, and nothing acts.

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from fea.common.link_loads import LinkLoads
 from fea.elements.block_matrix import SymmetricBlockMatrix
 from fea.elements.elasticity import assemble_stiffness
+from fea.elements.mouth import Mouth
 from fea.elements.space import DisplacementSpace, displacement_space, upper_half
 from fea.elements.supports import LineReference, half_supports, isostatic_supports, rigid_motions
 from fea.solvers.solve import Method, factorise
@@ -143,7 +144,7 @@ def solve_solid(
     nu: float,
     density: float,
     loads: Sequence[LinkLoads],
-    line: tuple[str, str],
+    line: tuple[str, str] | Mouth,
     laws: Sequence[PressureLaw] = (WIDE, NARROW),
     transfers: Sequence[Transfer] = ("eye-faces", "bore-shear"),
     order: int = 2,

@@ -147,8 +147,8 @@ def _require(statics: CaseStatics, frames: Mapping[str, LargeDisplacement]) -> N
     clamped = [name for name, joint in statics.case.joints.items() if joint.clamp_length is not None]
     if clamped:
         raise CannotRunError(
-            f"tolerances: joint {clamped[0]} is clamped, and how the place of a clamp deviates is not covered; vary entries "
-            "with alula study"
+            f"tolerances: joint {clamped[0]} is clamped, and how the place of a clamp deviates is not covered; vary "
+            "entries with alula study"
         )
     for name, forces in statics.forces.items():
         if not forces.by_equilibrium:

@@ -180,7 +180,9 @@ class LoadVectors:
         load = np.zeros(3 * count)
         if case.inertia is not None:
             force = body_density(self._volume, case.inertia, self._density)
-            missing = case.on_mass - self._volume.wrench(force, np.zeros(3))  # chords in place of arcs, on coarse meshes
+            missing = case.on_mass - self._volume.wrench(
+                force, np.zeros(3)
+            )  # chords in place of arcs, on coarse meshes
             force = force + wrench_density(self._volume, np.zeros(3), missing)
             load += self._volume.load_vector(force, count)
         for line in case.lines:

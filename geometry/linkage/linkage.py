@@ -117,8 +117,8 @@ class Joint(CaseModel):
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0
-    """Angle of the second link to the first (slider, bonded or clamped joint). A bonded joint without it keeps the angle
-    that its links have in the pose; a clamped one has 0."""
+    """Angle of the second link to the first (slider, bonded or clamped joint). A bonded joint without it keeps the
+    angle that its links have in the pose; a clamped one has 0."""
     bonded: bool = False
     """Of a revolute joint: true where its two links do not turn against each other, such as glued, pressed or screwed
     ones. It then bears a moment about its pin."""
@@ -127,8 +127,8 @@ class Joint(CaseModel):
     the ground, a lever pressed on a shaft. It bears forces and moments. Its parts are held over ``clamp_length``, or in
     a bore of ``pin_diameter``. What holds them, such as screws, friction or glue, is not judged."""
     clamp_length: Annotated[Length, POSITIVE] | None = None
-    """Length over which a clamped joint holds the end of a tube or bar, from the joint's point at that end inwards. All of
-    it is held, so that the free length begins at its inner edge, the mouth of the clamp. On a plate both faces are
+    """Length over which a clamped joint holds the end of a tube or bar, from the joint's point at that end inwards. All
+    of it is held, so that the free length begins at its inner edge, the mouth of the clamp. On a plate both faces are
     held within a circle of this diameter; on an imported part the nearest face, as a load at a point is."""
 
     def model_post_init(self, context: object) -> None:
@@ -233,9 +233,10 @@ class Linkage:
             _check_clamp(name, joint)
         for name in self.moving:
             if len(self.links[name].points) < 2:
+                only = next(iter(self.links[name].points))
                 raise CaseError(
-                    f"links.{name}.points: it has the point '{next(iter(self.links[name].points))}' alone, but a link that "
-                    "moves needs two or more; add a point, such as that of its load"
+                    f"links.{name}.points: it has the point '{only}' alone, but a link that moves needs two or more; "
+                    "add a point, such as that of its load"
                 )
             if not self.joints_of(name):
                 raise CaseError(f"links.{name}: it has no joint, so nothing holds it; add a joint or remove the link")

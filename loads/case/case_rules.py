@@ -10,7 +10,7 @@ from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
 from loads.case.forks import check_fork, check_pair
-from loads.case.joint_rules import check_clearances, check_friction
+from loads.case.joint_rules import check_clamps, check_clearances, check_friction
 from loads.case.layers import check_layers, pin_masses
 from loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
 from loads.case.places import check_moving, check_point
@@ -66,6 +66,7 @@ def check_rules(case: CoreCase) -> None:
     for name, joint in case.joints.items():
         _check_material(case, f"joints.{name}.pin_material", joint.pin_material)
     check_clearances(case)
+    check_clamps(case)
     for name, link in case.links.items():
         _check_held(case, name)
         if link.part is not None:

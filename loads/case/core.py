@@ -374,11 +374,6 @@ class CoreCase(Revisable):
         pinned: dict[str, str] = {}
         for joint in self.linkage.joints_of(link):
             first = pinned.setdefault(self.linkage.point_of(joint, link), joint)
-            if self.joints[first].clamp_length != self.joints[joint].clamp_length:
-                raise CaseError(
-                    f"joints.{joint}.clamp_length: it differs from that of joint '{first}', but both hold link '{link}' "
-                    "at one point; give both the same, or each a point of its own"
-                )
             if self.joints[first].pin_diameter != self.joints[joint].pin_diameter:
                 raise CaseError(
                     f"joints.{joint}.pin_diameter: it differs from that of joint '{first}', but both pins sit in one "
@@ -389,12 +384,6 @@ class CoreCase(Revisable):
             clamp = self.joints[pinned[name]].clamp_length if name in pinned else None
             if name in pinned and clamp is None:
                 diameter = self.joints[pinned[name]].pin_diameter
-                if diameter is None and self.joints[pinned[name]].clamped:
-                    raise CaseError(
-                        f"joints.{pinned[name]}.clamp_length: link '{link}' has a part, so this clamp needs the length over "
-                        'which it holds the end of it; state it, for example "20 mm", or the pin_diameter of the shaft on '
-                        "which the part is pressed"
-                    )
                 if diameter is None:
                     raise CaseError(
                         f"joints.{pinned[name]}.pin_diameter: link '{link}' has a part, so this pin needs a diameter; "
@@ -407,8 +396,9 @@ class CoreCase(Revisable):
                 ends.append(PlainEnd(name=name, x=x, patch=clamp or record.end_patch, y=y, clamped=clamp is not None))
             elif abs(y) > 1e-9 * self.linkage.longest:
                 raise CaseError(
-                    f"links.{link}.points.{name}: a {'clamped end' if clamp else 'load point without pin'} must lie on the "
-                    f"link's axis (y = 0), but y is {y:g} mm; move it onto the axis{'' if clamp else ' or make it a joint'}"
+                    f"links.{link}.points.{name}: a {'clamped end' if clamp else 'load point without pin'} must lie on "
+                    f"the link's axis (y = 0), but y is {y:g} mm; move it onto the axis"
+                    f"{'' if clamp else ' or make it a joint'}"
                 )
             else:
                 ends.append(PlainEnd(name=name, x=x, patch=clamp or record.end_patch, clamped=clamp is not None))

@@ -314,7 +314,7 @@ class _Drawing:
         return np.vstack(edges)
 
     def _moments(self) -> list[tuple[Real, float, float, float, str, str]]:
-        """(place, direction of its middle, moment, radius, label, colour) of drive torque, clamps and stated moments."""
+        """(place, direction of its middle, moment, radius, label, colour) of drive, clamps and stated moments."""
         found = []
         for name in (name for name, joint in self.linkage.joints.items() if joint.clamped):
             reaction = self.reactions.joints[name]

@@ -1,9 +1,9 @@
 """What the edge of a clamp adds to the stress of the part that it holds.
 
-No model here has the contact of part and clamp: the solid bears the reaction as a smooth traction, and beam theory none.
-In truth the edge presses into the part, the more the sharper it is. Photoelastic shafts under a plain press-fitted collar
-bore 1.95 times the nominal bending stress at its edge, and 1.34 times with a groove beside it. The larger of the two is
-taken for all clamps, as the upper end of a band; a hard edge without any rounding may be worse.
+No model here has the contact of part and clamp: the solid bears the reaction as a smooth traction, and beam theory
+none. In truth the edge presses into the part, the more the sharper it is. Photoelastic shafts under a plain
+press-fitted collar bore 1.95 times the nominal bending stress at its edge, and 1.34 times with a groove beside it. The
+larger of the two is taken for all clamps, as the upper end of a band; a hard edge without any rounding may be worse.
 
 References
 ----------
