@@ -11,7 +11,7 @@ from functools import cache
 from importlib.resources import files
 
 from fea.beam.critical_locations import LocationKind
-from geometry.bodies.body import Body, PartKind, patch_span
+from geometry.bodies.body import Body, PartKind, clamped_end, patch_span
 from geometry.bodies.eyes import eye_reach
 
 Interval = tuple[float, float]
@@ -186,6 +186,8 @@ def uncalibrated(body: Body, nu: float) -> str:
         return "it has a fork"
     if any(pin.ring is not None for pin in body.pins):
         return "it has an eye of sizes of its own"
+    if clamped_end(body) is not None:
+        return "it is clamped, and what the edge of a clamp adds was not measured"
     if body.part.unmeasured:
         return body.part.unmeasured
     if body.part.shape not in calibrations():

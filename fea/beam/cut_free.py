@@ -12,9 +12,9 @@ from fea.beam import loads as beam
 from fea.beam.cut_beam import changes
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
-from geometry.bodies.body import extent, hand_section
+from geometry.bodies.body import extent, hand_section, mouth
 from geometry.linkage.placement import Placement
-from geometry.parts.part import Body, Pin
+from geometry.parts.part import Body, Pin, PlainEnd
 from loads.records.applied import BodyForce, FrictionLoad, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
 from loads.statics.statics import Equilibrium
 
@@ -75,6 +75,9 @@ def link_loads(
             lines.append(own)
         else:
             inertia = own
+    for point in _pressed(place, link):  # a shaft that is pressed in turns its bore by shear
+        turned_by = wrenches.get(point, np.zeros(6)) * np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        rubbed[point] = rubbed.get(point, np.zeros(6)) + turned_by
     nothing = np.zeros((*place.shape, 6))
     drive, torque = reactions.drive, np.asarray(reactions.torque_on(link), dtype=float)[()]
     held_at = place.linkage.links[link].held_at
@@ -92,15 +95,24 @@ def link_loads(
             if drive is not None and np.any(torque)
             else ()
         ),
-        ends=tuple(
-            EndLoad(name=end.name, point=np.array([end.x, end.y, 0.0]), wrench=wrenches[end.name])
-            for end in body.ends
-            if end.name in wrenches
-        ),
+        ends=tuple(_end_load(body, end, wrenches[end.name]) for end in body.ends if end.name in wrenches),
         lines=tuple(lines),
         inertia=inertia,
     )
     return found if held_at is None else _supported(found, held_at)
+
+
+def _pressed(place: Placement, link: str) -> set[str]:
+    """Points of a link at which a clamped joint holds it."""
+    linkage = place.linkage
+    return {linkage.point_of(name, link) for name in linkage.joints_of(link) if linkage.joints[name].clamped}
+
+
+def _end_load(body: Body, end: PlainEnd, wrench: Real) -> EndLoad:
+    """Return the load of an end from its wrench (..., 6) about the link's point; of a clamped end about its mouth."""
+    point, at = np.array([end.x, end.y, 0.0]), np.array([mouth(body, end), end.y, 0.0])
+    moved = shifted(wrench, point - at) if np.any(point != at) else wrench
+    return EndLoad(name=end.name, point=at, wrench=moved, clamped=end.clamped and body.part.is_beam)
 
 
 def _supported(loads: LinkLoads, held_at: str) -> LinkLoads:
@@ -258,6 +270,9 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
         wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, couple.torque])
         points.append(beam.PointLoad(point=centres[couple.pin], wrench=wrench))
     points += [beam.PointLoad(point=end.point, wrench=end.wrench) for end in loads.ends]
+    # What a clamp holds is part of the beam, though nothing is in it.
+    held = [end.x for end in body.ends if mouth(body, end) != end.x]
+    points += [beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=np.zeros(6)) for x in held]
     lines = [
         beam.LineLoad(start=line.start, end=line.end, first=line.at_start, last=line.at_end) for line in loads.lines
     ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fea.beam.column_factor import Stretch
 from fea.beam.cut_beam import cells
 from fea.beam.flanks import flanks_of
-from geometry.bodies.body import Body, hand_section
+from geometry.bodies.body import Body, hand_section, mouth
 from geometry.bodies.cut_section import CutSection
 from loads.case.case import Case
 
@@ -23,7 +23,8 @@ class Holding:
     Attributes
     ----------
     outermost : tuple of float
-        First and last pin on it, or the one that there is; of the ground the point where it is held.
+        First and last pin on it, or the one that there is, and a clamp at its mouth; of the ground the point where it
+        is held.
     in_plane : tuple of float or None
         Where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known.
     kept : tuple of float
@@ -108,11 +109,13 @@ def holding(case: Case, link: str) -> Holding:
     Holding
     """
     linkage = case.linkage
-    pins = {pin.name: pin for pin in case.body(link).pins}
+    body = case.body(link)
+    pins = {pin.name: pin for pin in body.pins}
+    mouths = {end.name: mouth(body, end) for end in body.ends}
     joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
     carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
     places, feet = case.links[link].points, {point: pin.foot[0] for point, pin in pins.items() if pin.foot is not None}
-    foot = {name: feet.get(point, places[point][0]) for name, point in joints.items()}
+    foot = {name: feet.get(point, mouths.get(point, places[point][0])) for name, point in joints.items()}
     on_arms = {name for name, point in joints.items() if point in feet}
     slack = ON_AXIS * linkage.longest
     held_at = case.links[link].held_at

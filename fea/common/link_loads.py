@@ -87,6 +87,8 @@ class EndLoad:
         [mm].
     wrench : array (..., 6)
         About ``point`` [N, N mm].
+    clamped : bool
+        True of an end of a tube or bar that a clamp holds; ``point`` is then at the mouth of the clamp.
     """
 
     VECTORS: ClassVar[tuple[str, ...]] = ("wrench",)
@@ -94,6 +96,7 @@ class EndLoad:
     name: str
     point: Real
     wrench: Real
+    clamped: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -127,7 +130,7 @@ class LinkLoads:
     @property
     def poses(self) -> int:
         """Number of poses, where there is an axis of them."""
-        return len(self.pins[0].wrench)
+        return len(self.wrenches[0][1])
 
     @property
     def wrenches(self) -> tuple[tuple[Real, Real], ...]:
@@ -163,14 +166,15 @@ class LinkLoads:
             found.append(torque[..., None] * np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]))
         found += [line.about_origin(ALONG) for line in self.lines]
         if self.inertia is not None:
-            found.append(shifted(self._on_mass, np.array([*self.inertia.mass.centroid, 0.0])))
+            found.append(self.on_mass)
         return found
 
     @property
-    def _on_mass(self) -> Real:
-        """Weight and inertia (..., 6) about the centroid."""
+    def on_mass(self) -> Real:
+        """Weight and inertia (..., 6) about the origin of the link's frame; only where the link has a mass."""
         assert self.inertia is not None
-        return self.inertia.at_centroid(np.array([*self.inertia.mass.centroid, 0.0]))
+        centroid = np.array([*self.inertia.mass.centroid, 0.0])
+        return shifted(self.inertia.at_centroid(centroid), centroid)
 
     def resultant(self) -> Real:
         """Return the sum (..., 6) of all loads about the origin of the link's frame: zero where they balance."""
@@ -198,6 +202,7 @@ class LinkLoads:
             ends = np.linalg.norm([line.at_start, line.at_end], axis=-1)
             total = total + ends.mean(axis=0) * (line.end - line.start)
         if self.inertia is not None:
-            force = self._on_mass
+            assert self.inertia is not None
+            force = self.inertia.at_centroid(np.array([*self.inertia.mass.centroid, 0.0]))
             total = total + np.linalg.norm(force[..., :3], axis=-1) + np.abs(force[..., 5]) / length
         return np.asarray(total)

@@ -35,6 +35,7 @@ class SourceKind(StrEnum):
     AIR = "air on wings that flap"
     FRICTION = "friction of joints"
     BUILD = "direction of building"
+    CLAMP = "edge of a clamp"
 
 
 @dataclass(frozen=True, kw_only=True)

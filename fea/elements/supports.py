@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.elements.mouth import Mouth, mouth_motion
 from fea.elements.quadrature import surface_quadrature
 from fea.elements.space import DisplacementSpace
 from geometry.base.errors import CannotRunError
@@ -156,10 +157,13 @@ class LineReference:
 
     Six conditions: the first hole does not move on average (3), the last one stays on the line through
     both (2), and both together do not turn about it on average (1). Where both are the same hole, that of the only
-    joint, it neither moves nor turns on average (3 + 3).
+    joint, it neither moves nor turns on average (3 + 3). At the mouth of a clamp neither does its section.
     """
 
-    def __init__(self, space: DisplacementSpace, line: tuple[str, str]) -> None:
+    def __init__(self, space: DisplacementSpace, line: tuple[str, str] | Mouth) -> None:
+        self._mouth = line if isinstance(line, Mouth) else None
+        if isinstance(line, Mouth):
+            line = line.surface, line.surface
         self._first, self._last = (surface_quadrature(space, name) for name in line)
         self._alone = line[0] == line[1]
         span = np.array([1.0, 0.0, 0.0]) if self._alone else self._last.centroid - self._first.centroid
@@ -173,6 +177,8 @@ class LineReference:
         self._conditions = np.linalg.inv(np.array([self._values(motion) for motion in self._motions]).T)
 
     def _values(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
+        if self._mouth is not None:
+            return mouth_motion(self._first, np.array(self._mouth.point), field)
         if self._alone:
             hole = self._first
             moved = np.einsum("qb,kbi->kqi", hole.phi, field[hole.nodes])

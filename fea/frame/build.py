@@ -14,6 +14,7 @@ from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
 from fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from fea.frame.spring import FrameSpring
 from geometry.base.errors import CaseError
+from geometry.bodies.body import patch_span
 from geometry.bodies.section import ring
 from geometry.linkage.placement import vector
 from geometry.linkage.pose import Pose
@@ -37,6 +38,10 @@ ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
 """How many times the section of the stiffest part that of a link without part has in large displacements; in small ones
 it does not give (``FrameElement.rigid``)."""
+YIELDS_NOT = 3e3
+"""How many times less a beam bends where a clamp holds it than all of it would, in large displacements, which puts the
+tip of a cantilever 0.1 % too far; in small ones it does not give. Measured on a portal frame with clamps of 0.5 % to
+45 % of its links: equilibrium is followed with 2e3 to 2e4, and with 1e5 no more."""
 _SAME_PLACE = 1e-9
 
 
@@ -283,6 +288,8 @@ class _Builder:
         slots = flanks_of(self.case.body(link)) if record.slots else ()
         wanted += [x for slot in slots for x in (slot.first, slot.last)]
         body = self.case.body(link)
+        clamps = [patch_span(body, end) for end in body.ends if end.clamped] if body.part.is_beam else []
+        wanted += [x for clamp in clamps for x in clamp]
         changing = changes(body)
         wanted += [x for x in changing if min(wanted) < x < max(wanted)]
         xs: list[float] = []
@@ -324,7 +331,8 @@ class _Builder:
         for (x0, a), (x1, b) in itertools.pairwise(stations):
             if not any(slot.first < (x0 + x1) / 2.0 < slot.last for slot in slots):
                 here = body.section_at((x0 + x1) / 2.0) if changing else section
-                self._along(link, (x0, a), (x1, b), here, lines)
+                held = any(low < (x0 + x1) / 2.0 < high for low, high in clamps)
+                self._along(link, (x0, a), (x1, b), here, lines, held=held)
         for slot in slots:
             own = [s for s in stations if slot.first - self.slack <= s[0] <= slot.last + self.slack]
             inner = [(x, self._node(link, x, 0.0, f"x = {x:g} mm of the slot's other flank")) for x, _ in own[1:-1]]
@@ -350,19 +358,29 @@ class _Builder:
         lines: Sequence[LineLoad],
         across: Real | None = None,
         share: float = 1.0,
+        *,
+        held: bool = False,
     ) -> None:
-        """Add a beam between two stations, ``across`` (3,) off the link's axis, under a share of its line loads."""
+        """Add a beam between two stations, ``across`` (3,) off the link's axis, under a share of its line loads.
+
+        Where a clamp holds it, it does not give, and has its mass all the same.
+        """
         (x0, a), (x1, b) = start, end
         first, last = _line_between(lines, x0, x1)
         aside = np.zeros(3) if across is None else across
         material = self.case.material_of(link)
+        young = self.case.links[link].count * material.youngs_modulus  # twice the section of a pair
+        stations = self.stations[link]
+        # Stiffer by one factor for all, a short clamp would be too stiff for equilibrium to be followed.
+        stiffer = max(YIELDS_NOT * (x1 - x0) / (stations[-1][0] - stations[0][0]), 1.0) if held else 1.0
         self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
         self.elements.append(
             FrameElement(
                 nodes=(a, b),
                 section=section,
-                young=self.case.links[link].count * material.youngs_modulus,  # twice the section of a pair
+                young=stiffer * young,
                 poisson=material.poissons_ratio,
+                rigid=held,
                 offsets=np.array([self.arms.get(node, np.zeros(3)) + aside for node in (a, b)]),
                 load_first=share * first,
                 load_last=share * last,

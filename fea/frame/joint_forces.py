@@ -158,7 +158,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         Where no model has them, such as at a dead point of the driven link.
     """
     bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
-    which = "its joints are bonded" if case.joint_model == "bonded" else _named(bonded)
+    which = "its joints are bonded" if case.joint_model == "bonded" else _named(case, bonded)
     model = BONDED_FRAME if bonded else PINNED_FRAME
     system = assemble(pose.placement, case.pinned_drive, ())
     rows, columns = system.matrix.shape
@@ -225,9 +225,13 @@ def solved_frame(
     return frame, solve_frame(frame.model)
 
 
-def _named(bonded: Sequence[str]) -> str:
-    """Say which joints are bonded."""
-    return f"joint {bonded[0]} is bonded" if len(bonded) == 1 else f"joints {', '.join(bonded)} are bonded"
+def _named(case: Case, bonded: Sequence[str]) -> str:
+    """Say which joints are bonded, and which clamped."""
+    said = []
+    for how, clamped in (("bonded", False), ("clamped", True)):
+        own = [name for name in bonded if case.linkage.joints[name].clamped == clamped]
+        said += [f"joint {own[0]} is {how}" if len(own) == 1 else f"joints {', '.join(own)} are {how}"] if own else []
+    return " and ".join(said)
 
 
 @dataclass(frozen=True, kw_only=True)

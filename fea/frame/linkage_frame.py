@@ -87,7 +87,7 @@ class LinkageFrame:
     arms : dict of int to ndarray
         Node -> (3,) from it to its link's axis at that station, global axes [mm]; left out where zero.
     beams : dict of int to LinkBeam
-        Element -> which part of a link it is; rigid ones are left out.
+        Element -> which part of a link it is; rigid ones are left out, but for beams that a clamp holds.
     notes : tuple of str
         What the reader must know about this frame.
     """

@@ -11,6 +11,8 @@ from fea.buckling.solid_holding import solid_holding
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
+from fea.elements.mouth import reference_surfaces
+from fea.links.clamp_edge import CLAMP, EDGE, edge_stress
 from fea.outcomes.compare import compare_sections
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.limits import displacement_limits, layer_limits, layers_of, stress_limits
@@ -24,6 +26,7 @@ from fea.refine.singular import LOADED
 from fea.solid.layers import Layers, best_directions, on_plane
 from fea.solid.solution import SolidCase
 from fea.solid.stress import stress_field
+from geometry.bodies.body import clamped_end
 from loads.case.case import Case
 
 NO_NUMBER = "no mesh tells what it is"
@@ -50,7 +53,7 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
         E=material.youngs_modulus,
         nu=material.poissons_ratio,
         density=material.density,
-        line=(f"bore:{body.pins[0].name}", f"bore:{body.pins[-1].name}"),
+        line=reference_surfaces(body),
         brittle=material.brittle,
         stress_limits=stress_limits(case, link),
         displacement_limits=displacement_limits(case, link),
@@ -94,7 +97,8 @@ def solid_result(
     governing = max(own, key=lambda number: decisive(number).value)
     variant = solid.cases[governing]
     stress = stress_field(solid.space, variant.displacement, E=solid.E, nu=solid.nu)
-    sources = pin_sources(driven=variant.transfer is not None)
+    body = case.body(link)
+    sources = pin_sources(driven=variant.transfer is not None) if body.pins else ()
 
     def precision_of(measure: Measure, largest: int) -> Discretisation:
         # A peak without limit under one variant leaves none for the link.
@@ -108,11 +112,18 @@ def solid_result(
         if not all(found.known(quantity) for found in every):
             return Band.unknown(NO_NUMBER)
         value = max(refined.precision[number].series(quantity).value for number in own)
+        most = max(value, *(found.high(quantity) for found in every))
+        edge = 0.0
+        if quantity == "layers" and clamped_end(body) is not None:
+            edge = EDGE * most  # beam theory does not tell which way the layers lie
+        elif quantity != "displacement":
+            edge = edge_stress(body, beam, most)
         return Band(
             value=value,
             low=max(min(value, *(found.low(quantity) for found in every)), 0.0),
-            high=max(value, *(found.high(quantity) for found in every)),
+            high=max(most, edge),
             sources=(
+                *((replace(CLAMP, width=edge / most),) if edge > most else ()),
                 *(
                     replace(source, width=_width(source, quantity, refined, solved))
                     for source in sources
@@ -140,7 +151,7 @@ def solid_result(
         governing=_peak(variant, refined.precision[governing]),
         governing_case=variant,
         stress=stress,
-        comparisons=compare_sections(case.body(link), beam, stress),
+        comparisons=compare_sections(body, beam, stress),
         notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved), *remarks),
         decided_by="solid",
         why=why,

@@ -21,6 +21,7 @@ from fea.common.scatter import Scatter, load_scatter
 from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.elements.space import DisplacementSpace, displacement_space
+from fea.links.clamp_edge import CLAMP_SCATTER
 from fea.links.solid_result import link_task
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
@@ -41,6 +42,7 @@ from fea.superposition.solid_shares import solid_shares
 from fea.whole.outcomes import unloaded_outcomes, whole_numbers
 from fea.whole.rubbed_motion import rubbed_motion
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
+from geometry.bodies.body import clamped_end
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.case.forks import of_pair
@@ -84,7 +86,10 @@ class _Envelope:
         grown = motion_growth(moved, loaded, evaluated)
         bent = {(load_case, link): one for load_case, of in grown.items() for link, one in of.stress.items()}
         shares: dict[tuple[str, str], Scatter] = {}
-        for doubt in (loosened(moved, evaluated), otherwise(moved, evaluated), bent):
+        # What the edge of a clamp adds counts for the link's largest stress, wherever that is.
+        held = [link for link in loaded if clamped_end(case.body(link)) is not None]
+        edges = {(history.name, link): CLAMP_SCATTER for link in held for history in loaded[link]}
+        for doubt in (loosened(moved, evaluated), otherwise(moved, evaluated), bent, edges):
             for key, scatter in doubt.items():
                 shares[key] = shares.get(key, Scatter()).times(scatter)
         return cls(

@@ -10,6 +10,7 @@ from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, strength_scatter
 from fea.common.source import Source, SourceKind, distinct, pin_sources
+from fea.elements.mouth import reference_surfaces
 from fea.elements.space import DisplacementSpace
 from fea.elements.supports import LineReference
 from fea.motion.along import stress_along
@@ -29,7 +30,7 @@ from fea.tractions.traction import Transfer
 from geometry.base.errors import CannotRunError
 from geometry.base.ties import first_largest
 from geometry.materials.material import Material, stress_measure
-from geometry.parts.part import Body, Pin
+from geometry.parts.part import Body
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
@@ -144,9 +145,9 @@ def _balanced(solved: UnitSolutions) -> None:
             )
 
 
-def _relative(space: DisplacementSpace, pins: Sequence[Pin], field: Real) -> Real:
-    """Displacements relative to the line through the link's first and last pin."""
-    return LineReference(space, (f"bore:{pins[0].name}", f"bore:{pins[-1].name}")).relative(field)
+def _relative(space: DisplacementSpace, body: Body, field: Real) -> Real:
+    """Displacements relative to the line through the link's first and last pin, or to the mouth of its clamp."""
+    return LineReference(space, reference_surfaces(body)).relative(field)
 
 
 def _curve(
@@ -249,7 +250,7 @@ class LinkMotion:
             reaction=float(solved.reaction.max()),
             imbalance=float(solved.imbalance.max()),
             field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
-            displacement=_relative(space, self.body.pins, raw),
+            displacement=_relative(space, self.body, raw),
             no_fatigue=lacking,
             notes=() if refined is None else refined.solution.notes,
             layers={},

@@ -12,6 +12,7 @@ from fea.common.link_loads import LinkLoads
 from fea.frame.linkage_frame import LinkageFrame
 from fea.nonlinear.equilibrium_path import CorotationalSolution
 from geometry.base.errors import CannotRunError
+from geometry.bodies.body import mouth
 from geometry.parts.part import Body
 from loads.records.applied import Load, shifted
 from loads.statics.statics import Reactions
@@ -69,6 +70,10 @@ def on_deformed_shape(
         point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
         for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
     }
+    for end in (end for end in body.ends if mouth(body, end) != end.x):
+        at = mouth(body, end)
+        _, node = min(stations, key=lambda station: abs(station[0] - at))
+        moved[end.name] = axes.T @ (nodes[node] - start) + np.array([x - at, 0.0, 0.0])
     return in_slots(bent(_driven(link_loads(title, link, body, reactions, loads, axes), axes), moved), body, link)
 
 
@@ -160,7 +165,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
 
 
 def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
-    """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force, in no slot.
+    """Return the loads of a link with what they leave unbalanced taken by a clamp, or by its strongest pin in no slot.
 
     Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
     is but ``NOTHING`` of the whole load, it is what the iteration left, and nothing acts.
@@ -199,6 +204,11 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
             f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
             "stiffen the link"
         )
+    clamps = [i for i, end in enumerate(loads.ends) if end.clamped]
+    if clamps:
+        ends, end = list(loads.ends), loads.ends[clamps[0]]
+        ends[clamps[0]] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
+        return replace(loads, ends=tuple(ends))
     takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
     strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
     pins = list(loads.pins)

@@ -16,6 +16,7 @@ from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.result import LinkResult, SolidResult
 from fea.solid.solution import LARGEST_POISSON_RATIO
 from fea.solid.virtual_work import Work, virtual_work
+from geometry.bodies.body import clamped_end
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import PointLoad
@@ -200,8 +201,11 @@ def condensable(case: Case, link: str) -> bool:
     Returns
     -------
     bool
-        It carries no slot, and has two or more points.
+        It carries no slot, is not clamped, and has two or more points. A clamp's surface bends as a whole under
+        condensed wrenches, where its mouth stays.
     """
+    if clamped_end(case.body(link)) is not None:
+        return False
     carries = any(joint.type != "revolute" and joint.links[0] == link for joint in case.joints.values())
     meshable = case.material_of(link).poissons_ratio <= LARGEST_POISSON_RATIO
     return not carries and meshable and len(case.links[link].points) > 1

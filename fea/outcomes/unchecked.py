@@ -81,7 +81,7 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
     left = [link for link in case.checked_links if link not in stressed]
     if left:
         yield Caveat(topic=Topic.STRESS, what=f"stress of {', '.join(left)}", why="no check")
-    pins = [name for name, joint in case.joints.items() if joint.type != "slider"]
+    pins = [name for name, joint in case.joints.items() if joint.type != "slider" and not joint.clamped]
     loose = [name for name in pins if name not in pinned]
     if loose:
         which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"

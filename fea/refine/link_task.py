@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from fea.buckling.solid_holding import SolidHolding
 from fea.common.link_loads import LinkLoads
+from fea.elements.mouth import Mouth
 from fea.refine.link_series import STRESS, Measure
 from fea.solid.layers import Layers
 from geometry.parts.part import Body
@@ -26,7 +27,7 @@ class LinkTask:
         Poisson's ratio.
     density : float
         Of the material [tonne/mm³].
-    line : tuple of 2 str
+    line : tuple of 2 str or Mouth
         Surfaces that displacements refer to (``solve_solid``).
     brittle : bool
         True where the principal stress decides, False where von Mises does.
@@ -50,7 +51,7 @@ class LinkTask:
     E: float
     nu: float
     density: float
-    line: tuple[str, str]
+    line: tuple[str, str] | Mouth
     brittle: bool
     stress_limits: tuple[tuple[float, float], ...]
     displacement_limits: tuple[tuple[float, float], ...]

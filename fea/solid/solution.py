@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from fea.common.link_loads import LinkLoads
 from fea.elements.block_matrix import SymmetricBlockMatrix
 from fea.elements.elasticity import assemble_stiffness
+from fea.elements.mouth import Mouth
 from fea.elements.space import DisplacementSpace, displacement_space, upper_half
 from fea.elements.supports import LineReference, half_supports, isostatic_supports, rigid_motions
 from fea.solvers.solve import Method, factorise
@@ -143,7 +144,7 @@ def solve_solid(
     nu: float,
     density: float,
     loads: Sequence[LinkLoads],
-    line: tuple[str, str],
+    line: tuple[str, str] | Mouth,
     laws: Sequence[PressureLaw] = (WIDE, NARROW),
     transfers: Sequence[Transfer] = ("eye-faces", "bore-shear"),
     order: int = 2,
@@ -164,9 +165,9 @@ def solve_solid(
         Of the material [tonne/mm³].
     loads : sequence of LinkLoads
         One per load case.
-    line : tuple of 2 str
+    line : tuple of 2 str or Mouth
         Names of the surfaces at the link's first and last pin (``bore:A``, ``bore:B``): displacements are relative to
-        the line through them.
+        the line through them, or to the section at the mouth of a clamp.
     laws : sequence of PressureLaw, optional
         Of pin pressure.
     transfers : sequence of Transfer, optional

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
+from fea.common.link_loads import EndLoad, LinkLoads
+from fea.elements.mouth import mouth_motion
 from fea.elements.quadrature import surface_quadrature
 from fea.elements.space import DisplacementSpace
 from fea.solid.bore_motion import mean_motion, work
@@ -95,7 +96,7 @@ def virtual_work(
     tuple of Work
         One per set of virtual loads.
     """
-    surfaces = _Surfaces(solution.space, real, {end.name: end.point for loads in virtual for end in loads.ends})
+    surfaces = _Surfaces(solution.space, real, {end.name: end for loads in virtual for end in loads.ends})
     found: list[tuple[Span, Transfer, list[tuple[Real, Real]]]] = []
     for case in (case for case in solution.cases if case.load == real.name):
         for way in (case.transfer,) if case.transfer else get_args(Transfer):
@@ -136,9 +137,9 @@ def _work(loads: LinkLoads, motion: Mapping[str, Real]) -> Real:
 class _Surfaces:
     """The surfaces through which loads enter a link; each is integrated once."""
 
-    def __init__(self, space: DisplacementSpace, real: LinkLoads, ends: Mapping[str, Real]) -> None:
+    def __init__(self, space: DisplacementSpace, real: LinkLoads, ends: Mapping[str, EndLoad]) -> None:
         self._pins, self._ends = real.pins, ends
-        self._largest = max(float(np.linalg.norm(pin.wrench[:3])) for pin in real.pins)
+        self._largest = max((float(np.linalg.norm(pin.wrench[:3])) for pin in real.pins), default=0.0)
         self._bores = {
             pin.name: surface_quadrature(space, f"bore:{pin.name}", degree=DEGREE if pin.slotted else 8)
             for pin in real.pins
@@ -154,7 +155,10 @@ class _Surfaces:
 
         A pin in a slot moves across it alone, as the work of its own pressure says: the wall as a whole bends.
         """
-        found = {name: mean_motion(patch, self._ends[name], field) for name, patch in self._patches.items()}
+        found = {}
+        for name, patch in self._patches.items():
+            moved = mouth_motion if self._ends[name].clamped else mean_motion
+            found[name] = moved(patch, self._ends[name].point, field)
         for pin in self._pins:
             bore = self._bores[pin.name]
             if pin.slotted:

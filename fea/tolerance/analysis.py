@@ -144,6 +144,12 @@ def _asked(case: Case, samples: int) -> tuple[Variable, ...]:
 
 def _require(statics: CaseStatics, frames: Mapping[str, LargeDisplacement]) -> None:
     """Refuse what statics of pinned links do not tell, before any solid is solved."""
+    clamped = [name for name, joint in statics.case.joints.items() if joint.clamp_length is not None]
+    if clamped:
+        raise CannotRunError(
+            f"tolerances: joint {clamped[0]} is clamped, and how the place of a clamp deviates is not covered; vary "
+            "entries with alula study"
+        )
     for name, forces in statics.forces.items():
         if not forces.by_equilibrium:
             raise CannotRunError(

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.link_loads import LinkLoads
+from fea.elements.mouth import reference_surfaces
 from fea.elements.supports import LineReference
 from fea.solid.layers import Layers
 from fea.solid.solution import SolidSolution
@@ -140,7 +141,7 @@ class LinkResponse:
 
     @cached_property
     def _displacement(self) -> _Field:
-        line = LineReference(self.solved.space, (f"bore:{self.body.pins[0].name}", f"bore:{self.body.pins[-1].name}"))
+        line = LineReference(self.solved.space, reference_surfaces(self.body))
         modes = self.solved.displacement.T
         fields = np.stack([line.relative(mode.reshape(-1, 3)) for mode in modes], axis=-1)
         return _Field(components=fields, measure=_length)

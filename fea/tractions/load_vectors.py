@@ -179,7 +179,12 @@ class LoadVectors:
         count = len(self._space.nodes)
         load = np.zeros(3 * count)
         if case.inertia is not None:
-            load += self._volume.load_vector(body_density(self._volume, case.inertia, self._density), count)
+            force = body_density(self._volume, case.inertia, self._density)
+            missing = case.on_mass - self._volume.wrench(
+                force, np.zeros(3)
+            )  # chords in place of arcs, on coarse meshes
+            force = force + wrench_density(self._volume, np.zeros(3), missing)
+            load += self._volume.load_vector(force, count)
         for line in case.lines:
             load += self._volume.load_vector(line_density(self._volume, line), count)
         return load

@@ -521,6 +521,43 @@ def patch_span(body: Body, end: PlainEnd) -> tuple[float, float]:
     return end.x - end.patch / 2.0, end.x + end.patch / 2.0
 
 
+def mouth(body: Body, end: PlainEnd) -> float:
+    """Return where the load of an end acts on the link as a beam: of a clamped end at the mouth of its clamp.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    end : PlainEnd
+        One of its load points without pin.
+
+    Returns
+    -------
+    float
+        x [mm]; that of the point for other ends, and for a clamp on a part that is no beam.
+    """
+    if not (end.clamped and body.part.is_beam):
+        return end.x
+    low, high = patch_span(body, end)
+    return low if end.x == high else high
+
+
+def clamped_end(body: Body) -> PlainEnd | None:
+    """Return the clamped end to which displacements of a link refer: the first.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    PlainEnd or None
+        None where nothing is clamped.
+    """
+    return next((end for end in body.ends if end.clamped), None)
+
+
 def apart(one: Pin, other: Pin) -> float:
     """Return the distance between two holes.
 
@@ -580,7 +617,8 @@ def no_beam(body: Body) -> str:
 def reference_line(body: Body) -> tuple[float, float]:
     """Return the two stations through which the line runs that hand calculation's displacements refer to.
 
-    The first and last pin on the axis. A link with a single pin has that station twice: the line turns with its bore.
+    The mouth of its first clamp, twice: the line turns with the section there. Else the first and last pin on the axis.
+    A link with a single pin has that station twice: the line turns with its bore.
     Where there are pins off the axis besides, the eye of the one on it holds the direction, as does an arm on it.
 
     Parameters
@@ -593,6 +631,9 @@ def reference_line(body: Body) -> tuple[float, float]:
     first, last : float
         Stations [mm].
     """
+    held = clamped_end(body)
+    if held is not None:
+        return mouth(body, held), mouth(body, held)
     on_axis = [pin for pin in body.pins if pin.foot is None]
     start, end = on_axis[0].x, on_axis[-1].x
     if (len(on_axis) > 1 and start != end) or len(body.pins) == 1:

@@ -16,6 +16,9 @@ SLENDEREST = 1e6
 volumes of bars are right to 1e-9 and of tubes to 1e-5 up to 1e8; at 1e9 a bar comes out as two solids."""
 SMALLEST, LARGEST = 1e-12, 1e15
 """Of a section's smaller size [mm]. Measured: volumes are right to 1e-13 at both ends; at 1e150 mm the kernel fails."""
+SHORTEST_CLAMP = 0.1
+"""Least length of a clamp over the smaller size of the section. A choice: a shorter one is a line, which holds no
+moment. Frames take what it holds for rigid to 1e-5 of what the beam gives there, at 1e-3 to 10 %."""
 FINEST = 1e7
 """Largest distance of any part of a link from its origin over the diameter of a pin hole. Measured: the kernel finds
 a hole in a bar that is 1e8 times as long, and loses it in one of 1e9."""
@@ -136,12 +139,25 @@ def _check_pins(body: Body) -> None:
 
 
 def _check_end(body: Body, end: PlainEnd) -> None:
+    entry = "end_patch"
+    if end.clamped:
+        entry = "clamp_length"
+        if body.part.is_beam and end.x not in extent(body):
+            raise CaseError(
+                f"the clamp at {end.name} lies between the ends of the {body.part.shape}, but a clamp holds an end of "
+                f"it; make {end.name} the first or the last point, or the part a plate"
+            )
+        if body.part.is_beam and end.patch < SHORTEST_CLAMP * body.part.size:
+            raise CaseError(
+                f"clamp_length {end.patch:.4g} mm at {end.name} is less than {SHORTEST_CLAMP:g} times the smaller size "
+                f"of the section, {body.part.size:.4g} mm, and holds no moment; make it longer"
+            )
     room, wall = _room(body, end)
     if room <= 0.0:
         raise CaseError(f"{end.name} is no pin, but lies in {wall}; move it out of there, or make it a joint")
     if end.patch >= room:
         raise CaseError(
-            f"the loaded patch of {end.name} would run into {wall}: set end_patch below {room:.4g} mm (now "
+            f"the loaded patch of {end.name} would run into {wall}: set {entry} below {room:.4g} mm (now "
             f"{end.patch:.4g} mm), or move {end.name} away from there"
         )
     low, high = patch_span(body, end)
@@ -149,7 +165,7 @@ def _check_end(body: Body, end: PlainEnd) -> None:
         low2, high2 = patch_span(body, other)
         if other is not end and low < high2 and low2 < high:
             raise CaseError(
-                f"the loaded patches of {end.name} and {other.name} overlap: reduce end_patch {end.patch:.4g} mm, or "
+                f"the loaded patches of {end.name} and {other.name} overlap: reduce {entry} {end.patch:.4g} mm, or "
                 "move the points further apart"
             )
 

@@ -329,6 +329,8 @@ class PlainEnd:
         Its place across the axis, off which only imported parts and plates have load points [mm].
     face : FlatFace, optional
         The flat face that carries its load as a whole; None where it enters the nearest ones.
+    clamped : bool
+        True of an end that a clamp holds over the length of the patch.
     """
 
     name: str
@@ -336,3 +338,4 @@ class PlainEnd:
     patch: float
     y: float = 0.0
     face: FlatFace | None = None
+    clamped: bool = False

@@ -38,8 +38,8 @@ class Link(CaseModel):
     ground: bool = False
     """True for the one link that does not move; its frame is the global one."""
     points: Annotated[dict[Name, Place], Field(min_length=1, max_length=100)]
-    """Pins and load points: name -> (x, y) in the link's frame, in order along the link. A link that moves has two or
-    more."""
+    """Pins, clamped ends and load points: name -> (x, y) in the link's frame, in order along the link. A link that
+    moves has two or more."""
     part: Name | None = None
     """The part (shape and material) that the link is made of; none for a link that is not checked."""
     held_at: Name | None = None
@@ -127,11 +127,31 @@ class Joint(CaseModel):
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0
-    """Angle of the second link to the first (slider, bonded joint). A bonded joint without it keeps the angle that its
-    links have in the pose."""
+    """Angle of the second link to the first (slider, bonded or clamped joint). A bonded joint without it keeps the
+    angle that its links have in the pose; a clamped one has 0."""
     bonded: bool = False
     """Of a revolute joint: true where its two links do not turn against each other, such as glued, pressed or screwed
     ones. It then bears a moment about its pin."""
+    clamped: bool = False
+    """True of a joint without a pin, that holds its two links as one: a tube in a clamp or an adapter, a bar built into
+    the ground, a lever pressed on a shaft. It bears forces and moments. Its parts are held over ``clamp_length``, or in
+    a bore of ``pin_diameter``. What holds them, such as screws, friction or glue, is not judged."""
+    clamp_length: Annotated[Length, POSITIVE] | None = None
+    """Length over which a clamped joint holds the end of a tube or bar, from the joint's point at that end inwards. All
+    of it is held, so that the free length begins at its inner edge, the mouth of the clamp. On a plate both faces are
+    held within a circle of this diameter; on an imported part the nearest face, as a load at a point is."""
+
+    def model_post_init(self, context: object) -> None:
+        """Let a clamped joint be a bonded one, which it is but for the pin.
+
+        Parameters
+        ----------
+        context : object
+            Of pydantic; not used.
+        """
+        super().model_post_init(context)
+        if self.clamped:
+            self.__dict__["bonded"] = True
 
     @property
     def friction_ends(self) -> tuple[float, float]:
@@ -141,7 +161,7 @@ class Joint(CaseModel):
     @property
     def fixes_angle(self) -> bool:
         """Whether the case states the angle between its links, which takes part in closing the loops."""
-        return self.type == "slider" or (self.bonded and "angle" in self.model_fields_set)
+        return self.type == "slider" or self.clamped or (self.bonded and "angle" in self.model_fields_set)
 
     def is_tight_in(self, link: str) -> bool:
         """Return True if the pin is stated to be tight in one of the joint's links.
@@ -162,6 +182,28 @@ class Joint(CaseModel):
     def bears_moment(self) -> bool:
         """Whether it bears a moment about z."""
         return self.type == "slider" or self.bonded
+
+
+def _check_clamp(name: str, joint: Joint) -> None:
+    """Refuse entries of a joint that a clamp rules out, and those of a clamp at a joint that is none."""
+    entry = f"joints.{name}"
+    if not joint.clamped:
+        if joint.clamp_length is not None:
+            raise CaseError(f"{entry}.clamp_length: joint {name} is not clamped; add clamped = true, or leave it out")
+        return
+    if joint.type != "revolute":
+        raise CaseError(
+            f"{entry}.clamped: a joint of type {joint.type} slides, but a clamped one holds its links; leave clamped "
+            "out, or remove the type"
+        )
+    if joint.clamp_length is not None and joint.pin_diameter is not None:
+        raise CaseError(
+            f"{entry}: a clamp holds an end over its clamp_length, or a bore of its pin_diameter, but both are stated; "
+            "leave one out"
+        )
+    for wrong, why in (("friction", "does not turn"), ("clearance", "has no play"), ("tight_in", "has no pin")):
+        if getattr(joint, wrong):
+            raise CaseError(f"{entry}.{wrong}: a clamped joint {why}; leave it out")
 
 
 @dataclass(frozen=True)
@@ -198,7 +240,14 @@ class Linkage:
             )
         for name, joint in self.joints.items():
             self._check_joint(name, joint)
+            _check_clamp(name, joint)
         for name in self.moving:
+            if len(self.links[name].points) < 2:
+                only = next(iter(self.links[name].points))
+                raise CaseError(
+                    f"links.{name}.points: it has the point '{only}' alone, but a link that moves needs two or more; "
+                    "add a point, such as that of its load"
+                )
             if not self.joints_of(name):
                 raise CaseError(f"links.{name}: it has no joint, so nothing holds it; add a joint or remove the link")
         reached = {self.ground}
@@ -221,7 +270,7 @@ class Linkage:
                 )
         if joint.links[0] == joint.links[1]:
             raise CaseError(f"joints.{name}: it joins link '{joint.links[0]}' to itself; name two different links")
-        if joint.bonded and joint.type != "revolute":
+        if joint.bonded and not joint.clamped and joint.type != "revolute":
             raise CaseError(
                 f"joints.{name}.bonded: a joint of type {joint.type} slides, and only a revolute joint can be bonded; "
                 "leave bonded out, or remove the type"

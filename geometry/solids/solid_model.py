@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.bodies.body import Body, patch_span
 from geometry.bodies.eyes import flush
-from geometry.bodies.features import HoleRow, Pin, PlainEnd
+from geometry.bodies.features import HoleRow, Pin
 from geometry.bodies.kernel import Entity, FilletError, Kernel
 from geometry.solids.patches import patch_borders
 
@@ -97,8 +97,8 @@ def scaled(body: Body, unit: float) -> Body:
             for p in body.pins
         ),
         ends=tuple(
-            PlainEnd(
-                name=e.name,
+            replace(
+                e,
                 x=s(e.x),
                 patch=s(e.patch),
                 y=s(e.y),

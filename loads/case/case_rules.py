@@ -11,7 +11,7 @@ from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
 from loads.case.forks import check_fork, check_pair
 from loads.case.heights import layer_of
-from loads.case.joint_rules import check_clearances, check_friction
+from loads.case.joint_rules import check_clamps, check_clearances, check_friction
 from loads.case.layers import check_layers, pin_masses
 from loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
 from loads.case.places import check_moving, check_point
@@ -67,6 +67,7 @@ def check_rules(case: CoreCase) -> None:
     for name, joint in case.joints.items():
         _check_material(case, f"joints.{name}.pin_material", joint.pin_material)
     check_clearances(case)
+    check_clamps(case)
     for name, link in case.links.items():
         _check_held(case, name)
         if link.part is not None:
@@ -119,15 +120,17 @@ def _check_drive(case: CoreCase) -> None:
             )
     mobility = case.linkage.mobility
     if case.drive is not None and case.joints[case.drive.joint].bonded:
+        held_as = "clamped" if case.joints[case.drive.joint].clamped else "bonded"
         raise CaseError(
-            f"drive.joint: joint '{case.drive.joint}' is bonded, so it bears the moment that a drive would; drive "
+            f"drive.joint: joint '{case.drive.joint}' is {held_as}, so it bears the moment that a drive would; drive "
             "another joint, or leave out one of the two"
         )
     let_go = case.pose.equilibrium
     drives = 1 if case.drive or let_go else 0
     held = sum(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
-    if mobility <= drives + held and held:
-        return  # statics tells whether these bonds hold the linkage
+    clamped = any(joint.clamped for joint in case.joints.values())
+    if mobility <= drives + held and (held or clamped):
+        return  # the pose tells whether clamps fit together, and statics whether these bonds hold the linkage
     if mobility > 0 and case.drive is None and not let_go:
         raise CaseError(
             f"drive: the linkage has mobility {mobility}, but nothing drives it; add a [drive] with its link and joint"
@@ -273,6 +276,13 @@ def _check_minimum(name: str, title: str, material: Material, of: str) -> None:
 def _check_pins(case: CoreCase, name: str, check: PinCheck | BearingCheck) -> None:
     bearing = isinstance(check, BearingCheck)
     known = case.bearing_joints if bearing else case.pinned_joints
+    clamped = [joint for joint in check.joints or case.joints if joint in case.joints and case.joints[joint].clamped]
+    if clamped and (check.joints or not known):
+        what = "bears on a bore" if bearing else "could be judged"
+        raise CaseError(
+            f"checks.{name}: joint '{clamped[0]}' is clamped and has no pin that {what}; leave "
+            f"{'it' if check.joints else 'the check'} out"
+        )
     for joint in check.joints:
         rule = f"is no revolute joint{' or slot' if bearing else ''} of a link with a part"
         require(f"checks.{name}.joints", joint, known, rule)

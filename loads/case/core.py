@@ -304,11 +304,11 @@ class CoreCase(Revisable):
 
     @property
     def pinned_joints(self) -> tuple[str, ...]:
-        """The revolute joints whose pin sits in a link with a part."""
+        """The revolute joints whose pin sits in a link with a part; a clamped joint has none."""
         return tuple(
             name
             for name, joint in self.joints.items()
-            if joint.type == "revolute" and set(joint.links) & set(self.checked_links)
+            if joint.type == "revolute" and not joint.clamped and set(joint.links) & set(self.checked_links)
         )
 
     @property
@@ -382,7 +382,8 @@ class CoreCase(Revisable):
                 )
         pins, ends, feet = [], [], self.bare_feet(link)
         for name, (x, y) in record.points.items():
-            if name in pinned:
+            clamp = self.joints[pinned[name]].clamp_length if name in pinned else None
+            if name in pinned and clamp is None:
                 diameter = self.joints[pinned[name]].pin_diameter
                 if diameter is None:
                     raise CaseError(
@@ -393,14 +394,15 @@ class CoreCase(Revisable):
             elif name in feet:
                 continue
             elif isinstance(part, FilePart) or part.patches_anywhere:
-                ends.append(PlainEnd(name=name, x=x, patch=record.end_patch, y=y))
+                ends.append(PlainEnd(name=name, x=x, patch=clamp or record.end_patch, y=y, clamped=clamp is not None))
             elif abs(y) > 1e-9 * self.linkage.longest:
                 raise CaseError(
-                    f"links.{link}.points.{name}: a load point without pin must lie on the link's axis (y = 0), "
-                    f"but y is {y:g} mm; move it onto the axis or make it a joint"
+                    f"links.{link}.points.{name}: a {'clamped end' if clamp else 'load point without pin'} must lie on "
+                    f"the link's axis (y = 0), but y is {y:g} mm; move it onto the axis"
+                    f"{'' if clamp else ' or make it a joint'}"
                 )
             else:
-                ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
+                ends.append(PlainEnd(name=name, x=x, patch=clamp or record.end_patch, clamped=clamp is not None))
         if isinstance(part, FilePart):
             wanted = tuple(
                 Wanted(

@@ -86,6 +86,37 @@ def check_friction(case: CoreCase) -> None:
                 )
 
 
+def check_clamps(case: CoreCase) -> None:
+    """Check that clamps have what their parts need: the length that is held, or the bore.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Raises
+    ------
+    CaseError
+        For the first rule that is broken.
+    """
+    held: dict[tuple[str, str], str] = {}
+    for name, joint in case.joints.items():
+        for link, point in zip(joint.links, case.linkage.joint_points(name), strict=True):
+            other = held.setdefault((link, point), name)
+            if case.links[link].part is None:
+                continue
+            if joint.clamped and joint.clamp_length is None and joint.pin_diameter is None:
+                raise CaseError(
+                    f"joints.{name}.clamp_length: link '{link}' has a part, so this clamp needs the length over which "
+                    'it holds the end of it; state it, for example "20 mm", or the pin_diameter of the shaft on which '
+                    "the part is pressed"
+                )
+            if joint.clamp_length != case.joints[other].clamp_length:
+                raise CaseError(
+                    f"joints.{name}.clamp_length: joint '{other}' is at the same point of link '{link}', but differs "
+                    "in what it holds there; give both the same clamp_length, or each a point of its own"
+                )
+
+
 def clearances(case: CoreCase) -> dict[str, float]:
     """Return the play of every joint that has some: of the pin in its hole, and of a pin in a slot across it as well.
 
@@ -176,9 +207,10 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
     ------
     Caveat
     """
-    bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
-    if bonded:
-        yield Caveat(topic=Topic.BONDS, what=f"bonds {', '.join(bonded)}", why="what holds them is not judged")
+    for what, clamped in (("bonds", False), ("clamps", True)):
+        held = [name for name, joint in case.linkage.joints.items() if joint.bonded and joint.clamped == clamped]
+        if held:
+            yield Caveat(topic=Topic.BONDS, what=f"{what} {', '.join(held)}", why="what holds them is not judged")
     short = [name for name in rubbing_joints(case) if case.joints[name].type == "slider"]
     short = [name for name in short if case.joints[name].guide_length is None]
     if short:

@@ -221,10 +221,34 @@ class _Drawing:
             at = self._joint(name)
             if joint.type != "revolute":
                 found.append(self._guide(name, at))
+            elif joint.clamped:
+                found += self._clamps(name)
             elif ground in joint.links and held_at is None:
                 found.append(self._support(joint.links, at))
             self.sheet.disc(self.axes.at(at), 2.75, INK if joint.bonded else "#ffffff", INK, 1.0)
             found.append(at[None])
+        return found
+
+    def _clamps(self, name: str) -> list[Real]:
+        """Draw the jaws of a clamp beside each link that it holds, hatched on the ground; returns points of them."""
+        joint, found = self.linkage.joints[name], []
+        for link in (link for link in joint.links if len(self.linkage.links[link].points) > 1):
+            if link == self.linkage.ground and link not in self.result.case.checked_links:
+                continue
+            point = self.linkage.point_of(name, link)
+            at, others = self.points[link, point], [self.points[link, p] for p in self.linkage.links[link].points]
+            way = max((other - at for other in others), key=lambda arm: float(np.linalg.norm(arm)))
+            way = way / np.linalg.norm(way)
+            length, side = joint.clamp_length or 0.04 * self.size, 0.02 * self.size * np.array([-way[1], way[0]])
+            for sign in (-1.0, 1.0):
+                start, end = at + sign * side, at + sign * side + length * way
+                self._line([start, end], 1.6)
+                found.append(along(start, end))
+                if self.linkage.ground in joint.links:
+                    step = 0.5 * sign * side - 0.008 * self.size * way
+                    for share in np.linspace(0.1, 1.0, 6):
+                        root = start + share * length * way
+                        self._line([root, root + step], 0.7)
         return found
 
     def _springs(self) -> list[tuple[str, Real]]:
@@ -307,8 +331,14 @@ class _Drawing:
         return np.vstack(edges)
 
     def _moments(self) -> list[tuple[Real, float, float, float, str, str]]:
-        """(place, direction of its middle, moment, radius, label, colour) of the drive torque and of stated moments."""
+        """(place, direction of its middle, moment, radius, label, colour) of drive, clamps and stated moments."""
         found = []
+        for name in (name for name, joint in self.linkage.joints.items() if joint.clamped):
+            reaction = self.reactions.joints[name]
+            if abs(moment := float(reaction.wrench[5])) > 1e-9 * self.size * reaction.magnitude:
+                text = f"{name}: {number(abs(moment))} N·mm\n{turning(moment)} on {reaction.on}"
+                angle = self.pose.angles.get(reaction.on, 0.0)
+                found.append((self._joint(name), angle, moment, 0.065, text, JOINT_FORCE))
         drive, torque = self.reactions.drive, self.reactions.drive_torque
         if drive is not None and torque != 0.0 and not drive.idle:
             what = f"stop {drive.stop}: " if drive.stop else ""

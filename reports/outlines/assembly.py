@@ -307,8 +307,11 @@ def _anchors(placed: Placed, link: str) -> Real:
     """Places (k, 2) of a link at which its name may stand: along its longest piece."""
     record = placed.place.linkage.links[link]
     at = dict(zip(record.points, placed.points(link), strict=True))
+    alone = next(iter(at.values()))
     a, b = max(
-        ((at[one], at[other]) for one, other in record.pieces), key=lambda ends: float(np.hypot(*(ends[1] - ends[0])))
+        ((at[one], at[other]) for one, other in record.pieces),
+        key=lambda ends: float(np.hypot(*(ends[1] - ends[0]))),
+        default=(alone, alone),
     )
     return np.array([share * b + (1.0 - share) * a for share in (0.5, 0.3, 0.7)])
 

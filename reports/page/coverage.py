@@ -26,6 +26,10 @@ TRANSFER = (
     "How the torque passes between {joints} and the links that turn with them, by a key, a clamp, a screw or glue, is "
     "not checked: neither what holds there nor the stress beside it."
 )
+CLAMPS = (
+    "What holds the links at {joints}, by friction, screws or glue, is not checked: neither whether they slip, nor the "
+    "stress that the clamp's grip alone makes. Displacements take what is held for rigid up to the mouth of the clamp."
+)
 LINES = (
     "Pins in slots at {joints} touch a flank along a line. The pressure of this line contact, indentation and wear are "
     "not checked."
@@ -83,12 +87,16 @@ def _layers(result: CheckResult) -> str:
 def _features(result: CheckResult) -> Iterator[tuple[str, str]]:
     """What is not checked of shafts, slots and wings, where the case has some."""
     case = result.case
-    turned = [name for name, joint in case.linkage.joints.items() if joint.type == "revolute" and joint.bonded]
+    joints = case.linkage.joints.items()
+    held = [name for name, joint in joints if joint.clamped and joint.clamp_length is not None]
+    turned = [name for name, joint in joints if joint.type == "revolute" and joint.bonded and name not in held]
     drive = case.pinned_drive
     if drive is not None and not drive.pushes(case.linkage):
         turned = [drive.joint, *turned]
     if turned:
         yield "Torque at shafts", TRANSFER.format(joints=f"the pins of {joined(list(dict.fromkeys(turned)))}")
+    if held:
+        yield "Clamps", CLAMPS.format(joints=joined(held))
     slotted = [name for name, joint in case.joints.items() if joint.type == "pin-in-slot"]
     if slotted:
         yield "Contact in slots", LINES.format(joints=joined(slotted))

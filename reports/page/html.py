@@ -128,7 +128,11 @@ def render(
         named=named,
         changes=change_records(result),
         spring_sentences=spring_sentences,
-        bonded=[name for name, joint in result.pose.linkage.joints.items() if joint.bonded],
+        bonded=" and ".join(
+            f"{kind} joints ({', '.join(names)})"
+            for kind, clamped in (("bonded", False), ("clamped", True))
+            if (names := [n for n, j in result.pose.linkage.joints.items() if j.bonded and j.clamped == clamped])
+        ),
         forked=any(forked_link(result.case, name) is not None for name in result.case.joints),
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures, layers, models) for link in first.links],

@@ -185,6 +185,8 @@ def _meet(case: Case, place: Placement, pair: frozenset[str]) -> bool:
     if any(pair == set(joint.links) for joint in case.joints.values()):
         return True
     lines = []
+    if not all(case.linkage.links[link].pieces for link in pair):
+        return False  # a single point crosses nothing
     for link in pair:
         ends = [[place.position(link, point) for point in piece] for piece in case.linkage.links[link].pieces]
         z = np.moveaxis(np.array(ends), -1, 0)  # (poses, pieces, ends)
@@ -278,6 +280,9 @@ def _pins(case: Case, ranks: Mapping[str, Sequence[int]], size: float) -> list[d
         told = f"pin {', '.join(own)}, " + (
             f"diameter {plain(_short(2.0 * radius))} mm" if diameters else "diameter not stated"
         )
+        if all(case.joints[name].clamped for name in own):
+            held = joint.clamp_length
+            told = f"clamp {', '.join(own)}" + ("" if held is None else f" over {plain(_short(held))} mm")
         found.append(
             {
                 "names": own,
