@@ -242,12 +242,6 @@ class Linkage:
             self._check_joint(name, joint)
             _check_clamp(name, joint)
         for name in self.moving:
-            if len(self.links[name].points) < 2:
-                only = next(iter(self.links[name].points))
-                raise CaseError(
-                    f"links.{name}.points: it has the point '{only}' alone, but a link that moves needs two or more; "
-                    "add a point, such as that of its load"
-                )
             if not self.joints_of(name):
                 raise CaseError(f"links.{name}: it has no joint, so nothing holds it; add a joint or remove the link")
         reached = {self.ground}
