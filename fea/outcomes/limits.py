@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.solid.layers import Layers
-from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from geometry.materials.material import Material
 from loads.case.case import Case
@@ -17,6 +16,7 @@ from loads.records.check_spec import (
     SafetyFactorCheck,
     SustainedCheck,
 )
+from loads.text.caveat import Caveat, Heading, Topic
 
 Ends = tuple[float, float]
 

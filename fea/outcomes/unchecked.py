@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 from fea.common.at_temperature import as_if_cold, cold_pins
 from fea.outcomes.limits import limit_caveats
-from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
 from loads.case.joint_rules import joint_caveats
@@ -18,6 +17,7 @@ from loads.states.case_motion import inertia_caveats, step_caveats
 from loads.states.extent import size_caveats
 from loads.states.standing import drive_caveats
 from loads.states.weighed import mass_caveats
+from loads.text.caveat import Caveat, Heading, Topic
 
 
 def caveats(case: Case, *, over_motion: bool = False) -> tuple[Caveat, ...]:

@@ -15,8 +15,8 @@ from fea.common.verdict import Verdict
 from fea.sizing.search import Search
 from fea.study.margin import counterpart, margin, nearest
 from fea.study.numbers import VariantNumber, VariantResult
-from geometry.base.caveat import Caveat
 from geometry.base.errors import CaseError
+from loads.text.caveat import Caveat
 
 SCANNED = 33
 """Steps at most that are calculated by hand before any solid."""

@@ -20,9 +20,9 @@ from fea.sizing.candidates import Candidates, Objective, Place
 from fea.sizing.search import Search
 from fea.study.margin import counterpart, margin, nearest
 from fea.study.numbers import VariantNumber, VariantResult
-from geometry.base.caveat import Caveat
 from geometry.base.errors import CaseError
 from loads.plans.axis import Axis
+from loads.text.caveat import Caveat
 
 ENUMERATED = 200
 """Combinations up to which all are calculated by hand."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from fea.outcomes.result import CheckResult
 from fea.outcomes.unchecked import caveats
-from geometry.base.caveat import Caveat, Topic
+from loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
 from loads.case.places import check_moving, check_point
@@ -13,6 +12,7 @@ from loads.records.carried import CarriedBody, CarriedSpread
 from loads.records.check_spec import FrequencyCheck
 from loads.records.flapping import WIDEST, Wing, check_flapping
 from loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
+from loads.text.caveat import Caveat, Heading, Topic
 from loads.text.explain import require
 
 Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing

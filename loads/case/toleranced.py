@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic_core import PydanticCustomError
 
-from geometry.base.caveat import Caveat, Topic
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
 from loads.records.tolerances import Distribution, Tolerance
+from loads.text.caveat import Caveat, Topic
 from loads.text.explain import printable, require
 
 PINS = "pins"

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.caveat import Caveat, Topic
 from geometry.base.errors import CaseError
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import Pose
@@ -36,6 +35,7 @@ from loads.states.standing import refuse_stops
 from loads.statics.friction import Presses
 from loads.statics.momentum import LinkageMomentum, linkage_momentum
 from loads.statics.statics import Drive
+from loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 

@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 
-from geometry.base.caveat import Caveat, Topic
 from geometry.clearance.least import Spot
 from geometry.clearance.reach import Sides, Standing, reaches, reaches_at
 from geometry.clearance.shape import point_shape
@@ -18,6 +17,7 @@ from loads.case.layers import slab
 from loads.records.check_spec import SizeCheck
 from loads.states.clearance import Assembly, along, assembly, start_of, way_of
 from loads.states.flapping import wing_span
+from loads.text.caveat import Caveat, Topic
 
 _NEAR = 1e-6
 """Share of the longest link to which the box over a motion is found."""

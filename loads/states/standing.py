@@ -14,7 +14,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from geometry.linkage.continuation import DeadPointError, Track
 from geometry.linkage.driven import DrivenClosure
@@ -30,6 +29,7 @@ from loads.states.actions import acting_loads
 from loads.states.kinetostatics import work
 from loads.states.springs import SpringState, joint_value, spring_states, stop_gaps, touching
 from loads.statics.statics import Drive
+from loads.text.caveat import Caveat, Heading, Topic
 
 Real = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
 from fea.outcomes.unchecked import caveats
-from geometry.base.caveat import Caveat, Heading
+from loads.text.caveat import Caveat, Heading
 
 if TYPE_CHECKING:
     from fea.outcomes.result import CheckResult, SectionComparison
