@@ -49,19 +49,23 @@ def writes_a_case(command: str) -> bool:
     return words(command)[0] == "new" and "--list" not in words(command)
 
 
+def reads_a_part(command: str) -> bool:
+    return words(command)[0] == "inspect" or "--from-step" in words(command)
+
+
 def in_order(commands: list[str]) -> list[str]:
-    return sorted(commands, key=lambda command: not writes_a_case(command))
+    return sorted(commands, key=lambda command: not writes_a_case(command) or reads_a_part(command))
 
 
 def needed(command: str) -> list[str]:
     """Commands whose files another reads: cases, the STEP files, the study that is shown."""
-    shows, inspects = words(command)[:2] == ["study", "show"], words(command)[0] == "inspect"
+    shows = words(command)[:2] == ["study", "show"]
     return [
         other
         for other in in_order(COMMANDS)
-        if writes_a_case(other)
+        if (writes_a_case(other) and not reads_a_part(other))
         or (shows and words(other)[0] == "study" and words(other)[1] != "show")
-        or (inspects and words(other)[0] == "export")
+        or (reads_a_part(command) and words(other)[0] == "export")
     ]
 
 

@@ -68,7 +68,8 @@ class Discretisation:
             return (
                 f"a sharp inner edge bears at least {_percent(LOADED)} of the peak stress. Showing whether that "
                 f"stress has a limit takes {SERIES} meshes, this run made {count}. No safety factor is reported; state "
-                f"the real fillet_radius (of a pocket: floor_radius); {self._remedy}"
+                "the real fillet_radius (of a pocket: floor_radius; of a part from CAD: round it there); "
+                f"{self._remedy}"
             )
         if self.status == "growing":
             return (

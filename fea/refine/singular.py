@@ -62,8 +62,8 @@ class SharpPeak:
             f"the stress at the sharp inner edge at x = {x:.3g}, y = {y:.3g}, z = {z:.3g} mm "
             f"({np.degrees(self.angle):.0f}° of material) is singular: it has no limit, but grows with every finer "
             f"mesh, as element size to the power {-self.growth:.2f} (theory {-self.theory:.2f}). State the real "
-            f"fillet_radius (of a pocket: floor_radius). For screening only: {self.distance:.2g} mm or more from such "
-            f"edges, the von Mises stress is at most {self.screening:.3g} MPa"
+            f"fillet_radius (of a pocket: floor_radius; of a part from CAD: round it there). For screening only: "
+            f"{self.distance:.2g} mm or more from such edges, the von Mises stress is at most {self.screening:.3g} MPa"
         )
 
 
