@@ -19,7 +19,7 @@ from loads.case.case_file import validate
 from loads.exchange.sketch import plain_name
 from loads.text.explain import printable
 
-ASSUMED_MATERIAL = "pla-fdm-xy"
+ASSUMED_MATERIAL = "aluminium-6061-t6"
 """Material in the entries where none is named."""
 LOAD = 10.0
 """Force of a case to begin with [N]."""
