@@ -75,7 +75,9 @@ class Caveat:
         return f"{self.what} ({self.why})" if self.why else self.what
 
 
-def caveats(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck)) -> tuple[Caveat, ...]:
+def caveats(
+    case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck), harmonic: str = ""
+) -> tuple[Caveat, ...]:
     """Return all that a reader of a case's verdict must know besides.
 
     Parameters
@@ -83,12 +85,14 @@ def caveats(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Susta
     case : Case
     strength : sequence of type
         The kinds of check that set a link's stress against a strength; an envelope knows the first alone.
+    harmonic : str, optional
+        What is known of vibration without a check of it, as ``nearest_harmonic`` says.
 
     Returns
     -------
     tuple of Caveat
     """
-    return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case),
+    return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case, harmonic),
         *_bonds(case), *_pins(case),
             *_limits(case), *_play(case))  # fmt: skip
 
@@ -153,11 +157,12 @@ def _weight(case: Case) -> Iterator[Caveat]:
         yield Caveat(topic=Topic.WEIGHT, what="weight of what links carry", why=f"no own_weight in {', '.join(light)}")
 
 
-def _vibration(case: Case) -> Iterator[Caveat]:
+def _vibration(case: Case, harmonic: str) -> Iterator[Caveat]:
     """Yield vibration where the drive has a speed and no check asks for frequencies."""
     asked = any(isinstance(check, FrequencyCheck) for check in case.checks.values())
     if not asked and any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
-        yield Caveat(topic=Topic.VIBRATION, what="vibration", why='no check of type "frequency"')
+        why = "; ".join(filter(None, ('no check of type "frequency"', harmonic)))
+        yield Caveat(topic=Topic.VIBRATION, what="vibration", why=why)
 
 
 def _bonds(case: Case) -> Iterator[Caveat]:

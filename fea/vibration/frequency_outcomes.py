@@ -169,7 +169,7 @@ def running_clause(case: Case, link: str | None) -> str:
 def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
     link, mode = own.link, own.modes[0]
     reason = (
-        f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
+        f"by itself, {own.held}, {link} vibrates at {hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
         f"the drive turns at {_plain(driving)} Hz{running_clause(case, link)}"
     )
     ratio = mode.frequency.times(1.0 / driving)
@@ -190,7 +190,7 @@ def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
     """
     mode = history.lowest.modes[0]
     frequency = least_frequency(history)
-    text = f"the lowest natural frequency is {_hertz(frequency)}{where(case, history)}, {in_words(mode.in_plane)}"
+    text = f"the lowest natural frequency is {hertz(frequency)}{where(case, history)}, {in_words(mode.in_plane)}"
     if frequency.value == 0.0:
         return f"{text}: under its loads the linkage does not swing but departs"
     if moved := most_moved(history.lowest, mode):
@@ -369,7 +369,18 @@ def ordinal(n: int) -> str:
     return f"{n}{_ENDINGS.get(n, 'th')}"
 
 
-def _hertz(frequency: Band) -> str:
+def hertz(frequency: Band) -> str:
+    """Return ``43.2 (38.0 to 47.0) Hz``.
+
+    Parameters
+    ----------
+    frequency : Band
+        [Hz]
+
+    Returns
+    -------
+    str
+    """
     return f"{_text(frequency)} Hz"
 
 

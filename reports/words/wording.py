@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
-from fea.outcomes.unchecked import Caveat, Heading, caveats
+from fea.outcomes.unchecked import Caveat, Heading
 
 if TYPE_CHECKING:
     from fea.outcomes.result import CheckResult, SectionComparison
@@ -216,7 +216,7 @@ def headline(result: "CheckResult") -> str:
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
     told = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
-    return " ".join(filter(None, (told, besides(caveats(result.case)))))
+    return " ".join(filter(None, (told, besides(result.caveats))))
 
 
 def besides(found: Iterable[Caveat]) -> str:

@@ -1,13 +1,17 @@
 """What no check looks at is named, in the verdict's sentence and in the record."""
 
+import math
 import tomllib
 from importlib.resources import files
 
 import pytest
+from frequency_cases import lever
 from materials import with_material
 
 from fea.check.run import check_case
 from fea.outcomes.unchecked import caveats, unchecked
+from fea.vibration.nearest_harmonic import nearest_harmonic
+from fea.vibration.over_motion import pose_frequencies
 from loads.case.case_file import validate
 from loads.records.check_spec import SafetyFactorCheck, SustainedCheck
 from reports.tables.record import result_record
@@ -146,3 +150,35 @@ def test_limits_below_one_and_large_play_are_told():
     data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     loose = {name: data["joints"][name] | {"clearance": play} for name, play in (("A", "2.9 mm"), ("B", "0.3 mm"))}
     assert told(joints=loose) == {("unusual", "play"): "play of 2.9 mm at A (its pin has 3 mm)"}
+
+
+def driven(**loads):
+    """A lever without a check, driven by load cases with these speeds."""
+    case = lever()
+    [turning] = case.load_cases.values()
+    each = {name: turning.model_copy(update={"speed": 2.0 * math.pi * hertz}) for name, hertz in loads.items()}
+    return case.model_copy(update={"checks": {}, "load_cases": each})
+
+
+def test_the_harmonic_that_comes_nearest_to_the_lowest_natural_frequency_is_told_in_a_ratio():
+    """The 3rd one, of the frequency at that speed, which stiffens; a load case far from it does not hide it."""
+    [still] = pose_frequencies(driven(a=1.0)).values()
+    lowest = float(still.frequencies[0, 0])
+    near = 1.02 * lowest / 3.0
+    for loads in ({"near": near, "far": 0.7 * lowest}, {"far": 0.7 * lowest, "near": near}):
+        own = float(pose_frequencies(driven(near=near))["near"].frequencies[0, 0])
+        told = nearest_harmonic(driven(**loads))
+        assert told.startswith(
+            f"in this pose the 3rd harmonic of {60.0 * near:.4g} rpm is at {3.0 * near / own:.3g} of "
+        )
+        assert f"lowest natural frequency, {own:.3g} (" in told
+    assert nearest_harmonic(driven(slow=1e-3 * lowest)).startswith("in this pose the 10th harmonic of ")
+    assert nearest_harmonic(driven(still=0.0)) == nearest_harmonic(lever()) == ""
+
+
+def test_the_verdict_tells_the_nearest_harmonic_where_no_check_asks_for_frequencies():
+    result = check_case(driven(turning=10.0), fidelity="beam")
+    said = f'vibration (no check of type "frequency"; {nearest_harmonic(result.case)})'
+    assert "harmonic of 600 rpm" in said
+    assert said in headline(result)
+    assert said in result_record(result)["not_checked"]
