@@ -117,6 +117,25 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
     return Band.exact(abs(torque) if case.torque_transfer == "bore-shear" else 0.0)
 
 
+def unjudged_shaft(case: Case) -> str:
+    """Return the joint whose shaft passes the drive's torque without being judged by it.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    str
+        "" where nothing drives about a pin, or where the torque goes through the pin itself ("bore-shear").
+    """
+    drive = case.pinned_drive
+    if drive is None or drive.stop or drive.idle or case.pose.equilibrium or drive.pushes(case.linkage):
+        return ""
+    through_pin = case.torque_transfer == "bore-shear" or case.linkage.joints[drive.joint].bonded
+    return "" if through_pin else drive.joint
+
+
 def twisted(case: Case, joint: str, stress: PinStress, twist: Band) -> PinStress:
     """Return the stresses of a joint's pin with a torque that goes through it.
 

@@ -22,7 +22,7 @@ from fea.refine.discretisation import Discretisation
 from fea.refine.link_buckling import SolidBuckling
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.stress import StressField
-from fea.vibration.nearest_harmonic import nearest_harmonic
+from fea.vibration.harmonics import nearest_harmonic
 from fea.vibration.over_motion import CaseFrequencies
 from geometry.linkage.pose import Pose
 from geometry.materials.material import stress_measure

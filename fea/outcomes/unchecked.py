@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from fea.outcomes.pins import unjudged_shaft
 from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
 from loads.case.joint_rules import clearances
@@ -18,6 +19,7 @@ from loads.records.check_spec import (
     SizeCheck,
     SustainedCheck,
 )
+from loads.states.clearance import uncompared
 from loads.states.extent import unmeasured
 from loads.states.weighed import unweighed
 
@@ -49,6 +51,8 @@ class Topic(StrEnum):
     MATERIAL = "material"
     LIMIT = "limit"
     PLAY = "play"
+    SHAFT = "shaft"
+    COLLISIONS = "collisions"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +78,11 @@ class Caveat:
         """For people: ``thigh (no part)``."""
         return f"{self.what} ({self.why})" if self.why else self.what
 
+    @property
+    def short(self) -> str:
+        """For a headline: without the reason where most cases have the same."""
+        return self.what if self.topic in (Topic.SHAFT, Topic.COLLISIONS) else str(self)
+
 
 def caveats(
     case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck), harmonic: str = ""
@@ -93,7 +102,7 @@ def caveats(
     tuple of Caveat
     """
     return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case, harmonic),
-        *_bonds(case), *_pins(case),
+        *_bonds(case), *_shaft(case), *_collisions(case), *_pins(case),
             *_limits(case), *_play(case))  # fmt: skip
 
 
@@ -170,6 +179,19 @@ def _bonds(case: Case) -> Iterator[Caveat]:
     bonded = [name for name, joint in case.joints.items() if joint.bonded]
     if bonded:
         yield Caveat(topic=Topic.BONDS, what=f"bonds {', '.join(bonded)}", why="what holds them is not judged")
+
+
+def _shaft(case: Case) -> Iterator[Caveat]:
+    """Yield the shaft that passes the drive's torque beside the pin."""
+    if joint := unjudged_shaft(case):
+        why = 'its torque enters by the flat faces; with drive.transfer = "bore-shear" it twists the pin'
+        yield Caveat(topic=Topic.SHAFT, what=f"drive shaft at {joint}", why=why)
+
+
+def _collisions(case: Case) -> Iterator[Caveat]:
+    """Yield collisions of links that state no layers."""
+    if uncompared(case):
+        yield Caveat(topic=Topic.COLLISIONS, what="collisions of links", why="no link states a layer")
 
 
 def _pins(case: Case) -> Iterator[Caveat]:

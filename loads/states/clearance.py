@@ -251,6 +251,20 @@ def start_of(motion: Motion) -> Real:
     return np.linspace(float(motion.angles[0]), float(motion.angles[-1]), _POSES)
 
 
+def uncompared(case: Case) -> bool:
+    """Return whether nobody looks if links with a part run into each other, since none states how they lie.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    bool
+    """
+    return not case.stacked and len(case.checked_links) > 1
+
+
 def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
     """Return the gaps of a case over its motion, or at its pose where it states none.
 

@@ -233,7 +233,7 @@ def besides(found: Iterable[Caveat]) -> str:
     """
     every = list(found)
     told = {
-        heading: [str(one) for one in every if one.heading is heading]
+        heading: [one.short for one in every if one.heading is heading]
         for heading in (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
     }
     return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)
