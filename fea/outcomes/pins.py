@@ -37,6 +37,7 @@ adds to the shear where nothing bends, and at the extreme fibre to the bending b
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -58,6 +59,7 @@ from loads.case.forks import eye_of, eyes, outer_link
 from loads.records.applied import shifted
 from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction
+from loads.text.caveat import Caveat, Topic
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 NO_TORSION = Band.exact(0.0)
@@ -115,6 +117,25 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
     if drive is None or drive.joint != joint or drive.stop or drive.idle or drive.pushes(case.linkage):
         return Band.exact(0.0)
     return Band.exact(abs(torque) if case.torque_transfer == "bore-shear" else 0.0)
+
+
+def shaft_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield the shaft that passes the drive's torque beside the pin, where there is one.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    drive = case.pinned_drive
+    if drive is None or drive.stop or drive.idle or case.pose.equilibrium or drive.pushes(case.linkage):
+        return
+    if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].bonded:
+        why = 'its torque enters by the flat faces; with drive.transfer = "bore-shear" it twists the pin'
+        yield Caveat(topic=Topic.SHAFT, what=f"drive shaft at {drive.joint}", why=why)
 
 
 def twisted(case: Case, joint: str, stress: PinStress, twist: Band) -> PinStress:

@@ -17,10 +17,12 @@ from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress
+from fea.outcomes.unchecked import caveats
 from fea.refine.discretisation import Discretisation
 from fea.refine.link_buckling import SolidBuckling
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.stress import StressField
+from fea.vibration.harmonics import nearest_harmonic
 from fea.vibration.over_motion import CaseFrequencies
 from geometry.linkage.pose import Pose
 from geometry.materials.material import stress_measure
@@ -33,6 +35,7 @@ from loads.states.extent import Extent
 from loads.states.standing import Standing
 from loads.states.weighed import Weighed
 from loads.statics.statics import Reactions
+from loads.text.caveat import Caveat
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -354,6 +357,11 @@ class CheckResult:
     warnings: tuple[str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
+
+    @cached_property
+    def caveats(self) -> tuple[Caveat, ...]:
+        """What a reader of the verdict must know besides; its natural frequency is found when it is first asked for."""
+        return caveats(self.case, harmonic=nearest_harmonic(self.case))
 
     @property
     def frames(self) -> Mapping[str, LargeDisplacement]:

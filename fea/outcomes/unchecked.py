@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from fea.common.at_temperature import as_if_cold, cold_pins
 from fea.outcomes.limits import limit_caveats
+from fea.outcomes.pins import shaft_caveats
 from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
 from loads.case.joint_rules import joint_caveats
@@ -14,13 +15,14 @@ from loads.case.load_rules import load_caveats
 from loads.case.toleranced import tolerance_caveats
 from loads.records.check_spec import FrequencyCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 from loads.states.case_motion import inertia_caveats, step_caveats
+from loads.states.clearance import collision_caveats
 from loads.states.extent import size_caveats
 from loads.states.standing import drive_caveats
 from loads.states.weighed import mass_caveats
 from loads.text.caveat import Caveat, Heading, Topic
 
 
-def caveats(case: Case, *, over_motion: bool = False) -> tuple[Caveat, ...]:
+def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tuple[Caveat, ...]:
     """Return all that a reader of a case's verdict must know besides.
 
     Parameters
@@ -28,6 +30,8 @@ def caveats(case: Case, *, over_motion: bool = False) -> tuple[Caveat, ...]:
     case : Case
     over_motion : bool, optional
         True for a verdict on the motion (``alula envelope``), False for one on the stated pose.
+    harmonic : str, optional
+        What is known of vibration without a check of it, as ``nearest_harmonic`` says.
 
     Returns
     -------
@@ -40,9 +44,11 @@ def caveats(case: Case, *, over_motion: bool = False) -> tuple[Caveat, ...]:
         *inertia_caveats(case, over_motion=over_motion),
         *(step_caveats(case) if over_motion else ()),
         *load_caveats(case),
-        *_vibration(case),
+        *_vibration(case, harmonic),
         *drive_caveats(case),
         *joint_caveats(case),
+        *shaft_caveats(case),
+        *collision_caveats(case),
         *_pins(case),
         *limit_caveats(case),
         *tolerance_caveats(case),
@@ -88,11 +94,12 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
         yield Caveat(topic=Topic.PINS, what=which, why="no check")
 
 
-def _vibration(case: Case) -> Iterator[Caveat]:
+def _vibration(case: Case, harmonic: str) -> Iterator[Caveat]:
     """Yield vibration where the drive has a speed and no check asks for frequencies."""
     asked = any(isinstance(check, FrequencyCheck) for check in case.checks.values())
     if not asked and any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
-        yield Caveat(topic=Topic.VIBRATION, what="vibration", why='no check of type "frequency"')
+        why = "; ".join(filter(None, ('no check of type "frequency"', harmonic)))
+        yield Caveat(topic=Topic.VIBRATION, what="vibration", why=why)
 
 
 def _pins(case: Case) -> Iterator[Caveat]:

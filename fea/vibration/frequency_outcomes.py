@@ -8,7 +8,7 @@ import numpy as np
 
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
-from fea.vibration.harmonics import HIGHEST, Meeting, in_words, meetings
+from fea.vibration.harmonics import HIGHEST, Meeting, banded, hertz, in_words, meetings, ordinal, stated
 from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes
 from fea.vibration.modes import Mode
@@ -20,7 +20,6 @@ from loads.records.check_spec import FrequencyCheck
 
 POSES = 13
 """Over the motion, of which the least frequency is sought in between: every 30 degrees of a turn."""
-_ENDINGS = {1: "st", 2: "nd", 3: "rd"}
 
 
 def asked_frequencies(case: Case, *, solids: bool = False, threads: int = 2) -> CaseFrequencies | None:
@@ -169,8 +168,8 @@ def running_clause(case: Case, link: str | None) -> str:
 def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
     link, mode = own.link, own.modes[0]
     reason = (
-        f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
-        f"the drive turns at {_plain(driving)} Hz{running_clause(case, link)}"
+        f"by itself, {own.held}, {link} vibrates at {hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
+        f"the drive turns at {stated(driving)} Hz{running_clause(case, link)}"
     )
     ratio = mode.frequency.times(1.0 / driving)
     return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
@@ -190,14 +189,14 @@ def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
     """
     mode = history.lowest.modes[0]
     frequency = least_frequency(history)
-    text = f"the lowest natural frequency is {_hertz(frequency)}{where(case, history)}, {in_words(mode.in_plane)}"
+    text = f"the lowest natural frequency is {hertz(frequency)}{where(case, history)}, {in_words(mode.in_plane)}"
     if frequency.value == 0.0:
         return f"{text}: under its loads the linkage does not swing but departs"
     if moved := most_moved(history.lowest, mode):
         text += f", where {moved} moves most"
     if history.driving > 0.0:
         ratio = frequency.times(1.0 / history.driving)
-        text += f"; that is {_text(ratio)} times the driving frequency of {_plain(history.driving)} Hz"
+        text += f"; that is {banded(ratio)} times the driving frequency of {stated(history.driving)} Hz"
     return text
 
 
@@ -256,21 +255,21 @@ def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
         first = met[0]
         if (history.low[:, first.mode - 1] <= 0.0).all():
             last = max(one.harmonic for one in met if one.mode == first.mode)
-            up_to = f"harmonics up to the {ordinal(last)}, {_plain(last * history.driving)} Hz, may meet"
+            up_to = f"harmonics up to the {ordinal(last)}, {stated(last * history.driving)} Hz, may meet"
             return f"{up_to} the {ordinal(first.mode)} natural frequency, since its band goes down to 0"
-        return f"the {ordinal(first.harmonic)} harmonic, {_plain(first.frequency)} Hz, {_meets(case, history, first)}"
+        return f"the {ordinal(first.harmonic)} harmonic, {stated(first.frequency)} Hz, {_meets(case, history, first)}"
     if not np.isfinite(history.high[:, 0]).all():
         return "which harmonics meet a natural frequency is not known, since the lowest one has no band"
     known = np.isfinite(history.high).all(axis=0)
     driving, low, high = history.driving, history.low[:, known], history.high[:, known]
     if float(low.min()) > HIGHEST * driving:
-        return f"all harmonics up to the {ordinal(HIGHEST)}, {_plain(HIGHEST * driving)} Hz, stay below it"
+        return f"all harmonics up to the {ordinal(HIGHEST)}, {stated(HIGHEST * driving)} Hz, stay below it"
     apart = {n: np.maximum(low / (n * driving), n * driving / np.maximum(high, 1e-12)) for n in range(1, HIGHEST + 1)}
     nearest = first_least([float(ratio.min()) for ratio in apart.values()]) + 1
     i, k = np.unravel_index(first_least(np.ravel(apart[nearest])), low.shape)
     return (
         f"no harmonic up to the {ordinal(HIGHEST)} meets a natural frequency; the {ordinal(nearest)}, "
-        f"{_plain(nearest * driving)} Hz, comes nearest to the {ordinal(int(np.flatnonzero(known)[k]) + 1)} one"
+        f"{stated(nearest * driving)} Hz, comes nearest to the {ordinal(int(np.flatnonzero(known)[k]) + 1)} one"
         f"{at_value(case, float(history.at[i]))}"
     )
 
@@ -352,40 +351,3 @@ def unit(case: Case) -> str:
     """
     travels = case.pose.travel if case.motion is None else case.motion.travel
     return "deg" if travels is None else "mm"
-
-
-def ordinal(n: int) -> str:
-    """Return ``1st``, ``2nd``, ``3rd``, ``4th``.
-
-    Parameters
-    ----------
-    n : int
-        From 1 to 20.
-
-    Returns
-    -------
-    str
-    """
-    return f"{n}{_ENDINGS.get(n, 'th')}"
-
-
-def _hertz(frequency: Band) -> str:
-    return f"{_text(frequency)} Hz"
-
-
-def _text(value: Band) -> str:
-    """Return ``43.2 (38.0 to 47.0)``."""
-    if math.isinf(value.high):
-        return f"{_three(value.value)} (with no band)" if math.isfinite(value.value) else "unknown"
-    shown, low, high = (_three(end) for end in (value.value, value.low, value.high))
-    return shown if low == high else f"{shown} ({low} to {high})"
-
-
-def _three(value: float) -> str:
-    """Return a number with three digits, and without a power of ten."""
-    return f"{value:#.3g}".rstrip(".") if value < 999.5 else f"{float(f'{value:.3g}'):.0f}"
-
-
-def _plain(value: float) -> str:
-    """Return a stated number with three digits, without padding zeros."""
-    return f"{float(f'{value:.3g}'):g}"

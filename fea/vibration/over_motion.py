@@ -121,6 +121,30 @@ def case_frequencies(
     return CaseFrequencies(case=case, histories=histories, links=links)
 
 
+def pose_frequencies(case: Case, *, count: int = 4) -> dict[str, FrequencyHistory]:
+    """Return the natural frequencies of a linkage in its pose, under every load case.
+
+    Parameters
+    ----------
+    case : Case
+    count : int, optional
+        Frequencies.
+
+    Returns
+    -------
+    dict of str to FrequencyHistory
+        Each of one pose.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``case_frequencies``.
+    """
+    case = _smooth(case)
+    with bounded(1):
+        return _standing(case, part_masses(case), count)
+
+
 def _smooth(case: Case) -> Case:
     """Return the case without friction."""
     if not rubbing_joints(case):

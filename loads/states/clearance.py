@@ -19,6 +19,7 @@ from loads.case.case import Case
 from loads.case.forks import levels
 from loads.case.layers import on_one_axis, slab
 from loads.states.case_motion import drive_angles
+from loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 
@@ -249,6 +250,21 @@ def start_of(motion: Motion) -> Real:
         From its first pose to its last [rad, mm].
     """
     return np.linspace(float(motion.angles[0]), float(motion.angles[-1]), _POSES)
+
+
+def collision_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield that nobody looks if links with a part run into each other, since none states how they lie.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    if not case.stacked and len(case.checked_links) > 1:
+        yield Caveat(topic=Topic.COLLISIONS, what="collisions of links", why="no link states a layer")
 
 
 def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:

@@ -33,6 +33,8 @@ class Topic(StrEnum):
     PLAY = "play"
     TOLERANCES = "tolerances"
     MOTION = "motion"
+    SHAFT = "shaft"
+    COLLISIONS = "collisions"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,3 +59,8 @@ class Caveat:
     def __str__(self) -> str:
         """For people: ``thigh (no part)``."""
         return f"{self.what} ({self.why})" if self.why else self.what
+
+    @property
+    def short(self) -> str:
+        """For a headline: without the reason where most cases have the same."""
+        return self.what if self.topic in (Topic.SHAFT, Topic.COLLISIONS) else str(self)

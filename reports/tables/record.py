@@ -9,10 +9,10 @@ from importlib.resources import files
 from typing import Any
 
 from fea.outcomes.result import CheckResult, HandResult, LinkResult, LoadCaseResult, SolidResult
-from fea.outcomes.unchecked import caveats, unchecked
 from geometry.base.version import result_stamp
 from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
+from loads.text.caveat import Heading
 from reports.tables.clearance import clearance_record
 from reports.tables.data import change_records, check_records, data, entries, finite
 from reports.tables.frames import frame_record, reaction_records
@@ -79,8 +79,8 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "design": design_record(result.case),
         "second_opinions": opinion_records(result.second_opinions),
         "conditions": entries(result.case.conditions, "duration temperature"),
-        "not_checked": list(unchecked(result.case)),
-        "caveats": [entries(one, "heading topic what why") for one in caveats(result.case)],
+        "not_checked": [str(one) for one in result.caveats if one.heading is Heading.NOT_CHECKED],
+        "caveats": [entries(one, "heading topic what why") for one in result.caveats],
         "assumptions": list(result.case.assumptions),
         "warnings": list(result.warnings),
         "timings": dict(result.timings),

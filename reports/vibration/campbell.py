@@ -10,8 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.vibration.frequency_outcomes import ordinal
-from fea.vibration.harmonics import HIGHEST, Meeting, meetings
+from fea.vibration.harmonics import HIGHEST, Meeting, meetings, ordinal
 from fea.vibration.over_motion import FrequencyHistory
 from reports.sheet.canvas import Canvas, faint
 from reports.sheet.plot import Axes, ticks, widest

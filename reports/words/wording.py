@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
-from fea.outcomes.unchecked import caveats
 from loads.text.caveat import Caveat, Heading
 
 if TYPE_CHECKING:
@@ -217,7 +216,7 @@ def headline(result: "CheckResult") -> str:
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
     told = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
-    return " ".join(filter(None, (told, besides(caveats(result.case)))))
+    return " ".join(filter(None, (told, besides(result.caveats))))
 
 
 def besides(found: Iterable[Caveat]) -> str:
@@ -234,7 +233,7 @@ def besides(found: Iterable[Caveat]) -> str:
     """
     every = list(found)
     told = {
-        heading: [str(one) for one in every if one.heading is heading]
+        heading: [one.short for one in every if one.heading is heading]
         for heading in (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
     }
     return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)

@@ -1,13 +1,17 @@
 """What no check looks at is named, in the verdict's sentence and in the record."""
 
+import math
 import tomllib
 from importlib.resources import files
 
 import pytest
+from frequency_cases import lever
 from materials import with_material
 
 from fea.check.run import check_case
 from fea.outcomes.unchecked import caveats, unchecked
+from fea.vibration.harmonics import nearest_harmonic
+from fea.vibration.over_motion import pose_frequencies
 from loads.case.case_file import validate
 from loads.records.check_spec import SustainedCheck
 from reports.tables.record import result_record
@@ -17,6 +21,8 @@ STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}
 STIFF = {"type": "displacement", "maximum": "1 m"}
 NO_PINS = "pins (no check)"
+SHAFT = 'drive shaft at O2 (its torque enters by the flat faces; with drive.transfer = "bore-shear" it twists the pin)'
+COLLISIONS = "collisions of links (no link states a layer)"
 
 
 def starter(checks, *bare):
@@ -26,6 +32,22 @@ def starter(checks, *bare):
         del data["links"][link]["part"]
     data["load_cases"]["lift"]["own_weight"] = False
     return validate(data | {"checks": checks})
+
+
+def in_layers(checks, *bare, transfer="eye-faces"):
+    """The starter case whose links lie in layers of their own, but for rocker and crank."""
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    for layer, link in enumerate(("base", "crank", "coupler", "rocker")):
+        data["links"][link]["layer"] = layer if link != "rocker" else 1
+    data["links"]["base"]["thickness"] = "4 mm"
+    data["load_cases"]["lift"]["own_weight"] = False
+    data["drive"]["transfer"] = transfer
+    return validate(data | {"layer_spacing": "5 mm", "checks": checks})
+
+
+def left(case, **over):
+    """What is not checked of a case, without shaft and collisions, which the starter has always."""
+    return tuple(one for one in unchecked(case, **over) if one not in (SHAFT, COLLISIONS))
 
 
 @pytest.mark.parametrize(
@@ -53,13 +75,27 @@ def starter(checks, *bare):
     ],
 )
 def test_what_is_left_out(checks, bare, left_out):
-    assert unchecked(starter(checks, *bare)) == left_out
+    assert left(starter(checks, *bare)) == left_out
+
+
+def test_the_drive_shaft_is_told_where_its_torque_is_not_in_the_pin():
+    checks = {"a": STRENGTH, "b": PINS}
+    assert unchecked(starter(checks)) == (SHAFT, COLLISIONS)
+    assert unchecked(in_layers(checks)) == (SHAFT,)
+    assert unchecked(in_layers(checks, transfer="bore-shear")) == ()
+    balanced = starter(checks)
+    assert unchecked(balanced.model_copy(update={"drive": None})) == (COLLISIONS,)
+
+
+def test_collisions_are_told_where_several_links_have_parts_and_none_states_a_layer():
+    assert COLLISIONS in unchecked(starter({}))
+    assert COLLISIONS not in unchecked(starter({}, "crank", "coupler")), "one part alone meets none"
 
 
 def test_a_sustained_check_looks_at_stress_but_not_in_an_envelope():
     lasting = starter({}).model_copy(update={"checks": {"long": SustainedCheck(type="sustained")}})
-    assert unchecked(lasting) == (NO_PINS,)
-    assert unchecked(lasting, over_motion=True) == ("stress of crank, coupler, rocker (no check)", NO_PINS)
+    assert left(lasting) == (NO_PINS,)
+    assert left(lasting, over_motion=True) == ("stress of crank, coupler, rocker (no check)", NO_PINS)
 
 
 def test_verdict_and_record_name_a_link_without_part():
@@ -67,13 +103,15 @@ def test_verdict_and_record_name_a_link_without_part():
     assert headline(result).endswith(
         " Assumed: pins of steel-wire (no pin_material stated). Unusual: checks.a.minimum = 0.01 (below 1 it lets pass "
         "what the load breaks); checks.b.minimum = 0.01 (below 1 it lets pass what the load breaks). Not checked: "
-        "coupler (no part)."
+        "coupler (no part); drive shaft at O2; collisions of links."
     )
-    assert result_record(result)["not_checked"] == ["coupler (no part)"]
+    assert result_record(result)["not_checked"] == ["coupler (no part)", SHAFT, COLLISIONS]
 
 
 def test_nothing_is_said_where_all_is_checked():
-    result = check_case(starter({"a": STRENGTH, "b": PINS}), fidelity="beam")
+    """In layers, and with the drive's torque in a pin that is checked."""
+    case = in_layers({"a": STRENGTH, "b": PINS}, transfer="bore-shear")
+    result = check_case(case, fidelity="beam")
     assert "Not checked" not in headline(result)
     assert result_record(result)["not_checked"] == []
 
@@ -95,7 +133,8 @@ def told(**tables):
     for name, more in tables.items():
         data[name] = data.get(name, {}) | more if isinstance(more, dict) else more
     found = caveats(validate(data))
-    return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in ("stress", "pins")}
+    known = ("stress", "pins", "shaft", "collisions")
+    return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in known}
 
 
 FAST = {"turn": True, "speed": "600 rpm"}
@@ -230,3 +269,34 @@ def test_poses_far_apart_are_told_of_the_motion_alone(poses, found):
     case = validate(data | {"motion": {"turn": True, "poses": poses}})
     assert [one.why for one in caveats(case, over_motion=True) if one.topic == "motion"] == ([found] if found else [])
     assert not [one for one in caveats(case) if one.topic == "motion"]
+
+
+def driven(**loads):
+    """A lever without a check, driven by load cases with these speeds."""
+    case = lever()
+    [turning] = case.load_cases.values()
+    each = {name: turning.model_copy(update={"speed": 2.0 * math.pi * hertz}) for name, hertz in loads.items()}
+    return case.model_copy(update={"checks": {}, "load_cases": each})
+
+
+def test_the_harmonic_that_comes_nearest_to_the_lowest_natural_frequency_is_told_in_a_ratio():
+    """The 3rd one, of the frequency at that speed, which stiffens; a load case far from it does not hide it."""
+    [still] = pose_frequencies(driven(a=1.0)).values()
+    lowest = float(still.frequencies[0, 0])
+    near = 1.02 * lowest / 3.0
+    for loads in ({"near": near, "far": 0.7 * lowest}, {"far": 0.7 * lowest, "near": near}):
+        own = float(pose_frequencies(driven(near=near))["near"].frequencies[0, 0])
+        told = nearest_harmonic(driven(**loads))
+        assert told.startswith(
+            f"in this pose the 3rd harmonic of {60.0 * near:.4g} rpm is at {3.0 * near / own:.3g} of "
+        )
+    assert nearest_harmonic(driven(slow=1e-3 * lowest)).startswith("in this pose the 10th harmonic of ")
+    assert nearest_harmonic(driven(still=0.0)) == nearest_harmonic(lever()) == ""
+
+
+def test_the_verdict_tells_the_nearest_harmonic_where_no_check_asks_for_frequencies():
+    result = check_case(driven(turning=10.0), fidelity="beam")
+    said = f'vibration (no check of type "frequency"; {nearest_harmonic(result.case)})'
+    assert "harmonic of 600 rpm" in said
+    assert said in headline(result)
+    assert said in result_record(result)["not_checked"]
