@@ -14,7 +14,9 @@ from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.result import LinkResult
 from fea.solid.layers import in_worst_direction
+from geometry.materials.printable import is_printed
 from loads.case.case import Case
+from loads.records.check_spec import SafetyFactorCheck
 
 CHECK = "layers"
 """Name of the check, beside that of the safety factor."""
@@ -128,6 +130,32 @@ def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> Chec
         said = f"parts.{part} states no build_direction, and the card of '{material.title}' states no "
         said += "shear_strength_between_layers, which may be the weakest; state both"
     return outcome.because(f"{outcome.reason}; {said}")
+
+
+def unknown_layers(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield the printed links of which nothing is known across the layers, and whose safety factor is checked.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    tuple of 2 str
+        What is not judged, and why.
+    """
+    checks = [check for check in case.all_checks.values() if isinstance(check, SafetyFactorCheck)]
+    asked = dict.fromkeys(link for check in checks for link in check.links or case.checked_links)
+    bare = [
+        link
+        for link in asked
+        if case.material_of(link).strength_across_layers is None
+        and case.part_of(link).build_direction is None
+        and is_printed(case.material_of(link))
+    ]
+    if bare:
+        which = "" if len(bare) == len(case.checked_links) else f" of {', '.join(bare)}"
+        yield f"layers{which}", "strength between the layers of the print is not known"
 
 
 def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutcome:

@@ -4,6 +4,7 @@ from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_
 from fea.solid.layers import Layers
 from geometry.base.errors import CaseError
 from geometry.materials.material import Material
+from geometry.materials.printable import is_solid_stock
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck, SafetyFactorCheck, SustainedCheck
 
@@ -97,7 +98,8 @@ def layer_limit(case: Case, link: str) -> float | None:
     Returns
     -------
     float or None
-        None where the part states no direction of building, or no check asks for the link's safety factor.
+        None where the part states no direction of building, or its material has no layers, or no check asks for the
+        link's safety factor.
 
     Raises
     ------
@@ -110,7 +112,8 @@ def layer_limit(case: Case, link: str) -> float | None:
         for name, check in case.all_checks.items()
         if isinstance(check, SafetyFactorCheck) and link in (check.links or case.checked_links)
     ]
-    return max(asked) if asked and case.part_of(link).build_direction is not None else None
+    stated = case.part_of(link).build_direction is not None and not is_solid_stock(material)
+    return max(asked) if asked and stated else None
 
 
 def layers_of(case: Case, link: str) -> Layers | None:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fea.common.at_temperature import as_if_cold, cold_pins
+from fea.common.lasting import unjudged_creep, unjudged_fatigue
+from fea.outcomes.layers import unknown_layers
 from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
 from loads.case.joint_rules import clearances
@@ -51,6 +53,9 @@ class Topic(StrEnum):
     LIMIT = "limit"
     PLAY = "play"
     TEMPERATURE = "temperature"
+    LAYERS = "layers"
+    CREEP = "creep"
+    FATIGUE = "fatigue"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +97,7 @@ def caveats(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Susta
     """
     return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case),
         *_bonds(case), *_pins(case),
-            *_limits(case), *_play(case), *_temperature(case))  # fmt: skip
+            *_limits(case), *_play(case), *_material(case, strength))  # fmt: skip
 
 
 def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck)) -> tuple[str, ...]:
@@ -181,9 +186,15 @@ def _pins(case: Case) -> Iterator[Caveat]:
         )
 
 
-def _temperature(case: Case) -> Iterator[Caveat]:
-    """Yield the pins whose strength at the stated temperature is not known."""
-    yield from (Caveat(topic=Topic.TEMPERATURE, what=what, why=why) for what, why in cold_pins(case))
+def _material(case: Case, strength: Sequence[Strength]) -> Iterator[Caveat]:
+    """Yield what a material may suffer that nothing judges: layers that part, creep, fatigue, another temperature."""
+    for topic, found in (
+        (Topic.LAYERS, unknown_layers(case)),
+        (Topic.CREEP, unjudged_creep(case)),
+        (Topic.FATIGUE, unjudged_fatigue(case, followed=SustainedCheck not in strength)),
+        (Topic.TEMPERATURE, cold_pins(case)),
+    ):
+        yield from (Caveat(topic=topic, what=what, why=why) for what, why in found)
 
 
 def _limits(case: Case) -> Iterator[Caveat]:

@@ -7,7 +7,7 @@ import pytest
 from materials import with_material
 
 from fea.check.run import check_case
-from fea.outcomes.unchecked import caveats, unchecked
+from fea.outcomes.unchecked import Topic, caveats, unchecked
 from loads.case.case_file import validate
 from loads.records.check_spec import SafetyFactorCheck, SustainedCheck
 from reports.tables.record import result_record
@@ -89,13 +89,14 @@ def test_an_unusual_material_is_warned_of_where_it_is_used(checks, warned):
 
 
 def told(**tables):
-    """Caveats of the starter with two load cases, by heading and topic, but for stress and pins without a check."""
+    """Caveats of the starter with two load cases, by heading and topic, but for what has tests of its own."""
     data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     data["load_cases"]["held"] = {"own_weight": True, "speed": "0 rpm"}
     for name, more in tables.items():
         data[name] = more if isinstance(more, list) else data.get(name, {}) | more
     found = caveats(validate(data))
-    return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in ("stress", "pins")}
+    others = ("stress", "pins", "fatigue")
+    return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in others}
 
 
 FAST = {"turn": True, "speed": "600 rpm"}
@@ -146,3 +147,50 @@ def test_limits_below_one_and_large_play_are_told():
     data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     loose = {name: data["joints"][name] | {"clearance": play} for name, play in (("A", "2.9 mm"), ("B", "0.3 mm"))}
     assert told(joints=loose) == {("unusual", "play"): "play of 2.9 mm at A (its pin has 3 mm)"}
+
+
+def of_topic(case, topic, *strength):
+    return [str(one) for one in caveats(case, *strength) if one.topic is topic]
+
+
+def of_material(material, **tables):
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data["parts"]["bar"]["material"] = material
+    del data["parts"]["bar"]["build_direction"]
+    return validate({key: value for key, value in (data | tables).items() if value is not None})
+
+
+def test_layers_of_a_print_whose_card_tells_nothing_of_them_are_named():
+    said = "layers (strength between the layers of the print is not known)"
+    assert of_topic(of_material("resin-tough"), Topic.LAYERS) == [said]
+    asked = {"a": STRENGTH | {"links": ["rocker"]}}
+    assert of_topic(of_material("resin-tough", checks=asked), Topic.LAYERS) == [
+        said.replace("ers (", "ers of rocker (")
+    ]
+    assert of_topic(of_material("resin-tough", checks={"a": STIFF}), Topic.LAYERS) == []
+    for material in ("pla-fdm-xy", "aluminium-6061-t6", "pvc-u"):
+        assert of_topic(of_material(material), Topic.LAYERS) == []
+
+
+def test_creep_of_plastics_is_named_where_loads_stay_and_nothing_judges_it():
+    lasting = {"conditions": {"duration": "1 year"}}
+    assert of_topic(of_material("pvc-u"), Topic.CREEP) == [], "it moves"
+    assert of_topic(of_material("pvc-u", motion=None), Topic.CREEP) == [
+        "creep under loads that stay (no conditions.duration)"
+    ]
+    assert of_topic(of_material("steel-304", motion=None), Topic.CREEP) == []
+    assert of_topic(of_material("pvc-u", motion=None, **lasting), Topic.CREEP) == [], "a check of it is added"
+    one = {"long": {"type": "sustained", "links": ["rocker"]}}
+    assert of_topic(of_material("pvc-u", checks=one, **lasting), Topic.CREEP) == ["creep of crank, coupler (no check)"]
+
+
+def test_fatigue_is_named_where_a_speed_repeats_it_and_nothing_judges_it():
+    turning = {"motion": {"turn": True, "speed": "60 rpm"}}
+    envelope = (SafetyFactorCheck,)
+    assert of_topic(of_material("steel-s235"), Topic.FATIGUE) == []
+    assert of_topic(of_material("steel-s235", **turning), Topic.FATIGUE) == [
+        "fatigue (alula envelope follows the motion)"
+    ]
+    bare, known = (of_material(name, **turning) for name in ("steel-s235", "aluminium-6061-t6"))
+    assert of_topic(bare, Topic.FATIGUE, envelope) == ["fatigue (no fatigue data of steel-s235)"]
+    assert of_topic(known, Topic.FATIGUE, envelope) == []
