@@ -9,6 +9,7 @@ from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck
 from loads.records.conditions import modulus_unknown, strength_unknown
+from loads.text.caveat import Caveat, Topic
 
 STRENGTH = (
     Quantity.SAFETY_FACTOR,
@@ -115,7 +116,7 @@ def as_if_cold(case: Case) -> Iterator[str]:
                 yield f"{why}, and until then numbers are those of room temperature"
 
 
-def cold_pins(case: Case) -> Iterator[tuple[str, str]]:
+def temperature_caveats(case: Case) -> Iterator[Caveat]:
     """Yield the checked pins whose material tells nothing of the stated temperature, and why that matters.
 
     Parameters
@@ -124,8 +125,7 @@ def cold_pins(case: Case) -> Iterator[tuple[str, str]]:
 
     Yields
     ------
-    tuple of 2 str
-        What is not judged, and why.
+    Caveat
     """
     asked = [check.joints or case.pinned_joints for check in case.all_checks.values() if isinstance(check, PinCheck)]
     used = dict.fromkeys(case.joints[joint].pin_material for joints in asked for joint in joints)
@@ -137,4 +137,8 @@ def cold_pins(case: Case) -> Iterator[tuple[str, str]]:
     ]
     if left:
         at = f"{case.conditions.temperature:g} degC"
-        yield f"pins at {at}", f"no temperature_factors of {', '.join(left)}; its strength is that of room temperature"
+        yield Caveat(
+            topic=Topic.TEMPERATURE,
+            what=f"pins at {at}",
+            why=f"no temperature_factors of {', '.join(left)}; its strength is that of room temperature",
+        )

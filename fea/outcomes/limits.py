@@ -6,6 +6,7 @@ from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_
 from fea.solid.layers import Layers
 from geometry.base.errors import CaseError
 from geometry.materials.material import Material
+from geometry.materials.printable import is_printed, is_solid_stock
 from loads.case.case import Case
 from loads.records.check_spec import (
     BearingCheck,
@@ -108,7 +109,8 @@ def layer_limit(case: Case, link: str) -> float | None:
     Returns
     -------
     float or None
-        None where the part states no direction of building, or no check asks for the link's safety factor.
+        None where the part states no direction of building, or its material has no layers, or no check asks for the
+        link's safety factor.
 
     Raises
     ------
@@ -121,7 +123,8 @@ def layer_limit(case: Case, link: str) -> float | None:
         for name, check in case.all_checks.items()
         if isinstance(check, SafetyFactorCheck) and link in (check.links or case.checked_links)
     ]
-    return max(asked) if asked and case.part_of(link).build_direction is not None else None
+    stated = case.part_of(link).build_direction is not None and not is_solid_stock(material)
+    return max(asked) if asked and stated else None
 
 
 def layers_of(case: Case, link: str) -> Layers | None:
@@ -203,3 +206,30 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
     for entry, (minimum, why) in least.items():
         if minimum is not None and minimum < 1.0:
             yield Caveat(heading=Heading.UNUSUAL, topic=Topic.LIMIT, what=f"{entry} = {minimum:g}", why=why)
+
+
+def layer_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield the printed links of which nothing is known across the layers, and whose safety factor is checked.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    checks = [check for check in case.all_checks.values() if isinstance(check, SafetyFactorCheck)]
+    asked = dict.fromkeys(link for check in checks for link in check.links or case.checked_links)
+    bare = [
+        link
+        for link in asked
+        if case.material_of(link).strength_across_layers is None
+        and case.part_of(link).build_direction is None
+        and is_printed(case.material_of(link))
+    ]
+    if bare:
+        which = "" if len(bare) == len(case.checked_links) else f" of {', '.join(bare)}"
+        yield Caveat(
+            topic=Topic.LAYERS, what=f"layers{which}", why="strength between the layers of the print is not known"
+        )

@@ -5,8 +5,9 @@ Every feature tells its own, in its own file; here they are gathered.
 
 from collections.abc import Iterator
 
-from fea.common.at_temperature import as_if_cold, cold_pins
-from fea.outcomes.limits import limit_caveats
+from fea.common.at_temperature import as_if_cold, temperature_caveats
+from fea.common.lasting import creep_caveats, fatigue_caveats
+from fea.outcomes.limits import layer_caveats, limit_caveats
 from fea.outcomes.pins import shaft_caveats
 from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
@@ -52,7 +53,10 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tup
         *_pins(case),
         *limit_caveats(case),
         *tolerance_caveats(case),
-        *_temperature(case),
+        *layer_caveats(case),
+        *creep_caveats(case),
+        *fatigue_caveats(case, over_motion=over_motion),
+        *temperature_caveats(case),
     )
 
 
@@ -112,11 +116,6 @@ def _pins(case: Case) -> Iterator[Caveat]:
         yield Caveat(
             heading=Heading.ASSUMED, topic=Topic.MATERIAL, what=f"{which} of {material}", why="no pin_material stated"
         )
-
-
-def _temperature(case: Case) -> Iterator[Caveat]:
-    """Yield the pins whose strength at the stated temperature is not known."""
-    yield from (Caveat(topic=Topic.TEMPERATURE, what=what, why=why) for what, why in cold_pins(case))
 
 
 def unusual_materials(case: Case) -> list[str]:

@@ -217,7 +217,9 @@ def _scatter(result: CheckResult) -> str:
         link for link, part in parts.items() if case.all_materials[part.material].strength_across_layers is not None
     ]
     layers = (
-        f" The layers of {joined(unknown)} were not checked, since no build_direction is stated." if unknown else ""
+        f" Safety factors of {joined(unknown)} hold layers of any direction, since no build_direction is stated."
+        if unknown
+        else ""
     )
     return f"{text}. Stated ranges are part of the bands.{layers}"
 

@@ -10,16 +10,22 @@ from materials import with_material
 from fea.check.run import check_case
 from fea.common.source import SourceKind
 from fea.common.verdict import Quantity, Verdict
+from fea.outcomes.limits import layer_limit
 from fea.solid.layers import in_worst_direction, on_plane
 from geometry.materials.material import library
+from geometry.materials.printable import is_printed, is_solid_stock
 
 PLA = library()["pla-fdm-xy"]
 
 
 @cache
-def crank(load, *entries, **lost):
+def crank(load, *, stated=False, **lost):
     """The crank of the four-bar by hand, under a load [N]."""
-    case = edited("four-bar", [f"load_cases.lift.forces.0.force=['0 N','-{load:g} N']", *entries])
+    case = edited("four-bar", [f"load_cases.lift.forces.0.force=['0 N','-{load:g} N']"])
+    if not stated:
+        case = case.model_copy(
+            update={"parts": {"bar": case.parts["bar"].model_copy(update={"build_direction": None})}}
+        )
     case = with_material(case, "pla-fdm-xy", PLA.model_copy(update=lost))
     checks = check_case(case, fidelity="beam").load_cases["lift"].checks
     [found] = [c for c in checks if c.quantity is Quantity.SAFETY_FACTOR and c.link == "crank"]
@@ -54,7 +60,7 @@ def test_without_a_shear_strength_no_direction_is_sure():
 
 
 def test_a_stated_direction_and_a_card_without_layers_leave_the_factor_as_it_is():
-    stated = crank(1.5, "parts.bar.build_direction=[0,0,1]")
+    stated = crank(1.5, stated=True)
     assert stated.value == crank(1.5, **NO_LAYERS).value
     assert not told(stated)
 
@@ -84,3 +90,27 @@ def test_the_bound_of_a_pull_and_of_a_push():
     assert in_worst_direction(0.0, 1.0, 2.0) == pytest.approx(2.0 * r)
     assert in_worst_direction(1.0, 0.0, 2.0) == pytest.approx(1.0), "the same in all directions"
     assert in_worst_direction(0.0, 0.0, 2.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("title", "printed", "stock"),
+    [
+        ("PETG, fused filament", True, False),
+        ("Tough UV resin, post-cured", True, False),
+        ("Polyamide 12, laser-sintered", True, False),
+        ("Stainless steel 304", False, True),
+        ("Stainless steel 316L, printed by DMLS", True, False),
+        ("Unplasticised PVC, pressure-pipe grade", False, True),
+        ("nylon", False, False),
+    ],
+)
+def test_what_a_card_tells_of_printing(title, printed, stock):
+    card = PLA.model_copy(update=dict.fromkeys(NO_LAYERS) | {"title": title})
+    assert (is_printed(card), is_solid_stock(card)) == (printed, stock)
+
+
+@pytest.mark.parametrize("material", ["aluminium-6061-t6", "pvc-u"])
+def test_the_starter_in_another_material_has_no_layers(material):
+    case = edited("four-bar", [f'parts.bar.material="{material}"'])
+    assert layer_limit(case, "crank") is None
+    assert layer_limit(edited("four-bar", []), "crank") == 6.0

@@ -31,8 +31,8 @@ from loads.text.shares import parse_scatter
 
 STARTER = files("loads") / "cases" / "four-bar.toml"
 PLA = library()["pla-fdm-xy"]
-FIXED = [  # a material without any range
-    "materials.own.title=plastic", f'materials.own.density="{PLA.density * 1e12:.9g} kg/m^3"',
+FIXED = [  # a material without any range, and without layers
+    "materials.own.title=PVC", f'materials.own.density="{PLA.density * 1e12:.9g} kg/m^3"',
     f'materials.own.youngs_modulus="{PLA.youngs_modulus} MPa"', f"materials.own.poissons_ratio={PLA.poissons_ratio}",
     'materials.own.ultimate_strength="33 MPa"', "materials.own.strength=ultimate",
     "materials.own.minimum_safety_factor=6.0", *(f"materials.own.{entry}" for entry in SOURCED_ENTRIES),

@@ -14,6 +14,7 @@ from fea.vibration.harmonics import nearest_harmonic
 from fea.vibration.over_motion import pose_frequencies
 from loads.case.case_file import validate
 from loads.records.check_spec import SustainedCheck
+from loads.text.caveat import Topic
 from reports.tables.record import result_record
 from reports.words.wording import headline
 
@@ -127,13 +128,13 @@ def test_an_unusual_material_is_warned_of_where_it_is_used(checks, warned):
 
 
 def told(**tables):
-    """Caveats of the starter with two load cases, by heading and topic, but for stress and pins without a check."""
+    """Caveats of the starter with two load cases, by heading and topic, but for what has tests of its own."""
     data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     data["load_cases"]["held"] = {"own_weight": True, "speed": "0 rpm"}
     for name, more in tables.items():
         data[name] = data.get(name, {}) | more if isinstance(more, dict) else more
     found = caveats(validate(data))
-    known = ("stress", "pins", "shaft", "collisions")
+    known = ("stress", "pins", "shaft", "collisions", "fatigue")
     return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in known}
 
 
@@ -300,3 +301,49 @@ def test_the_verdict_tells_the_nearest_harmonic_where_no_check_asks_for_frequenc
     assert "harmonic of 600 rpm" in said
     assert said in headline(result)
     assert said in result_record(result)["not_checked"]
+
+
+def of_topic(case, topic, *, over_motion=False):
+    return [str(one) for one in caveats(case, over_motion=over_motion) if one.topic is topic]
+
+
+def of_material(material, **tables):
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data["parts"]["bar"]["material"] = material
+    del data["parts"]["bar"]["build_direction"]
+    return validate({key: value for key, value in (data | tables).items() if value is not None})
+
+
+def test_layers_of_a_print_whose_card_tells_nothing_of_them_are_named():
+    said = "layers (strength between the layers of the print is not known)"
+    assert of_topic(of_material("resin-tough"), Topic.LAYERS) == [said]
+    asked = {"a": STRENGTH | {"links": ["rocker"]}}
+    assert of_topic(of_material("resin-tough", checks=asked), Topic.LAYERS) == [
+        said.replace("ers (", "ers of rocker (")
+    ]
+    assert of_topic(of_material("resin-tough", checks={"a": STIFF}), Topic.LAYERS) == []
+    for material in ("pla-fdm-xy", "aluminium-6061-t6", "pvc-u"):
+        assert of_topic(of_material(material), Topic.LAYERS) == []
+
+
+def test_creep_of_plastics_is_named_where_loads_stay_and_nothing_judges_it():
+    lasting = {"conditions": {"duration": "1 year"}}
+    assert of_topic(of_material("pvc-u"), Topic.CREEP) == [], "it moves"
+    assert of_topic(of_material("pvc-u", motion=None), Topic.CREEP) == [
+        "creep under loads that stay (no conditions.duration)"
+    ]
+    assert of_topic(of_material("steel-304", motion=None), Topic.CREEP) == []
+    assert of_topic(of_material("pvc-u", motion=None, **lasting), Topic.CREEP) == [], "a check of it is added"
+    one = {"long": {"type": "sustained", "links": ["rocker"]}}
+    assert of_topic(of_material("pvc-u", checks=one, **lasting), Topic.CREEP) == ["creep of crank, coupler (no check)"]
+
+
+def test_fatigue_is_named_where_a_speed_repeats_it_and_nothing_judges_it():
+    turning = {"motion": {"turn": True, "speed": "60 rpm"}}
+    assert of_topic(of_material("steel-s235"), Topic.FATIGUE) == []
+    assert of_topic(of_material("steel-s235", **turning), Topic.FATIGUE) == [
+        "fatigue (alula envelope follows the motion)"
+    ]
+    bare, known = (of_material(name, **turning) for name in ("steel-s235", "aluminium-6061-t6"))
+    assert of_topic(bare, Topic.FATIGUE, over_motion=True) == ["fatigue (no fatigue data of steel-s235)"]
+    assert of_topic(known, Topic.FATIGUE, over_motion=True) == []

@@ -104,10 +104,10 @@ def test_the_map_has_every_direction_in_its_place(result):
     assert build_map(unloaded).startswith(b"\x89PNG")
 
 
-def test_layers_that_were_not_checked_are_named(result):
+def test_links_whose_layers_may_have_any_direction_are_named(result):
     assert "no build_direction" not in dict(not_covered(result))["Manufacture and scatter"]
     case = result.case
     card = case.material_of(LINK).model_copy(update={"strength_across_layers": 12.0})
     name = case.part_of(LINK).material
     layered = replace(result, case=case.model_copy(update={"materials": dict(case.materials) | {name: card}}))
-    assert "The layers of GF" in dict(not_covered(layered))["Manufacture and scatter"]
+    assert "Safety factors of GF" in dict(not_covered(layered))["Manufacture and scatter"]

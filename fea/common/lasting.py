@@ -1,0 +1,61 @@
+"""What lasts or repeats without a check that judges it: creep of plastics, and fatigue of what repeats."""
+
+from collections.abc import Iterator
+
+from geometry.materials.material import Material
+from geometry.materials.plausible import FILLED, PLASTIC, class_of
+from geometry.materials.printable import is_printed
+from loads.case.case import Case
+from loads.records.check_spec import SustainedCheck
+from loads.text.caveat import Caveat, Topic
+
+
+def creep_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield the creep of plastics under loads that stay: for the stated duration, or where the case states no motion.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    creeping = [x for x in case.checked_links if _is_plastic(case.part_of(x).material, case.material_of(x))]
+    stays = case.motion is None and any(one.speed == 0.0 for one in case.load_cases.values())
+    if case.conditions.duration is not None:
+        checks = [check for check in case.all_checks.values() if isinstance(check, SustainedCheck)]
+        judged = {link for check in checks for link in check.links or case.checked_links}
+        if left := [link for link in creeping if link not in judged]:
+            yield Caveat(topic=Topic.CREEP, what=f"creep of {', '.join(left)}", why="no check")
+    elif creeping and stays:
+        yield Caveat(topic=Topic.CREEP, what="creep under loads that stay", why="no conditions.duration")
+
+
+def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
+    """Yield the fatigue of what a speed of the drive repeats.
+
+    Parameters
+    ----------
+    case : Case
+    over_motion : bool
+        True where stress is followed over the motion, so that fatigue is judged of materials that have data.
+
+    Yields
+    ------
+    Caveat
+    """
+    if not case.checked_links or all(one.speed == 0.0 for one in case.load_cases.values()):
+        return
+    if not over_motion:
+        yield Caveat(topic=Topic.FATIGUE, what="fatigue", why="alula envelope follows the motion")
+        return
+    bare = dict.fromkeys(
+        case.part_of(link).material for link in case.checked_links if case.material_of(link).fatigue is None
+    )
+    if bare:
+        yield Caveat(topic=Topic.FATIGUE, what="fatigue", why=f"no fatigue data of {', '.join(bare)}")
+
+
+def _is_plastic(name: str, material: Material) -> bool:
+    return is_printed(material) or class_of(name, material) in (PLASTIC, FILLED)
