@@ -9,7 +9,7 @@ import numpy as np
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.doubts.load_growth import Growths
-from fea.links.fidelity import DecidedLink, Decision, HandBands
+from fea.links.fidelity import DecidedLink, Decision, HandBands, left_out
 from fea.links.link_by_hand import LinkByHand
 from fea.links.solid_result import solid_result
 from fea.outcomes.layers import in_any_direction
@@ -66,8 +66,10 @@ def link_result(
         why, solid = decided.decision.why, decided.solid
         result = solid_result(case, link, name, hand.check, solid, why=why, remarks=hand.remarks)
     else:
-        bands = None if decided.solid is not None else decided.hands.get(name)
-        result = _hand_result(link, material, hand, bands, decided.decision)
+        left = name in decided.left
+        bands = decided.hands.get(name) if left or decided.solid is None else None
+        decision = left_out(case.body(link)) if left else decided.decision
+        result = _hand_result(link, material, hand, bands, decision)
     grown = solid_growth(solid_buckling(result))
     stated = load_scatter(case, load_case).times(grown)
 

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
-from fea.buckling.linkage import unless_it_gives_way
+from fea.buckling.linkage import linkage_outcomes, unless_it_gives_way
 from fea.check.known_stiffness import with_known_stiffness
 from fea.check.link_result import by_hand_shares, link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
@@ -171,6 +171,13 @@ class _LoadCase:
         """Loads of every link cut free; empty where equilibrium alone does not give the joint forces."""
         return self.cut if self.forces.by_equilibrium else {}
 
+    @property
+    def lost(self) -> bool:
+        """True where the linkage gives way whatever the solids of its links may tell."""
+        beams = {link: hand.check for link, ((_, hand), *_) in self.plates.items()}
+        found = linkage_outcomes(self.load_case, self.moved, beams)
+        return any(reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, one).gives_way for one in found)
+
     def _columns(self, link: str) -> Plates:
         """Return the plates of a link of which the slenderest is judged as a column."""
         found: Plates = self.plates[link]
@@ -221,7 +228,8 @@ class _LoadCase:
         """Return what the ways of sharing couples make of the links that are solved as solids."""
         found: dict[str, Shares] = {}
         for link, one in decided.items() if self.forces.sharings else ():
-            if one.solid is not None and self.acts_on(link):
+            left = one.left.intersection(cut.name for cut, _ in self.plates[link])
+            if one.solid is not None and self.acts_on(link) and not left:
                 loads, grown = self.statics.loads[self.load_case], _grown(self.moved)
                 ways = ways_borne(self.case, self.load_case, link, self.forces, loads, grown=grown)
                 found[link] = solid_shares(link_task(self.case, link, ways[0]), one.solid, ways, threads=threads)
@@ -425,9 +433,18 @@ def _decided(
         for task in tasks.values():
             require_compressible(task.nu)  # before the first mesh
     effort, begun = effort or effort_of(case), time.perf_counter()
-    decided = decide(tasks, beams, start, effort, fidelity=fidelity, first=first, threads=threads, progress=progress)
+    alone = fidelity == "auto" and not effort.stated
+    given_up = {one.load_case for one in load_cases if alone and one.lost}
+    held = [one for one in load_cases if one.load_case not in given_up]
+    lost = {
+        cut.name for one in load_cases if one.load_case in given_up for found in one.plates.values() for cut, _ in found
+    }
+    decided = decide(
+        tasks, beams, start, effort, fidelity=fidelity, first=first, lost=lost, threads=threads, progress=progress
+    )
+    tasks = {link: task.without(lost) for link, task in tasks.items()}
     for _ in range(POINT_ROUNDS if only is None else 0):
-        wanted = _wanted(load_cases, decided)
+        wanted = _wanted(held, decided)
         left = max(effort.time_limit - (time.perf_counter() - begun), 0.0)
         spent = replace(effort, time_limit=left)
         closer = decide_point(decided, tasks, wanted, start, spent, threads=threads, progress=progress)

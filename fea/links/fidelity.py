@@ -5,7 +5,7 @@ where no limit on the link, with its stated scatter, lies in them.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -111,11 +111,14 @@ class DecidedLink:
         Load case -> bands by hand; empty where none were asked for.
     solid : RefinedSolid or None
         The link's solutions; None where hand calculation decided.
+    left : frozenset of str
+        Names of loads that no solid was solved under, since the linkage gives way under them.
     """
 
     decision: Decision
     hands: Mapping[str, HandBands] = field(default_factory=dict)
     solid: RefinedSolid | None = None
+    left: frozenset[str] = frozenset()
 
 
 def decide(
@@ -126,10 +129,13 @@ def decide(
     *,
     fidelity: str,
     first: Mapping[str, TaggedMesh] | None = None,
+    lost: Collection[str] = (),
     threads: int | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, DecidedLink]:
     """Decide every link by hand where that can, else by a solid.
+
+    Under loads that the linkage gives way to no link passes, and the solid of a link would not change the verdict.
 
     Parameters
     ----------
@@ -145,6 +151,8 @@ def decide(
         "solid" takes solids at once.
     first : mapping of str to TaggedMesh, optional
         First meshes that are there already.
+    lost : collection of str, optional
+        Names of loads that the linkage gives way to. Solids are not solved under them unless all solids were asked for.
     threads : int, optional
     progress : callable
 
@@ -161,20 +169,47 @@ def decide(
     hands: dict[str, dict[str, HandBands]] = {}
     reasons: dict[str, str] = {}
     found: dict[str, DecidedLink] = {}
+    rest: dict[str, LinkTask] = {}
     for link, task in tasks.items():
+        rest[link] = task
         if fidelity == "solid" or effort.stated:
             reasons[link] = "a solid was requested" if fidelity == "solid" else "an accuracy was requested"
             continue
         hands[link] = _hands(task, beams[link])
         decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])
+        if decision is None and lost:
+            rest[link] = held = task.without(lost)
+            decision = left_out(task.body)
+            if held.loads:
+                decision, reasons[link] = decided_by_hand(held, [hands[link][loads.name] for loads in held.loads])
         if decision is not None:
-            found[link] = DecidedLink(decision=decision, hands=hands[link])
-    rest = {link: task for link, task in tasks.items() if link not in found}
+            found[link] = DecidedLink(decision=decision, hands=hands[link], left=_left(task, rest.pop(link)))
     solids = refine_links(rest, start, effort, first=first, threads=threads, progress=progress)
     for link, solid in solids.items():
         decision = Decision(model="solid", why=reasons[link], next_cost="")
-        found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid)
+        left = _left(tasks[link], rest[link])
+        found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid, left=left)
     return {link: found[link] for link in tasks}
+
+
+def _left(task: LinkTask, solved: LinkTask) -> frozenset[str]:
+    return frozenset(loads.name for loads in task.loads) - {loads.name for loads in solved.loads}
+
+
+def left_out(body: Body) -> Decision:
+    """Return the decision on a link whose solid cannot change the verdict.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    Decision
+        By no model.
+    """
+    why = "no link passes where the linkage gives way, so its solid was not solved; --fidelity solid solves it"
+    return Decision(model="", why=why, next_cost=_solid_cost(body))
 
 
 def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:

@@ -1,7 +1,8 @@
 """What is to be solved of a link, and the limits that its numbers must clear."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 from fea.buckling.solid_holding import SolidHolding
 from fea.common.link_loads import LinkLoads
@@ -59,6 +60,20 @@ class LinkTask:
     layer_limits: tuple[tuple[float, float], ...] = ()
     displacement_error: float = math.inf
     holding: SolidHolding | None = None
+
+    def without(self, names: Collection[str]) -> "LinkTask":
+        """Return the task without some of its loads.
+
+        Parameters
+        ----------
+        names : collection of str
+            Of the loads that are left out.
+
+        Returns
+        -------
+        LinkTask
+        """
+        return replace(self, loads=tuple(loads for loads in self.loads if loads.name not in names))
 
     @property
     def measures(self) -> tuple[Measure, ...]:

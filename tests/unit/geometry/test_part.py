@@ -55,6 +55,19 @@ def test_section_of_the_source() -> None:
     assert 33.75 * section.half_y / section.i_z == pytest.approx(2.934, abs=5e-4)
 
 
+@pytest.mark.parametrize(
+    ("width", "thickness", "size"), [(6, 4, 4), (10, 1, 1), (30, 1, 3), (100, 1, 4), (1, 30, 3), (4, 6, 4)]
+)
+def test_elements_of_a_sheet_follow_its_width_within_bounds(width: int, thickness: int, size: float) -> None:
+    """By its thickness alone the first mesh of a sheet of 300 x 30 x 1 mm had 418,128 elements."""
+    part = Bar.model_validate(
+        {"shape": "bar", "material": "pvc-u", "width": f"{width} mm", "thickness": f"{thickness} mm",
+         "fillet_radius": "0.1 mm"}
+    )  # fmt: skip
+    assert part.size == pytest.approx(size)
+    assert part.scaled(lambda length: 2.0 * length).size == pytest.approx(2.0 * size)
+
+
 def test_section_of_the_bar_bends_most_easily_out_of_the_plane() -> None:
     section = Bar.model_validate(BAR).section
     area, i_y, i_z = _second_moments(lambda y, z: (abs(y) <= 3.0) & (abs(z) <= 2.0), 3.0)
