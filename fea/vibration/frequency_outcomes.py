@@ -197,7 +197,7 @@ def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
         text += f", where {moved} moves most"
     if history.driving > 0.0:
         ratio = frequency.times(1.0 / history.driving)
-        text += f"; that is {_text(ratio)} times the driving frequency of {_plain(history.driving)} Hz"
+        text += f"; over the driving frequency of {_plain(history.driving)} Hz that is {_text(ratio)}"
     return text
 
 
@@ -369,7 +369,7 @@ def _hertz(frequency: Band) -> str:
 def _text(value: Band) -> str:
     """Return ``43.2 (38.0 to 47.0)``."""
     if math.isinf(value.high):
-        return f"{_three(value.value)} (with no band)" if math.isfinite(value.value) else "unknown"
+        return f"{_three(value.value)} (no band)" if math.isfinite(value.value) else "unknown"
     shown, low, high = (_three(end) for end in (value.value, value.low, value.high))
     return shown if low == high else f"{shown} ({low} to {high})"
 

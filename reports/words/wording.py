@@ -97,6 +97,25 @@ def band(value: Band, digits: int = 3) -> str:
     return shown if low == high else f"{shown} ({low} to {high})"
 
 
+def measured(value: Band, unit: str, digits: int = 3) -> str:
+    """Return a band with its unit, which what is not known has not.
+
+    Parameters
+    ----------
+    value : Band
+    unit : str
+        "" for a pure number.
+    digits : int, optional
+        Significant ones.
+
+    Returns
+    -------
+    str
+        Such as ``3.21 (2.44 to 3.21) mm``, or ``not known``.
+    """
+    return band(value, digits) if math.isnan(value.value) or not unit else f"{band(value, digits)} {unit}"
+
+
 def limit_load(factor: Band) -> str:
     """Return a limit-load factor in words, such as ``limit-load factor at least 7.29``.
 
@@ -248,10 +267,10 @@ def _headline(result: "CheckResult") -> str:
         closest = _with_limit(result, by_nearness(checks)[0])
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
     decisive = [c for c in checks if c.verdict is result.verdict and c.applies]
-    names = joined(list(dict.fromkeys(named(c) for c in decisive)))
+    names = joined(_names(decisive))
     share = f"{len(decisive)} of {count} checks"
     if result.verdict is Verdict.UNDECIDED:
-        first = decisive[0]
+        first = by_nearness(decisive)[0]
         verb = "is" if len(decisive) == 1 else "are"
         return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
     missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
@@ -260,6 +279,14 @@ def _headline(result: "CheckResult") -> str:
         worst = min(collapses, key=lambda c: c.value.value)
         return f"Fail: {_under(result, worst)}{gives_way(worst)}. {missed}: {names}."
     return f"Fail: {missed}: {names}. Worst: {_with_limit(result, by_nearness(decisive)[0])}."
+
+
+def _names(checks: Iterable[CheckOutcome]) -> list[str]:
+    """Return what checks are about, each once; the load cases of one that is asked under several."""
+    under: dict[str, dict[str, None]] = {}
+    for check in checks:
+        under.setdefault(named(check), {})[check.load_case] = None
+    return [f"{name} ({', '.join(cases)})" if len(cases) > 1 else name for name, cases in under.items()]
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:
@@ -344,8 +371,8 @@ def _with_limit(result: "CheckResult", check: CheckOutcome) -> str:
     """Return a check's quantity, its value with the band, and its limit."""
     unit = f" {check.quantity.unit}".rstrip()
     under = f" {_under(result, check)}".rstrip()
-    sign = check.quantity.sense.value
-    return f"{named(check, long=True)}{under}, {band(check.value)}{unit}; limit {sign} {plain(check.limit)}{unit}"
+    sign, value = check.quantity.sense.value, measured(check.value, check.quantity.unit)
+    return f"{named(check, long=True)}{under}, {value}; limit {sign} {plain(check.limit)}{unit}"
 
 
 def sentence(text: str) -> str:
