@@ -269,7 +269,7 @@ def test_overrides_that_are_none(override: str) -> None:
         ("x=" + "[" * 3000, ["x: this key is unknown"]),
         ("x\x1b[2J=1", ["this key is unknown"]),
         ("\n=1", ["write it as path=value"]),
-        (".".join("a" * 3000) + "=1", ["this key is unknown"]),
+        (".".join("a" * 3000) + "=1", ["nested too deeply"]),
     ],
 )
 def test_overrides_that_lead_nowhere(override: str, words: list[str]) -> None:
