@@ -387,9 +387,9 @@ def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
     -------
     str
     """
-    band = f"its band {value.low:.3g} to {value.high:.3g}"
+    band = f"its band {value.low:.3g} to {value.high:.3g}".replace("inf", "∞")
     if verdict is Verdict.UNDECIDED:
-        return f"{band} straddles the limit {limit:g}"
+        return f"{band} holds the limit {limit:g}, so it may pass or fail"
     side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
     return f"{band} lies wholly {side} of the limit {limit:g}"
 

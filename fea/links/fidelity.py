@@ -228,7 +228,7 @@ def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
     hands = _hands(task, beams)
     outside = next((hand.outside for hand in hands.values() if hand.outside), "")
     if outside:
-        why = f"hand calculation is not calibrated for this link: {outside}; run the solid model"
+        why = f"hand calculation is not calibrated for this link: {outside}; run the solid model (--fidelity solid)"
         return DecidedLink(decision=Decision(model="", why=why, next_cost=""), hands=hands)
     return DecidedLink(decision=Decision(model="beam", why="hand calculation was requested", next_cost=""), hands=hands)
 

@@ -358,8 +358,10 @@ def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growt
         found.append(f"{left_out} of {len(evaluated)} poses are left out, since no drive torque balances them")
     others = [name for name, check in case.all_checks.items() if not isinstance(check, FOLLOWED)]
     if others:
-        named = f"checks {', '.join(others)} concern" if len(others) > 1 else f"check {others[0]} concerns"
-        found.append(f"{named} single poses or the motor: alula check looks at that")
+        about = "is about" if len(others) == 1 else "are about"
+        found.append(
+            f"not checked over the motion: {', '.join(others)}, which {about} one pose or the motor; see alula check"
+        )
     if case.large_displacement != "off":
         found.append("links are rigid in the motion: equilibrium is that of the undeformed linkage")
     return found

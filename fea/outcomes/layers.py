@@ -51,7 +51,7 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
             yield outcome(Band.unknown()).because(no_strength(material.title))
         else:
             yield outcome(Band.unknown()).because(
-                "hand calculation tells nothing of the stress on layers; run the solid model"
+                "hand calculation tells nothing of the stress on layers; run the solid model (--fidelity solid)"
             )
 
 

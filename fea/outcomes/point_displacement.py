@@ -472,18 +472,21 @@ def meshes_to_refine(
     return found
 
 
+_NO_MESH = "finer meshes would not decide it"
+
+
 def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
     """Say what would decide, where something would."""
     if told.free_motion > limit:
-        return ["only less play decides: a smaller clearance, or longer holes"]
+        return ["only less play would decide it: a smaller clearance, or longer holes"]
     if told.shares.unsolved or told.by_centre_lines:
-        return ["solid models of all links, --fidelity solid, have a narrower band"]
+        return ["solid models of all links (--fidelity solid) have a narrower band"]
     if told.shares.framed is not None:
         exact = Quantity.DISPLACEMENT.sense.verdict(told.band(meshes=0.0), limit)
-        return [f"{'no finer mesh' if exact is Verdict.UNDECIDED else 'a smaller solid.mesh_size'} decides"]
+        return [_NO_MESH if exact is Verdict.UNDECIDED else "a smaller solid.mesh_size would decide it"]
     wanted = told.meshes_to_refine(limit, links)
     if not told.shares.beams and not wanted:
-        return ["no finer mesh decides"]
+        return [_NO_MESH]
     stopped = {link: links[link] for link in wanted}
     return [
         f"refinement of {link} ended because {result.discretisation.stopped}"

@@ -61,7 +61,7 @@ class Shares:
             return "the frame of the links' solids"
         if not self.solids:
             return "the frame of the linkage"
-        found = f"virtual work of the solid model{'s' if len(self.solids) > 1 else ''} of {', '.join(self.solids)}"
+        found = f"the solid model{'s' if len(self.solids) > 1 else ''} of {', '.join(self.solids)}"
         return found + (f" and of the frame's beams of {', '.join(self.beams)}" if self.beams else "")
 
     @property

@@ -13,7 +13,7 @@ from fea.refine.link_buckling import SolidBuckling
 from fea.solid.buckling_factor import MOST
 from loads.case.case import Case
 
-NO_BEAM = "no beam stands for its buckling, and its solid was not solved; run the solid model"
+NO_BEAM = "no beam stands for its buckling, and its solid was not solved; run the solid model (--fidelity solid)"
 
 
 def solid_buckling_outcomes(case: Case, load_case: str, loaded: Mapping[str, LinkResult]) -> Iterator[CheckOutcome]:

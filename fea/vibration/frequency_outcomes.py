@@ -196,7 +196,7 @@ def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
         text += f", where {moved} moves most"
     if history.driving > 0.0:
         ratio = frequency.times(1.0 / history.driving)
-        text += f"; that is {banded(ratio)} times the driving frequency of {stated(history.driving)} Hz"
+        text += f"; over the driving frequency of {stated(history.driving)} Hz that is {banded(ratio)}"
     return text
 
 

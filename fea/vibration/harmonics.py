@@ -199,7 +199,7 @@ def banded(value: Band) -> str:
     str
     """
     if math.isinf(value.high):
-        return f"{_three(value.value)} (with no band)" if math.isfinite(value.value) else "unknown"
+        return f"{_three(value.value)} (no band)" if math.isfinite(value.value) else "unknown"
     shown, low, high = (_three(end) for end in (value.value, value.low, value.high))
     return shown if low == high else f"{shown} ({low} to {high})"
 

@@ -32,12 +32,15 @@ class KernelWords:
         What to do where it takes too much memory.
     crashed : str
         What to do where it crashes.
+    failed : str
+        What to do where gmsh fails at the shape: faces whose edges do not close, surfaces that cross.
     """
 
     who: str
     late: str
     large: str
     crashed: str
+    failed: str
 
 
 def ask_kernel(
@@ -97,6 +100,8 @@ def ask_kernel(
         raise CaseError(result)
     if kind == "cannot":
         raise CannotRunError(result)
+    if kind == "failed":
+        raise CannotRunError(f"gmsh failed: {str(result).rstrip('.')}; {words.failed}")
     if kind == "memory":
         raise CannotRunError(
             f"{words.who} needed more than the {memory / 1e9:.3g} GB of memory that it may take; {words.large}"

@@ -78,6 +78,7 @@ def _ask(task: str, path: Path, digest: str, mesh_unit: float | None) -> Any:
         late=_SIMPLER,
         large=_SIMPLER,
         crashed="export the part anew",
+        failed="mend the part in its CAD program (join its faces, remove edges that are too short) and export it anew",
     )
     subject: tuple[object, ...] = str(path.absolute()), digest
     if mesh_unit is not None:

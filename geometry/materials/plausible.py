@@ -172,8 +172,10 @@ def untold(name: str, material: Material) -> tuple[str, ...]:
         One sentence for a warning, or none.
     """
     left = material.untold
+    example = {"sources": '"data sheet of its maker"', "status": '"datasheet"'}
+    line = " and ".join(f"{where}.{entries[0]} = {example[where]}" for where, entries in left.items())
     if len({*left.values()}) == 1:
         left = {" and ".join(left): next(iter(left.values()))}
     lists = " and ".join(f"{where} of {', '.join(entries)}" for where, entries in left.items())
-    remedy = "add where each value comes from, and how well it is known"
-    return (f"materials.{name} does not state {lists}; {remedy}",) if lists else ()
+    said = f"materials.{name} does not state {lists}; write under [materials.{name}] for example {line}"
+    return (said,) if lists else ()

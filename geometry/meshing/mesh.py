@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -17,6 +17,7 @@ from geometry.bodies.cut_section import CutSection
 from geometry.meshing.mesh_settings import COARSE, MeshSettings
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.part import Body
+from geometry.parts.step import ImportedPart
 from geometry.solids.reentrant import ReentrantEdge
 
 __all__ = [
@@ -44,6 +45,13 @@ _WORDS = KernelWords(
     late="increase solid.mesh_size or check with --fidelity beam",
     large="increase solid.mesh_size",
     crashed="change the part's dimensions or the mesh size a little",
+    failed="a fillet, eye or hole that only just meets another edge leaves edges too short to be meshed: change its "
+    "size by a hundredth or more, or solid.mesh_size a little",
+)
+_IMPORTED = replace(
+    _WORDS,
+    failed="mend the part in its CAD program (join its faces, remove edges that are too short) and export it anew, or "
+    "change solid.mesh_size a little",
 )
 
 
@@ -236,4 +244,5 @@ def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
 def _run(
     task: str, body: Body, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT
 ) -> Any:
-    return ask_kernel(task, body, *arguments, words=_WORDS, time_limit=time_limit, memory=memory)
+    words = _IMPORTED if isinstance(body.part, ImportedPart) else _WORDS
+    return ask_kernel(task, body, *arguments, words=words, time_limit=time_limit, memory=memory)

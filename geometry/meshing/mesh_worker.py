@@ -2,8 +2,8 @@
 
 A request is pickled: a limit of memory [bytes], the name of a task, a body (or, for a task about a file, its path and
 digest) and further arguments. So is its answer:
-("done", result), ("case", sentence) or ("cannot", sentence) for an error, or ("memory", ""). Solids that have been
-built serve later requests.
+("done", result), ("case", sentence) or ("cannot", sentence) for an error, ("failed", gmsh's words), or ("memory", "").
+Solids that have been built serve later requests.
 """
 
 import ctypes
@@ -127,7 +127,7 @@ class _Worker:
             return "memory", ""
         except Exception as error:
             # gmsh raises bare Exceptions that carry its last message.
-            return "cannot", f"gmsh failed: {error or type(error).__name__}"
+            return "failed", str(error) or type(error).__name__
 
     def _about_file(self, task: Callable[..., object], *arguments: Any) -> object:
         """Do a task in a model of its own."""

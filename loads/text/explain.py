@@ -36,6 +36,11 @@ _RULES = {
 }
 
 
+_WRITTEN = {
+    "sources": 'sources = { density = "data sheet of its maker" }, for each value where it comes from',
+    "status": 'status = { density = "datasheet" }, for each value "measured", "datasheet", "handbook" or "assumed"',
+}
+"""Tables that a material's card must have and whose form is not plain from their names -> the line to write."""
 _LISTED = 20
 """Missing entries that one sentence lists."""
 
@@ -140,6 +145,8 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
         problems = problems[max(len(listed[:_LISTED]) - 1, 0) :]
         entry = ", ".join(listed[:_LISTED])
         rule = "this entry is missing; add it" if len(listed) == 1 else "these entries are missing; add them"
+        lines = [_WRITTEN[name] for name in _WRITTEN if any(one.endswith(f".{name}") for one in listed)]
+        rule += f": write {'; and '.join(lines)}" if lines else ""
     elif kind == "too_few_values":
         rule = "the list has too few values; add what is missing"
     elif kind in _RULES:

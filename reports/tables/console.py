@@ -1,7 +1,7 @@
 """The result of a check on the terminal: verdict, links, checks, hand calculations, warnings."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
@@ -15,7 +15,7 @@ from reports.tables.friction import friction_sentence
 from reports.tables.layers import build_directions_of
 from reports.tables.second_opinion import say_opinions
 from reports.tables.springs import holding_sentence, spring_sentences
-from reports.words.terminal import KEPT, say, say_table
+from reports.words.terminal import KEPT, say, say_command, say_table
 from reports.words.wording import (
     agreement,
     apart,
@@ -24,6 +24,7 @@ from reports.words.wording import (
     headline,
     inapplicable,
     joined,
+    measured,
     number,
     percent,
     plain,
@@ -48,8 +49,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
     """
     verdict_line(result.verdict, result.case.title, console)
     say(console, headline(result))
-    for line in _changes(result):
-        say(console, line)
+    _say_change(result, console)
     several = len(result.load_cases) > 1
     for case in result.load_cases.values():
         say(console, "")
@@ -106,12 +106,15 @@ def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
     say(console, Text.assemble(badge, f" {title}"))
 
 
-def _changes(result: CheckResult) -> Iterator[str]:
-    """Yield what would change the check that decides, and the command that finds its size."""
+def _say_change(result: CheckResult, console: "Console") -> None:
+    """Print what would change the check that decides, but for what the headline has said, and what finds its size."""
+    said = headline(result)
     for change in change_records(result)[:1]:
-        yield f"What would change it ({change['title']}): {' '.join(change['sentences'])}"
+        fresh = [text for text in change["sentences"] if text[1:] not in said]
+        if fresh:
+            say(console, f"What would change it ({change['title']}): {' '.join(fresh)}")
         if change["command"]:
-            yield f"Find the size: {change['command']}"
+            say_command(console, "Find the size:", change["command"])
 
 
 def _statics(case: LoadCaseResult) -> str:
@@ -202,7 +205,7 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
                 else f"{check.name}: {check.quantity}",
                 check.link,
                 *([check.load_case] if several else []),
-                band(check.value) + unit,
+                measured(check.value, check.unit),
                 f"{check.quantity.sense.value}{KEPT}{plain(check.limit)}{unit}",
                 Text(check.verdict.value, style=VERDICT_COLOURS[check.verdict]),
             )

@@ -67,7 +67,8 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
         told.append(
             _of_itself(check)
             if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
-            else "It does not go in proportion to the loads, on the deformed shape or beside springs."
+            else "No factor on the loads is told: the number is not in proportion to them, since springs act or the "
+            "shape of the deformed linkage counts."
         )
     return told
 

@@ -36,6 +36,22 @@ def say(console: "Console", text: "str | Text", *, style: str = "") -> None:
         _put(console, line)
 
 
+def say_command(console: "Console", text: str, command: str) -> None:
+    """Print what a command is for, and below it the command on a line of its own, which a shell takes as it is copied.
+
+    Parameters
+    ----------
+    console : Console
+    text : str
+    command : str
+        It is never broken; what is wider than the terminal the terminal itself carries over.
+    """
+    from rich.text import Text
+
+    say(console, text)
+    _put(console, Text(f"{' ' * _INDENT}{command}"))
+
+
 def say_table(
     console: "Console", columns: Sequence[tuple[str, bool]], rows: Sequence[Sequence["str | Text"]], *, title: str = ""
 ) -> None:

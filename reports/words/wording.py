@@ -97,6 +97,25 @@ def band(value: Band, digits: int = 3) -> str:
     return shown if low == high else f"{shown} ({low} to {high})"
 
 
+def measured(value: Band, unit: str, digits: int = 3) -> str:
+    """Return a band with its unit, which what is not known has not.
+
+    Parameters
+    ----------
+    value : Band
+    unit : str
+        "" for a pure number.
+    digits : int, optional
+        Significant ones.
+
+    Returns
+    -------
+    str
+        Such as ``3.21 (2.44 to 3.21) mm``, or ``not known``.
+    """
+    return band(value, digits) if math.isnan(value.value) or not unit else f"{band(value, digits)} {unit}"
+
+
 def limit_load(factor: Band) -> str:
     """Return a limit-load factor in words, such as ``limit-load factor at least 7.29``.
 
@@ -267,7 +286,7 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool)
     names = _all_named(decisive)
     share = f"{len(decisive)} of {count} checks"
     if verdict is Verdict.UNDECIDED:
-        first = decisive[0]
+        first = by_nearness(decisive)[0]
         verb = "is" if len(decisive) == 1 else "are"
         return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
     missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
@@ -351,14 +370,22 @@ def named(check: CheckOutcome, *, long: bool = False) -> str:
 
 
 def _all_named(checks: Iterable[CheckOutcome]) -> str:
-    """Return what checks are about, each quantity once: ``safety factor of AE and BC; buckling factor of AE``."""
-    groups: dict[Quantity, dict[str, CheckOutcome]] = {}
+    """Return what checks are about, each quantity once, and the load cases of one that is asked under several.
+
+    Such as ``safety factor of AE (dive, rest) and BC; buckling factor of AE``.
+    """
+    groups: dict[Quantity, dict[str, list[CheckOutcome]]] = {}
     for check in checks:
-        groups.setdefault(check.quantity, {}).setdefault(str(check.subject), check)
-    texts = [
-        named(next(iter(own.values()))) if len(own) == 1 else f"{quantity} of {joined(list(own))}"
-        for quantity, own in groups.items()
-    ]
+        groups.setdefault(check.quantity, {}).setdefault(str(check.subject), []).append(check)
+    texts = []
+    for quantity, own in groups.items():
+        under = [list(dict.fromkeys(check.load_case for check in found)) for found in own.values()]
+        told = [f" ({', '.join(cases)})" if len(cases) > 1 else "" for cases in under]
+        if len(own) == 1:
+            [found] = own.values()
+            texts.append(f"{named(found[0])}{told[0]}")
+        else:
+            texts.append(f"{quantity} of {joined([name + cases for name, cases in zip(own, told, strict=True)])}")
     return joined(texts) if len(texts) == sum(map(len, groups.values())) else "; ".join(texts)
 
 
@@ -371,9 +398,9 @@ def _under(check: CheckOutcome, *, several: bool) -> str:
 def _with_limit(check: CheckOutcome, *, several: bool) -> str:
     """Return a check's quantity, its value with the band, and its limit."""
     unit = f" {check.quantity.unit}".rstrip()
-    under = f" {_under(check, several=several)}".rstrip()
-    sign = check.quantity.sense.value
-    return f"{named(check, long=True)}{under}, {band(check.value)}{unit}; limit {sign} {plain(check.limit)}{unit}"
+    under, sign = f" {_under(check, several=several)}".rstrip(), check.quantity.sense.value
+    value = measured(check.value, check.quantity.unit)
+    return f"{named(check, long=True)}{under}, {value}; limit {sign} {plain(check.limit)}{unit}"
 
 
 def sentence(text: str) -> str:

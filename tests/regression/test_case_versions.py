@@ -101,10 +101,11 @@ def test_a_card_without_sources_is_read_and_one_sentence_lists_what_it_leaves_ou
     plain = check_case(validate(tables), name="plain", fidelity="beam")
     card |= left
     found = check_case(validate(tables), name="bare", fidelity="beam")
+    first = told.partition(" of ")[2].partition(",")[0]
+    lines = {"sources": f'sources.{first} = "data sheet of its maker"', "status": f'status.{first} = "datasheet"'}
+    line = " and ".join(text for table, text in lines.items() if table in told.partition(" of ")[0])
     [warning] = set(found.warnings) - set(plain.warnings)
-    assert warning == (
-        f"materials.{name} does not state {told}; add where each value comes from, and how well it is known"
-    )
+    assert warning == (f"materials.{name} does not state {told}; write under [materials.{name}] for example {line}")
     assert [link.safety_factor for link in found.load_cases[next(iter(found.load_cases))].links.values()] == [
         link.safety_factor for link in plain.load_cases[next(iter(plain.load_cases))].links.values()
     ]

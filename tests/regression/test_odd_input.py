@@ -203,3 +203,18 @@ def test_what_is_advised_bears_the_names_of_the_case(entry: str, value: object, 
         validate(tables | {entry: value})
     shown = f'"{rename}"' if " " in rename else rename
     assert f"such as links.{shown}.layer = 0" in str(error.value)
+
+
+def test_what_a_card_lacks_is_asked_for_with_the_line_to_write() -> None:
+    """It said "add them" alone, and no one knew of what form."""
+    tables = tomllib.loads(read_text(CASE)[0])
+    card = {"title": "Own", "density": "1 g/cm^3", "youngs_modulus": "3 GPa", "poissons_ratio": 0.3}
+    card |= {"yield_strength": "40 MPa", "strength": "yield"}
+    with pytest.raises(CaseError) as error:
+        validate(tables | {"materials": tables["materials"] | {"own": card}})
+    told = str(error.value)
+    lines = re.findall(r"(?:sources|status) = \{[^}]*\}", told)
+    assert told.startswith("materials.own.sources, materials.own.status: these entries are missing; add them: write ")
+    assert len(lines) == 2
+    written = {name: value for line in lines for name, value in tomllib.loads(line).items()}
+    assert validate(tables | {"materials": tables["materials"] | {"own": card | written}}).materials

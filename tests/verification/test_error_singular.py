@@ -88,7 +88,7 @@ def test_open_verdict_names_the_limit_that_ended_the_refinement():
     minimum = link.safety_factor.value
     _, check = checked(Effort(max_meshes=1), part=arm_case.BAR, fillet=1.0, force=-1.0, minimum=minimum)
     assert check.verdict is Verdict.UNDECIDED
-    assert "straddles" in check.reason
+    assert "so it may pass or fail" in check.reason
     assert "number of meshes, 1, is reached" in check.reason
 
 

@@ -1,7 +1,9 @@
 import io
+import shlex
 
 import pytest
 from rich.console import Console
+from solved import by_hand
 
 from reports.tables.console import print_result
 
@@ -43,3 +45,16 @@ def test_every_link_has_its_safety_factor(result):
     lines = printed(result).splitlines()
     for name, link in result.load_cases["weight"].links.items():
         assert any(line.split()[:2] == [name, link.fidelity] for line in lines)
+
+
+def test_a_command_is_one_line_that_a_shell_takes_and_nothing_is_told_twice():
+    """The command was broken at 80 columns, so that its copy ran half; the reason stood in two paragraphs."""
+    changes = ("joints.O2.pin_diameter=3 mm", "joints.O4.pin_diameter=3 mm")
+    text = printed(by_hand("four-bar", *changes))
+    [line] = [line for line in text.splitlines() if line.startswith("  alula size")]
+    assert len(line) > 80
+    words = shlex.split(line)
+    assert words[:3] == ["alula", "size", "four-bar"]
+    assert words[words.index("--set") + 1 :: 2] == list(changes)
+    aluminium = " ".join(printed(by_hand("four-bar", "parts.bar.material=aluminium-6061-t6")).split())
+    assert aluminium.lower().count("hand calculation is not calibrated for this link: its patch") == 1

@@ -4,7 +4,7 @@ from dataclasses import replace
 import pytest
 
 from fea.common.band import Band
-from fea.common.verdict import Quantity, Verdict, by_nearness
+from fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
 from reports.words import wording
 
 
@@ -111,8 +111,8 @@ def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
         return replace(check, verdict=Verdict.UNDECIDED, reason="its band straddles the limit")
 
     text = wording.headline(changed(change))
-    assert text.startswith("Undecided: 20 of 20 checks are open")
-    assert "Safety factor of GF: its band straddles the limit." in text
+    assert text.startswith("Undecided: 20 of 20 checks are open: safety factor of GF (weight, idle), displacement of")
+    assert "Safety factor of AE: its band straddles the limit." in text  # the nearest to its limit
 
 
 @pytest.mark.parametrize(
@@ -153,3 +153,26 @@ def test_no_headline_is_about_what_is_not_applicable(changed):
 
     text = wording.headline(changed(lost))
     assert text.startswith("Undecided: 1 of 20 checks is open: safety factor of GF. Safety factor of GF: its band")
+
+
+def test_what_is_not_known_has_no_unit(result, changed):
+    """A headline said "displacement of ED not known mm"."""
+    assert wording.measured(Band.unknown("gone"), "mm") == "not known"
+    assert wording.measured(Band(value=2.0, low=1.0, high=math.inf), "mm") == "2.00 (1.00 to ∞) mm"
+    assert wording.measured(Band.exact(2.0), "") == "2.00"
+
+
+@pytest.mark.parametrize(
+    ("ends", "limit", "verdict", "text"),
+    [
+        ((0.116, math.inf), 2.0, Verdict.UNDECIDED, "its band 0.116 to ∞ holds the limit 2, so it may pass or fail"),
+        ((-math.inf, 1.0), 0.0, Verdict.UNDECIDED, "its band -∞ to 1 holds the limit 0, so it may pass or fail"),
+        ((3.0, math.inf), 2.0, Verdict.PASS, "its band 3 to ∞ lies wholly on the safe side of the limit 2"),
+        ((0.1, 0.2), 2.0, Verdict.FAIL, "its band 0.1 to 0.2 lies wholly on the wrong side of the limit 2"),
+    ],
+)
+def test_why_a_band_gives_its_verdict(ends, limit, verdict, text):
+    """It said "inf straddles"."""
+    low, high = ends
+    value = high if math.isinf(low) else low
+    assert reason_for(Band(value=value, low=low, high=high), limit, verdict) == text
