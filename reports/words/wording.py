@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
+from fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from fea.outcomes.unchecked import Caveat, Heading, caveats
 
 if TYPE_CHECKING:
@@ -245,21 +245,18 @@ def _headline(result: "CheckResult") -> str:
     count = len(checks)
     if result.verdict is Verdict.PASS:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
-        closest = _with_limit(result, by_nearness(checks)[0])
+        closest = _with_limit(result, deciding(checks)[0])
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
     decisive = [c for c in checks if c.verdict is result.verdict and c.applies]
     names = joined(list(dict.fromkeys(named(c) for c in decisive)))
-    share = f"{len(decisive)} of {count} checks"
+    share, first = f"{len(decisive)} of {count} checks", deciding(checks)[0]
     if result.verdict is Verdict.UNDECIDED:
-        first = decisive[0]
         verb = "is" if len(decisive) == 1 else "are"
         return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
     missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
-    collapses = [c for c in decisive if c.quantity is Quantity.LOAD_SHARE]
-    if collapses:
-        worst = min(collapses, key=lambda c: c.value.value)
-        return f"Fail: {_under(result, worst)}{gives_way(worst)}. {missed}: {names}."
-    return f"Fail: {missed}: {names}. Worst: {_with_limit(result, by_nearness(decisive)[0])}."
+    if first.quantity is Quantity.LOAD_SHARE:
+        return f"Fail: {_under(result, first)}{gives_way(first)}. {missed}: {names}."
+    return f"Fail: {missed}: {names}. Worst: {_with_limit(result, first)}."
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:
