@@ -372,6 +372,26 @@ def by_nearness(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     return sorted(checks, key=lambda check: (not check.applies, _DECISIVE.index(check.verdict), check.margin))
 
 
+def deciding(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
+    """Return the checks that have the verdict of all, that first which the headline names.
+
+    Parameters
+    ----------
+    checks : iterable of CheckOutcome
+
+    Returns
+    -------
+    list of CheckOutcome
+        Of what fails a linkage that gives way first, at the least share of its load; else the nearest to its limit first.
+    """
+    checks = list(checks)
+    verdict = overall(check.verdict for check in checks)
+    found = [check for check in checks if check.verdict is verdict and check.applies]
+    lost = [check for check in found if check.quantity is Quantity.LOAD_SHARE and verdict is Verdict.FAIL]
+    lost.sort(key=lambda check: check.value.value)
+    return lost + by_nearness(check for check in found if check not in lost)
+
+
 def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
     """Say in a few words why a band gives its verdict.
 

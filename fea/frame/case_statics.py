@@ -156,6 +156,27 @@ def at_friction_ends(statics: CaseStatics, load_case: str) -> tuple[CaseStatics 
     return tuple(found)
 
 
+def locks_on_tight_pins(case: Case, load_case: str) -> bool:
+    """Return whether the largest coefficients lock a linkage whose pins are tight in both of their links.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    bool
+        False, too, where they lock it by the couples of pins that tilt alone.
+    """
+    try:
+        solve_case_statics(at_end(alone(case, load_case), "largest"))
+    except CaseError:
+        return True
+    return False
+
+
 def alone(case: Case, load_case: str) -> Case:
     """Return a case with one of its load cases alone, and without published statics.
 

@@ -1,7 +1,7 @@
 """Joint forces of a case: from equilibrium alone where it gives them, from the spatial frame where it does not."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -80,6 +80,13 @@ class JointForces:
         from fea.frame.sharing import sharings
 
         return () if self.frame is None else sharings(self.frame)
+
+    @property
+    def on_tight_pins(self) -> "JointForces":
+        """The same with pins that tilt in no hole."""
+        found = replace(self)
+        found.__dict__["sharings"] = ()  # as if it had been asked for
+        return found
 
     @property
     def by_equilibrium(self) -> bool:

@@ -2,7 +2,8 @@
 
 Friction and the forces in the plane balance at once where equilibrium gives these. What couples press in bores beside
 the forces follows from the frame, and so do the forces of a redundant linkage: there the
-frame and friction are solved in turn.
+frame and friction are solved in turn. Where friction swings about what it settles at, bores are pressed by the mean of
+two rounds: else it takes hundreds of rounds, which would pass for a linkage that locks itself.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -174,7 +175,7 @@ def with_friction(
         Where the linkage locks itself, or the rounds do not settle.
     """
     determinate, place = is_determinate(case.linkage), at_one_pose(pose).virtual
-    way, found, before = case.load_cases[load_case].direction, plain, np.zeros(0)
+    way, found, before, step = case.load_cases[load_case].direction, plain, np.zeros(0), np.zeros(0)
     presses = NOTHING_MORE if determinate else presses_of(case, found, end)
     for _ in range(ROUNDS):
         if determinate:
@@ -186,11 +187,13 @@ def with_friction(
         now = np.concatenate(list(friction_wrenches(friction).values()))
         if len(before) and np.abs(now - before).max() <= SETTLED * np.abs(now).max():
             return (*loads, *friction), found
+        last, step = step, now - before if len(before) else step
         before = now
         found = joint_forces(case, pose, (*loads, *friction))
-        presses = presses_of(case, found, end)
-        if determinate and not presses:
+        pressed, swings = presses_of(case, found, end), len(last) > 0 and float(step @ last) < 0.0
+        if determinate and not pressed:
             return (*loads, *friction), found
+        presses = {x: (one + presses.get(x, 1.0)) / 2.0 for x, one in pressed.items()} if swings else pressed
     raise CaseError(
         f"load_cases.{load_case}: the joint forces of this linkage do not settle with their friction, driven {way}, so "
         "it may lock itself; state less friction, or remove redundant joints"

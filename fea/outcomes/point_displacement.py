@@ -16,6 +16,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from fea.frame.case_statics import locks_on_tight_pins
 from fea.frame.displacement_band import point_bounds
 from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
@@ -136,27 +137,33 @@ class PointDisplacement:
         """Why the band has no upper end; "" where it has one."""
         if self.why or math.isfinite(self.value.high):
             return ""
-        on_tight_pins = replace(self, forces=None)
         if math.isfinite(self.elastic().high):
             why = "play of pins may take the linkage through a dead point"
         elif self.in_any_air.high == math.inf:
             why = "the linkage gives way within the stated range of C_N"
         elif self.moved.with_any_friction(self.link, self.point).high == math.inf:
             why = "the linkage locks itself or gives way with friction as large as it may be"
-        elif math.isfinite(on_tight_pins.elastic().high):
+            if self.moved.locks and self._tight_in and not locks_on_tight_pins(self.case, self.load_case):
+                why += f", by the couples of pins that tilt in their holes; {self._tight_in}, in both links, narrows it"
+        elif math.isfinite(self.elastic(tilted=False).high):
             plain, _, most = self._tilted
-            every = self.case.linkage.joints.items()
-            turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
-            loose = [x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in]
             why = (
                 f"pins that tilt in their holes let the frame move it by {most:.3g} mm in place of {plain:.3g} mm, so "
-                f"softly held that nothing bounds how this grows; tight_in of joints {', '.join(loose)} narrows it"
+                f"softly held that nothing bounds how this grows; {self._tight_in} narrows it"
             )
         elif self.moved.followed:
             why = "the linkage gives way with links as soft, or a load as large, as they may be"
         else:
             why = f"by linear theory a factor of {SNAP:.2g} or less on the load may make it give way"
         return f"the band has no upper end, since {why}"
+
+    @property
+    def _tight_in(self) -> str:
+        """What narrows a band that tilting pins widen; "" where every joint says in which links its pin is tight."""
+        every = self.case.linkage.joints.items()
+        turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
+        loose = [x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in]
+        return f"tight_in of joints {', '.join(loose)}" if loose else ""
 
     @cached_property
     def sinking(self) -> float:
@@ -218,7 +225,7 @@ class PointDisplacement:
         spatial = self.case.layered or np.any(moved.solution.displacements[:, 2:5])
         return free_motion(self.case, moved.frame, self.link, self.point) if spatial else None
 
-    def elastic(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
+    def elastic(self, *, meshes: float = 1.0, sunk: bool = False, tilted: bool = True) -> Band:
         """Return the band without play: what solids or beams leave open, the moduli, and the load.
 
         The linear answer may grow as a toggle does (``fea.nonlinear.stability``); on the deformed shape equilibrium is
@@ -231,12 +238,20 @@ class PointDisplacement:
             Share of what meshes of solids leave open that the band holds.
         sunk : bool, optional
             Whether pins may sink into their bores.
+        tilted : bool, optional
+            Whether pins may tilt in their holes.
 
         Returns
         -------
         Band
             [mm]
         """
+        if not tilted:
+            framed = self.shares.framed
+            tight = None if framed is None else framed.on_tight_pins
+            return replace(self, forces=None, shares=replace(self.shares, framed=tight)).elastic(
+                meshes=meshes, sunk=sunk
+            )
         case, moved, shares, link, point = self.case, self.moved, self.shares, self.link, self.point
         assert moved.frame is not None
         assert moved.solution is not None
@@ -285,12 +300,18 @@ class PointDisplacement:
 
     @cached_property
     def _tilted(self) -> tuple[float, float, float]:
-        """Displacement by plain beams with pins tight in both links, and the least and largest as pins tilt in them."""
+        """Displacement by the frame with pins tight in both links, and the least and largest as pins tilt in them."""
         moved, at = self.moved, (self.link, self.point)
         assert moved.frame is not None
         assert moved.solution is not None
-        plain = float(np.linalg.norm(moved.frame.at_points(moved.solution.displacements)[at]))
-        sharings = () if self.forces is None or self.shares.framed is not None else self.forces.sharings
+        frame, solution, forces = moved.frame, moved.solution, self.forces
+        if self.shares.framed is not None:
+            forces = self.shares.framed
+            assert forces.frame is not None
+            assert forces.solution is not None
+            frame, solution = forces.frame, forces.solution
+        plain = float(np.linalg.norm(frame.at_points(solution.displacements)[at]))
+        sharings = () if forces is None else forces.sharings
         sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in sharings)]
         return plain, min(sizes), max(sizes)
 

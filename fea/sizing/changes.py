@@ -1,8 +1,9 @@
-"""What would change a verdict: by which factor the loads may grow or must fall, which material would do, what to size.
+"""What would change the verdict: by which factor loads may grow or must fall, which material would do, what to size.
 
-A number that goes with the loads keeps its limit by a margin (``CheckOutcome.margin``), which is then the factor on all
-loads that takes the unfavourable end of its band to the limit, and one over it the factor on strength or modulus that
-does the same. That is told where it follows:
+It is told of the one check that the headline names: others may rest on it, as every stress does on a linkage that holds
+its load. A number that goes with the loads keeps its limit by a margin (``CheckOutcome.margin``), which is then the
+factor on all loads that takes the unfavourable end of its band to the limit, and one over it the factor on strength or
+modulus that does the same. That is told where it follows:
 
 * the share of the load that is held, the limit-load factor and the linear buckling factor of a linkage are factors on
   all loads by definition; a frame of linear material has the shape that load over modulus gives it;
@@ -17,7 +18,8 @@ does the same. That is told where it follows:
 
 What follows so is tried before it is told (``fea.sizing.tried``), as it is rounded: the check, and all that passes
 under its load case, must pass with it. Where it does not, the margin that is left gives the next value, ``TRIES`` in
-all.
+all. No strength is told that no material of the family has, no modulus that none has at all, and no range of a size
+in which none was found that passes (``fea.sizing.size_range``).
 """
 
 import math
@@ -33,51 +35,37 @@ from fea.common.verdict import (
     CheckOutcome,
     Quantity,
     Verdict,
-    by_nearness,
+    deciding,
 )
-from fea.frame.displacement_band import shares_of_work
 from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
 from fea.nonlinear.stability import SNAP
 from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.sizing.size_range import SizeRange, size_range
 from fea.sizing.tried import Scaled, Trials, goes_with_load
-from geometry.base.errors import CaseError
+from geometry.materials.family import most_of_family
 from geometry.materials.material import Material
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck
 
-MOST = 3
-"""Checks for which it is told what would change them."""
 TRIES = 3
 """Of each load, strength or modulus."""
-STIFFEST, STRONGEST = 1.2e6, 1e4
-"""Beyond the modulus of diamond [MPa], and beyond the strength of any fibre, nothing is told."""
 _CLOSER = 0.99
 """Factor beside the margin that is left, since the path to a limit load is followed in steps."""
 _EXACT = 1e-9
-REACHES = (2.0, 1.8, 1.6, 1.4, 1.2)
-"""Ratios of the ends of the range of a size, the widest that the case's own rules take."""
 Property = Literal[
     "yield strength", "ultimate strength", "strength of the layers", "sustained strength", "modulus", "all moduli"
 ]
 _NAMES: Mapping[str, Property] = {"yield": "yield strength", "ultimate": "ultimate strength"}
+_ENTRIES: Mapping[Property, str] = {
+    "yield strength": "yield_strength",
+    "ultimate strength": "ultimate_strength",
+    "strength of the layers": "strength_across_layers",
+    "sustained strength": "sustained_stress",
+    "modulus": "youngs_modulus",
+    "all moduli": "youngs_modulus",
+}
+"""Of a card."""
 _BY_DEFINITION = (Quantity.LOAD_SHARE, Quantity.LIMIT_LOAD, Quantity.BUCKLING_FACTOR)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SizeRange:
-    """An entry of a case, and the range in which its size may be sought.
-
-    Attributes
-    ----------
-    entry : str
-        Path, such as ``parts.tube.outer_diameter``.
-    first, last : str
-        Ends, with their unit; the case takes both.
-    """
-
-    entry: str
-    first: str
-    last: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +109,9 @@ class VerdictChange:
     widest : tuple of Source
         Of an open check, what most of its band comes from; several where they are not known one by one.
     size : SizeRange or None
-        What to size with ``alula size``; None, too, where the check is open for its model rather than for its number.
+        What to size with ``alula size``; None where no value was found that passes.
+    sizable : bool
+        False where the check is open for its model rather than for its number, which no size decides.
     refuted : bool
         True where a load or material was tried and none was found that does.
     """
@@ -133,6 +123,7 @@ class VerdictChange:
     material: MaterialChange | None = None
     widest: tuple[Source, ...] = ()
     size: SizeRange | None = None
+    sizable: bool = False
     refuted: bool = False
 
 
@@ -157,7 +148,7 @@ def rounded(value: float, *, up: bool, digits: int = 3) -> float:
 
 
 def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
-    """Return what would change the verdict of the checks that decide it.
+    """Return what would change the verdict of the check that decides it.
 
     Parameters
     ----------
@@ -166,17 +157,13 @@ def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
     Returns
     -------
     tuple of VerdictChange
-        Of checks that fail and are open, the nearest to their limits first; of a pass, of the check that limits it.
+        Of the check that the headline names; empty where nothing was checked.
     """
     if _latest and _latest[0][0] is result:
         return _latest[0][1]
-    checks = by_nearness(check for case in result.load_cases.values() for check in case.checks if check.applies)
-    chosen = [check for check in checks if check.verdict is not Verdict.PASS and not _rests_on_nothing(result, check)]
-    every: dict[object, CheckOutcome] = {}
-    for check in chosen or checks[:1]:
-        every.setdefault((check.name, check.quantity, check.subject), check)
+    first = deciding(check for case in result.load_cases.values() for check in case.checks)[:1]
     trials = Trials(result=result)
-    found = tuple(_tried(trials, _change(result, check)) for check in list(every.values())[:MOST])
+    found = tuple(_tried(trials, _change(result, check)) for check in first)
     _latest[:] = [(result, found)]
     return found
 
@@ -188,21 +175,23 @@ _latest: list[tuple[CheckResult, tuple[VerdictChange, ...]]] = []
 def _tried(trials: Trials, change: VerdictChange) -> VerdictChange:
     """Return a change with what was tried and holds alone."""
     check, material = change.check, change.material
+    if change.sizable:
+        change = replace(change, size=size_range(trials, check))
     if not goes_with_load(check):
         return change
     load = change.load
     if load is not None:
         load = _held(load, lambda by: trials.share(check, Scaled.loads(rounded(by, up=False))))
-    if material is not None:
+    if material is not None and _by_definition(check):  # what holds a share of the loads holds less as well
+        needed = math.inf if load is None else material.stated / rounded(load, up=False)
+        material = replace(material, needed=needed) if needed <= _most(trials.result.case, material) else None
+    elif material is not None:
         stated, name = material.stated, material.material
-        stiffer = "modul" in material.what
-
-        case = trials.result.case
-        most = max(case.material_of(link).youngs_modulus for link in case.bending_links) if not name else 1.0
+        stiffer, most = "modul" in material.what, _most(trials.result.case, material)
 
         def share(by: float) -> float:
             needed = rounded(stated / by, up=True)
-            if needed * most > (STIFFEST if stiffer else STRONGEST):
+            if needed > most:
                 return 0.0
             times = needed / stated
             return trials.share(check, Scaled(**{"modulus" if stiffer else "strength": times}, material=name))
@@ -211,6 +200,16 @@ def _tried(trials: Trials, change: VerdictChange) -> VerdictChange:
         material = None if by is None else replace(material, needed=stated / by)
     refuted = (load is None) is not (change.load is None) or (material is None) is not (change.material is None)
     return replace(change, load=load, material=material, refuted=refuted)
+
+
+def _most(case: Case, change: MaterialChange) -> float:
+    """Return the largest strength of a material of that family, or the largest modulus of any."""
+    every = case.all_materials
+    entry = _ENTRIES[change.what]
+    if entry != "youngs_modulus":
+        return most_of_family(every, every[change.material], entry)
+    most = max(card.youngs_modulus for card in every.values())
+    return most if change.material else most / max(case.material_of(link).youngs_modulus for link in case.bending_links)
 
 
 def _held(first: float, share: Callable[[float], float]) -> float | None:
@@ -226,12 +225,6 @@ def _held(first: float, share: Callable[[float], float]) -> float | None:
     return None
 
 
-def _rests_on_nothing(result: CheckResult, check: CheckOutcome) -> bool:
-    """True of a check that is open for the one reason that the linkage gives way, which has a check of its own."""
-    case = result.load_cases[check.load_case]
-    return check.verdict is Verdict.UNDECIDED and case.gives_way and check.subject != LINKAGE
-
-
 def _change(result: CheckResult, check: CheckOutcome) -> VerdictChange:
     case, load_case = result.case, result.load_cases[check.load_case]
     known = 0.0 < check.margin < math.inf and (check.verdict is not Verdict.UNDECIDED or check.margin < 1.0)
@@ -245,7 +238,7 @@ def _change(result: CheckResult, check: CheckOutcome) -> VerdictChange:
         until=math.inf if load is None or _by_definition(check) else _linear_until(load_case.large_displacement),
         material=_material(case, load_case, check) if known else None,
         widest=widest(check.value.sources, width) if straddles else (),
-        size=_size(case, load_case, check) if straddles or _sizable(check) else None,
+        sizable=straddles or _sizable(check),
     )
 
 
@@ -342,44 +335,3 @@ def _strength(material: Material, quantity: Quantity) -> tuple[Property, float] 
 
 def _needed(what: Property, material: str, stated: float, margin: float) -> MaterialChange:
     return MaterialChange(what=what, material=material, stated=stated, needed=stated / margin)
-
-
-def _size(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> SizeRange | None:
-    """Return the size that bears on a check, with a range from what it is upwards, or downwards of a pass."""
-    subject = check.subject
-    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.LAYER_GAP):
-        return None
-    if subject.kind == "pin":
-        path, size = f"joints.{subject.name}.pin_diameter", case.joints[subject.name].pin_diameter
-    else:
-        link = subject.name if subject.kind == "link" else _softest(case, load_case.large_displacement)
-        part = case.part_of(link) if link else None
-        if part is None or not part.main_size:
-            return None
-        path, size = f"parts.{case.links[link].part}.{part.main_size}", getattr(part, part.main_size)
-    if not size:
-        return None
-    for reach in REACHES:
-        other = size / reach if check.verdict is Verdict.PASS else size * reach
-        ends = [f"{end:g} mm" for end in sorted((size, float(f"{other:.2g}")))]
-        if all(_taken(case, path, end) for end in ends):
-            return SizeRange(entry=path, first=ends[0], last=ends[1])
-    return None
-
-
-def _softest(case: Case, moved: LargeDisplacement) -> str:
-    """Return the link that takes up most of the work of the loads, of those with a size; "" where no frame tells."""
-    if moved.frame is None or moved.solution is None:
-        return ""
-    works = shares_of_work(case, moved.frame, moved.solution)
-    sized = [link for link in works if case.part_of(link).main_size]
-    return max(sized, key=lambda link: works[link], default="")
-
-
-def _taken(case: Case, path: str, value: str) -> bool:
-    """Return whether the rules of the case take a value of an entry."""
-    try:
-        case.with_values({path: value})
-    except CaseError:
-        return False
-    return True

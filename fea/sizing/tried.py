@@ -1,7 +1,8 @@
-"""Whether what is told to change a verdict does so: the load case is checked again with it, by hand calculation.
+"""Whether what is told to change a verdict does so: the case is checked again with it, by hand calculation.
 
 Loads times a factor are moduli and strengths over it: shape, and safety factors, are those under the larger loads.
 A number that solids gave is taken as many times as large as hand calculation finds its own at the changed value.
+Of a size all checks count that loads make, under every load case, since ``alula size`` asks for a pass of all.
 """
 
 import math
@@ -31,6 +32,7 @@ _STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, LimitLo
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
 """One or the other says whether the linkage as a whole holds the load."""
 _Key = tuple[str, Quantity, Subject]
+_EXACT = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +92,43 @@ class Scaled:
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Resized:
+    """A case with another size.
+
+    Attributes
+    ----------
+    entry : str
+        Its path, such as ``parts.tube.outer_diameter``.
+    value : str
+        With its unit.
+    """
+
+    entry: str
+    value: str
+
+    def on(self, case: Case) -> Case:
+        """Return the changed case.
+
+        Parameters
+        ----------
+        case : Case
+
+        Returns
+        -------
+        Case
+
+        Raises
+        ------
+        CaseError
+            Where the rules of the case refuse the value.
+        """
+        return case.with_values({self.entry: self.value})
+
+
+Change = Scaled | Resized
+
+
 def _times(value: object, factor: float) -> object:
     if isinstance(value, float):
         return value * factor
@@ -109,7 +148,7 @@ class Trials:
     """
 
     result: CheckResult
-    _done: dict[tuple[str, Scaled], LoadCaseResult | None] = field(default_factory=dict)
+    _done: dict[tuple[str, Change], LoadCaseResult | None] = field(default_factory=dict)
 
     def share(self, check: CheckOutcome, change: Scaled) -> float:
         """Return by which factor a check and all that passes beside it keep their limits with a change, the least.
@@ -133,19 +172,65 @@ class Trials:
         told = self.result.load_cases[check.load_case].checks
         return min((1.0, *_shares(check, told, _outcomes(plain), _outcomes(found))))
 
+    def expected(self, check: CheckOutcome, change: Change) -> float:
+        """Return by which factor a check keeps its limit with a change.
+
+        Parameters
+        ----------
+        check : CheckOutcome
+        change : Scaled or Resized
+
+        Returns
+        -------
+        float
+            1 or more where it keeps it; 0 where hand calculation does not judge it then.
+        """
+        plain, found = self._plain(check.load_case), self._checked(check.load_case, change)
+        after = None if found is None else _outcomes(found).get(_key(check))
+        if plain is None or found is None or after is None or (found.gives_way and check.subject != LINKAGE):
+            return 0.0
+        if after.value.unknowable:
+            return 0.0
+        return min(_margins(check, _outcomes(plain), _outcomes(found)), default=after.margin)
+
+    def holds(self, change: Change) -> bool:
+        """Return whether every check that loads make is expected to keep its limit with a change.
+
+        Parameters
+        ----------
+        change : Scaled or Resized
+
+        Returns
+        -------
+        bool
+            What hand calculation does not judge is left aside.
+        """
+        return all(self._holds(load_case, change) for load_case in self.result.load_cases)
+
+    def _holds(self, load_case: str, change: Change) -> bool:
+        plain, found = self._plain(load_case), self._checked(load_case, change)
+        if plain is None or found is None or found.gives_way:
+            return False
+        before, after = _outcomes(plain), _outcomes(found)
+        told = [one for one in self.result.load_cases[load_case].checks if goes_with_load(one)]
+        return all(margin >= 1.0 - _EXACT for one in told for margin in _margins(one, before, after))
+
     def _plain(self, load_case: str) -> LoadCaseResult | None:
         """The case as it is, by hand."""
         case = self.result.load_cases[load_case]
         by_hand = all(isinstance(link, HandResult) for link in case.links.values())
         return case if by_hand else self._checked(load_case, Scaled())
 
-    def _checked(self, load_case: str, change: Scaled) -> LoadCaseResult | None:
+    def _checked(self, load_case: str, change: Change) -> LoadCaseResult | None:
         if (load_case, change) not in self._done:
             self._done[load_case, change] = self._check(load_case, change)
         return self._done[load_case, change]
 
-    def _check(self, load_case: str, change: Scaled) -> LoadCaseResult | None:
-        case = change.on(self.result.case)
+    def _check(self, load_case: str, change: Change) -> LoadCaseResult | None:
+        try:
+            case = change.on(self.result.case)
+        except CaseError:
+            return None
         checks = {name: check for name, check in case.all_checks.items() if isinstance(check, _STATIC)}
         alone = case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "checks": checks})
         try:
@@ -168,14 +253,31 @@ def _shares(
         asked = _key(one) == _key(check)
         if _whole(one) or not goes_with_load(one) or not (asked or one.verdict is Verdict.PASS):
             continue
-        before, after = plain.get(_key(one)), found.get(_key(one))
-        if before is None or after is None or after.margin == math.inf:
-            continue  # not compressed any more, or not told by hand
-        if 0.0 < before.margin < math.inf:
-            yield one.margin * after.margin / before.margin
-        elif before.margin == 0.0 and not before.value.unknowable:
-            yield 0.0
-        # Else no beam tells, and the number goes with the change by definition.
+        yield from _margins(one, plain, found)
+
+
+def _margins(
+    check: CheckOutcome, plain: Mapping[_Key, CheckOutcome], found: Mapping[_Key, CheckOutcome]
+) -> Iterator[float]:
+    """Yield the margin that a check is expected to have with a change; none where hand calculation does not tell it."""
+    before, after = plain.get(_key(check)), found.get(_key(check))
+    if after is not None and _whole(check):
+        yield after.margin
+        return
+    if before is None or after is None or (after.margin == math.inf and not _left_open(after)):
+        return  # not compressed any more, or not told by hand
+    if _left_open(after) and not _left_open(before):
+        yield 0.0  # beyond what hand calculation was calibrated for
+    elif 0.0 < before.margin < math.inf:
+        yield check.margin * after.margin / before.margin
+    elif before.margin == 0.0 and not before.value.unknowable:
+        yield after.margin if check.margin == 0.0 else 0.0
+    # Else no beam tells, and the number goes with the change by definition.
+
+
+def _left_open(check: CheckOutcome) -> bool:
+    """True of a check that its band would decide, and its model may not."""
+    return check.verdict is Verdict.UNDECIDED and check.margin >= 1.0
 
 
 def _outcomes(result: LoadCaseResult) -> dict[_Key, CheckOutcome]:

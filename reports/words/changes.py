@@ -19,6 +19,7 @@ _NARROWED: dict[SourceKind, str] = {
     SourceKind.COUPLES: "tight_in of the joints, which says in which links a pin is tight",
     SourceKind.PLAY: "a smaller clearance of the joints",
     SourceKind.AIR: "a narrower normal_coefficient_range of the load case's air",
+    SourceKind.FRICTION: "a narrower friction_range of the joints",
     SourceKind.POSES: "more poses of the motion",
     SourceKind.BUILD: "build_direction of the part",
 }
@@ -57,7 +58,7 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     check = change.check
     told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
     if change.refuted and not told:
-        told.append("Other loads and materials were tried, and none within reach does.")
+        told.append("What its margin suggests was tried, and no load or material within reach does.")
     elif check.verdict is Verdict.UNDECIDED and not told:
         known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
         told.append(_of_itself(check) if known else sentence(check.reason))

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
+from fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from loads.text.caveat import Caveat, Heading
 
 if TYPE_CHECKING:
@@ -280,21 +280,18 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool)
     count = len(checks)
     if verdict is Verdict.PASS:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
-        closest = _with_limit(by_nearness(checks)[0], several=several)
+        closest = _with_limit(deciding(checks)[0], several=several)
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
     decisive = [c for c in checks if c.verdict is verdict and c.applies]
     names = _all_named(decisive)
-    share = f"{len(decisive)} of {count} checks"
+    share, first = f"{len(decisive)} of {count} checks", deciding(checks)[0]
     if verdict is Verdict.UNDECIDED:
-        first = by_nearness(decisive)[0]
         verb = "is" if len(decisive) == 1 else "are"
         return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
     missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
-    collapses = [c for c in decisive if c.quantity is Quantity.LOAD_SHARE]
-    if collapses:
-        worst = min(collapses, key=lambda c: c.value.value)
-        return f"Fail: {_under(worst, several=several)}{gives_way(worst)}. {missed}: {names}."
-    return f"Fail: {missed}: {names}. Worst: {_with_limit(by_nearness(decisive)[0], several=several)}."
+    if first.quantity is Quantity.LOAD_SHARE:
+        return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}: {names}."
+    return f"Fail: {missed}: {names}. Worst: {_with_limit(first, several=several)}."
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:

@@ -1,16 +1,19 @@
 """What friction may be, in bands: against direct calculations at and between its ends, and where a linkage locks."""
 
 import math
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 import pytest
 from edited_cases import PLANAR, edited
+from numpy.typing import NDArray
 
 from fea.check.run import check_case
 from fea.common.source import SourceKind
 from fea.common.verdict import Quantity, Verdict
 from fea.frame.case_statics import solve_case_statics, with_ends
+from fea.frame.joint_forces import JointForces
 from fea.frame.rubbing import at_end, bore_presses
 from fea.motion.loosened import column_growth, joint_growth, otherwise
 from fea.whole.motor import motor_outcomes
@@ -18,6 +21,7 @@ from fea.whole.rubbed_motion import rubbed_motion, work_between
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import read_case
+from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import FrictionLoad
 from loads.states.rubbing import pose_friction
 from loads.statics.statics import solve_statics
@@ -213,3 +217,28 @@ def test_a_range_is_about_its_coefficient() -> None:
     for stated, friction in (((0.1, 0.2), 0.3), ((0.3, 0.2), 0.25)):
         with pytest.raises(CaseError, match=r"joints\.O2\.friction_range: it goes from .* but friction is"):
             toggle(friction, stated)
+
+
+def test_friction_that_swings_about_what_it_settles_at_is_no_lock(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bores are pressed by less, the more they rub: each round goes 0.95 times as far to the other side as the last.
+
+    That settles, though in hundreds of rounds where no mean is taken; it was told to lock the linkage.
+    """
+    case = read_case("slider-crank")
+    pushed = case.load_cases["push"].model_copy(update={"direction": "forward"})
+    case = case.model_copy(update={"load_cases": {"push": pushed}})
+
+    def torque(press: Callable[[JointForces], float]) -> float:
+        def pressed(case: Case, found: JointForces, end: str = "stated") -> dict[str, NDArray[np.float64]]:
+            return {name: np.array([press(found)]) for name in rubbing_joints(case)}
+
+        monkeypatch.setattr("fea.frame.rubbing.presses_of", pressed)
+        return float(solve_case_statics(case).reactions["push"].drive_torque)
+
+    plain, doubled = torque(lambda found: 1.0), torque(lambda found: 2.0)
+
+    def ratio(effort: float) -> float:
+        return 1.0 + (effort - plain) / (doubled - plain)
+
+    settled = torque(lambda found: 3.0 - 0.95 * ratio(float(found.reactions.drive_torque)))
+    assert ratio(settled) == pytest.approx(3.0 / 1.95, rel=0.02)  # friction is nearly in proportion to what presses

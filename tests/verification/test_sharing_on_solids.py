@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial import QhullError
 from tilting_pins import PLA, loaded
 
 from fea.beam.cut_free import link_loads
@@ -100,6 +101,16 @@ def test_the_corners_of_the_hull_bear_the_most():
 )
 def test_outermost_points(points, corners):
     assert outermost(np.array(points)).tolist() == corners
+
+
+def test_where_no_hull_is_found_all_points_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wing with moduli five times as small ended in an internal error: its ways to share couples lie on one face."""
+
+    def refuse(points: object) -> None:
+        raise QhullError("qhull topology error")
+
+    monkeypatch.setattr("scipy.spatial.ConvexHull", refuse)
+    assert outermost(np.random.default_rng(1).normal(size=(9, 3))).tolist() == list(range(9))
 
 
 def test_a_small_force_across_the_plane_leaves_the_ways_of_sharing():

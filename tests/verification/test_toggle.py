@@ -435,9 +435,9 @@ def changed(case: Case, modulus: float = 1.0, strength: float = 1.0) -> Case:
     return case.model_copy(update={"materials": {"pvc-paredes-2018": card.model_copy(update=update)}})
 
 
-@pytest.mark.parametrize("times", [3.0, 80.0])
+@pytest.mark.parametrize("times", [3.0, 60.0])
 def test_what_is_told_to_save_a_toggle_that_gives_way_does(times: float) -> None:
-    """Moduli 64 times as large were once told where 84 are needed, and were never tried."""
+    """At 80 times its limit load moduli 64 times as large were once told where 84 are needed, and were never tried."""
     force = times * limit_load(toggle(-1.0, 1.5), 1.5)
     told = changes(check_case(toggle(-force, 1.5), fidelity="beam"))[0]
     assert (told.check.quantity, told.refuted, told.material.material) == (Quantity.LOAD_SHARE, False, "")
@@ -474,19 +474,19 @@ def test_a_change_that_fails_when_it_is_tried_is_not_told(monkeypatch: pytest.Mo
     monkeypatch.setattr("fea.sizing.changes.TRIES", 1)
     none = changes(replace(result))[0]
     assert (none.load, none.material, none.refuted) == (None, None, True)
-    assert "none within reach does" in " ".join(change_sentences(none, result))
+    assert "no load or material within reach does" in " ".join(change_sentences(none, result))
 
 
 def test_no_strength_is_told_for_a_link_of_a_linkage_that_gives_way() -> None:
-    """At twice the limit load stronger links hold no more; below the limit load they do."""
+    """At twice the limit load stronger links hold no more, so that the linkage alone is told; below it they do."""
     limit = limit_load(toggle(-1.0), 10.0)
     told = {}
     for times in (0.4, 2.0):
         case = changed(toggle(-times * limit, eyes="13 mm"), strength=0.01)
         found = changes(check_case(case, fidelity="beam"))
-        told[times] = [one for one in found if one.check.subject.kind == "link"]
-        assert told[times]
-    assert all(one.material is None and one.refuted for one in told[2.0])
+        told[times] = found
+    assert [one.check.quantity for one in told[2.0]] == [Quantity.LOAD_SHARE]
+    assert [one.check.subject.kind for one in told[0.4]] == ["link"]
     for one in told[0.4]:
         stronger = rounded(one.material.needed, up=True) / one.material.stated
         again = check_case(changed(toggle(-0.4 * limit, eyes="13 mm"), strength=0.01 * stronger), fidelity="beam")

@@ -13,9 +13,13 @@ from fea.common.source import CONTACT, PIN_PRESSURE, TORQUE_TRANSFER, Source, So
 from fea.common.verdict import Quantity, Verdict
 from fea.frame.displacement_band import shares_of_work
 from fea.links.solid_result import _width
-from fea.sizing.changes import _change, changes
+from fea.sizing.changes import _change, changes, rounded
+from fea.sizing.size_range import _entry, _taken, size_range
+from fea.sizing.tried import Trials
+from geometry.materials.family import most_of_family
 from geometry.materials.material import library
 from loads.case.case_file import read_case
+from reports.words.wording import headline, named
 
 THICK = {
     "parts.bar.thickness": "8 mm",
@@ -114,13 +118,12 @@ def test_the_softest_link_is_sized(thick):
     shares = shares_of_work(case, moved.frame, moved.solution)
     assert sum(shares.values()) == pytest.approx(1.0)
     assert set(shares) == {"crank", "coupler", "rocker"}
-    owl = changes(by_hand("owl-wing-static", PLANAR))[0].size
-    assert owl.entry == "parts.tube.outer_diameter"
-    assert owl.first == "5 mm"
-    read_case("owl-wing-static").with_values({owl.entry: owl.last})
-    with pytest.raises(Exception, match="keep it more than"):
-        read_case("owl-wing-static").with_values({owl.entry: "10 mm"})
-    assert float(owl.last.split()[0]) < 10.0
+    owl = by_hand("owl-wing-static", PLANAR)
+    [told] = changes(owl)
+    entry, size = _entry(Trials(result=owl), told.check)
+    assert (entry, size) == ("parts.tube.outer_diameter", 5.0)
+    assert list(_taken(owl.case, entry, [2.0 * size, 1.8 * size])) == ["9 mm"]  # at 10 mm eyes keep no distance
+    assert told.size is None  # no value up to there holds the load
 
 
 def test_nothing_is_told_of_what_does_not_go_with_the_loads(thick):
@@ -132,22 +135,23 @@ def test_nothing_is_told_of_what_does_not_go_with_the_loads(thick):
     coupler = found[Quantity.SAFETY_FACTOR, "coupler"]
     opened = _change(result, coupler.left_open("no model decides it"))
     assert opened.load is None
-    assert opened.size is None
+    assert not opened.sizable
     assert _change(result, replace(check, value=Band.unknown("singular"))).load is None
     gap = replace(check, quantity=Quantity.CLEARANCE, value=Band.exact(0.1))
     assert _change(result, gap).load is None
-    assert _change(result, gap).size is None
+    assert size_range(Trials(result=result), gap) is None
 
 
 def test_a_check_open_for_its_model_is_not_sized_and_one_open_for_its_band_is(thick):
     """No size calibrates hand calculation: by solids the finger's plate has a number at the size that it has."""
-    opened = [change for change in changes(by_hand("finger")) if "run the solid model" in change.check.reason]
-    assert {str(change.check.subject) for change in opened} == {"distal"}
-    assert {change.size for change in opened} == {None}
+    finger = by_hand("finger")
+    opened = [check for check in finger.load_cases["grip"].checks if "run the solid model" in check.reason]
+    assert {str(check.subject) for check in opened} == {"distal"}
+    assert not any(_change(finger, check).sizable for check in opened)
     result, found = thick
     check = found[Quantity.SAFETY_FACTOR, "crank"]
     near = replace(check, limit=0.5 * (check.value.low + check.value.high), verdict=Verdict.UNDECIDED)
-    assert _change(result, near).size is not None
+    assert _change(result, near).sizable
 
 
 def test_the_widest_sources_are_those_of_the_largest_factor():
@@ -172,3 +176,92 @@ def test_variants_of_a_solid_say_how_wide_their_kinds_are():
     assert _width(PIN_PRESSURE, "von_mises", refined, range(4)) == pytest.approx(1.2)
     assert _width(TORQUE_TRANSFER, "von_mises", refined, range(4)) == pytest.approx(1.5)
     assert _width(CONTACT, "von_mises", refined, range(4)) == pytest.approx(1.0 / 0.94)
+
+
+CLAMP = {
+    "title": "A clamp whose rocker presses with 150 N; of printed plastic it gives way at 13 % of that",
+    "links.base.points.O4": ["120 mm", "0 mm"],
+    "links.crank.points.A": ["45 mm", "0 mm"],
+    "links.coupler.points.B": ["130 mm", "0 mm"],
+    "links.rocker.points.B": ["90 mm", "0 mm"],
+    "links.rocker.points.P": ["140 mm", "0 mm"],
+    "links.rocker.end_patch": "8 mm",
+    "load_cases.lift.forces.0.force": ["0 N", "-150 N"],
+    "load_cases.lift.own_weight": False,
+}
+METAL = {"parts.bar.material": "aluminium-6061-t6"}
+ADVISED = {
+    "gives way": CLAMP,
+    "open by its band": CLAMP | METAL,
+    "passes": CLAMP | METAL | {"parts.bar.thickness": "6 mm"},
+    "light": THICK | METAL | {"links.rocker.end_patch": "8 mm"},
+}
+
+
+def more_loads(case, factor):
+    """Forces times a factor; nothing else acts."""
+    load_cases = {
+        name: one.model_copy(
+            update={
+                "forces": [
+                    force.model_copy(update={"force": tuple(factor * part for part in force.force)})
+                    for force in one.forces
+                ]
+            }
+        )
+        for name, one in case.load_cases.items()
+    }
+    return case.model_copy(update={"load_cases": load_cases})
+
+
+def another_card(case, change):
+    """Strengths or moduli as they are told, with all that goes with them; every card where none is named."""
+    kinds = ("modulus",) if "modul" in change.what else ("strength", "sustained_stress")
+    times = rounded(change.needed, up=True) / change.stated
+    cards = {}
+    for name, card in case.all_materials.items():
+        own = {key: value for key, value in card if any(kind in key for kind in kinds) and value is not None}
+        scaled = {
+            key: times * value if isinstance(value, float) else tuple(times * end for end in value)
+            for key, value in own.items()
+            if isinstance(value, float) or (isinstance(value, tuple) and value and isinstance(value[0], float))
+        }
+        if change.material in ("", name):
+            cards[name] = card.model_copy(update=scaled)
+    return case.model_copy(update={"materials": {**case.materials, **cards}})
+
+
+@pytest.mark.parametrize("name", ADVISED)
+def test_what_is_told_is_of_the_headline_and_passes_where_it_is_done(name):
+    """The clamp was told a strength of 1750 MPa in place of 33, which does not hold it, and sizes of which none did."""
+    case = read_case("four-bar").with_values(ADVISED[name])
+    result, _ = checked(case)
+    [told] = changes(result)
+    assert any(named(told.check, long=long) in headline(result) for long in (False, True))
+    assert told.check.verdict is result.verdict
+    failing = {c.quantity for lc in result.load_cases.values() for c in lc.checks if c.verdict is Verdict.FAIL}
+    assert (told.check.quantity is Quantity.LOAD_SHARE) is (Quantity.LOAD_SHARE in failing)
+
+    def kept(changed):
+        return checked(changed)[1][told.check.quantity, str(told.check.subject)].verdict is Verdict.PASS
+
+    done = []
+    if told.load is not None:
+        done.append(kept(more_loads(case, rounded(told.load, up=False))))
+    if told.material is not None:
+        done.append(kept(another_card(case, told.material)))
+        if "strength" in told.material.what:
+            assert told.material.needed <= max(460.0, told.material.stated)
+    if told.size is not None:
+        done.append(any(kept(case.with_values({told.size.entry: end})) for end in (told.size.first, told.size.last)))
+    assert all(done)
+    assert done, "nothing was told"
+
+
+def test_a_family_is_told_by_its_density_and_its_strongest_card_bounds_what_is_told():
+    """Printed plastics reach 52 MPa, aluminium 460 MPa at yield, and steel 1330 MPa as wire; no card adds or takes."""
+    cards = library()
+    most = {name: most_of_family(cards, cards[name], "yield_strength") for name in cards}
+    assert (most["pla-fdm-xy"], most["aluminium-6061-t6"], most["steel-s235"]) == (41.4, 460.0, 1330.0)
+    assert most_of_family(cards, cards["pla-fdm-xy"], "ultimate_strength") == 52.0
+    assert most_of_family({}, cards["pla-fdm-xy"], "sustained_stress") == 0.0
