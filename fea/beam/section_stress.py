@@ -200,7 +200,7 @@ def _fields(section: Section, nu: float) -> Floats:
 
 @lru_cache(maxsize=64)
 def _largest_fields(section: Section, nu: float) -> tuple[Floats, Floats]:
-    """Largest shear stress (6,) under each unit force, and the form (6, 6) of forces' sizes that ``_rise`` adds at most.
+    """Largest shear stress (6,) under each unit force, and the form (6, 6) of sizes that ``_rise`` adds at most.
 
     A parabola through three neighbours rises above the middle one, where that is the largest, by an eighth of their
     second difference at most: (a - b)²/(8 (a + b)) with a, b the steps down to either side.

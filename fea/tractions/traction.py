@@ -273,7 +273,7 @@ def line_density_between(volume: Quadrature, load: LineLoad) -> tuple[NDArray[np
     """
     length, element = load.end - load.start, volume.measure / len(volume.w)
     places = (volume.x[..., 0] - load.start) / length
-    own = ((places >= 0.0) & (places < 1.0)).any(axis=1)
+    own = np.asarray(((places >= 0.0) & (places < 1.0)).any(axis=1))
     part, place = volume.only(own), places[own]
     inside = (place >= 0.0) & (place < 1.0)
     slices = int(np.clip(length / (2.0 * element ** (1.0 / 3.0)), 1, 40))
