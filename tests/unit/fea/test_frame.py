@@ -231,7 +231,7 @@ def test_frames_that_differ_in_their_loads_alone_share_one_factorisation() -> No
     from fea.frame.equations import equations_of
 
     first = equations_of(CANTILEVER)
-    spread = element(0, 1, load_first=np.array([0.1, 0.2, 0.0]))
+    spread = element(0, 1, section=BAR, load_first=np.array([0.1, 0.2, 0.0]))
     assert equations_of(replace(CANTILEVER, elements=(spread,), loads=(load(1, 2.0, 0, 3.0),))) is first
     for other in (
         replace(CANTILEVER, nodes=CANTILEVER.nodes * 1.01),
