@@ -17,13 +17,13 @@ such and therefore exact at every station.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_beam import about_centre, cut_stress, nearest
-from fea.beam.loads import BeamLoads
+from fea.beam.loads import RECENT, BeamLoads
 from fea.beam.piecewise import Piecewise, Side, divided, integral, values
 from fea.beam.section_stress import SectionStress, bending_stress, equivalent_bound, equivalent_stress, section_stress
 from geometry.base.errors import CannotRunError
@@ -37,6 +37,7 @@ LARGEST_IMBALANCE = 1e-6
 """Resultant over load above which a set of loads is refused as unbalanced."""
 
 
+@lru_cache(maxsize=RECENT)
 def internal_forces(loads: BeamLoads) -> Piecewise:
     """Return the internal forces along the beam.
 
