@@ -10,6 +10,8 @@ from geometry.base.errors import CannotRunError
 from loads.records.applied import shifted
 
 Floats = NDArray[np.float64]
+RECENT = 16
+"""Beams whose loads and internal forces are kept: growth of bending and hand calculation ask for those of one link."""
 
 
 def _frozen(values: ArrayLike, name: str, *shapes: int) -> Floats:

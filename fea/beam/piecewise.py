@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
-from geometry.base.ties import first_largest
+from geometry.base.ties import TIE, first_largest
 
 Floats = NDArray[np.float64]
 Side = Literal["before", "after"]
@@ -135,7 +135,7 @@ class Piecewise:
         lengths = np.diff(self.breaks)
         return [np.linspace(0.0, h, SAMPLES if curved else 2) for h, curved in zip(lengths, bent, strict=True)]
 
-    def largest(self, measure: Measure, sampled: Floats | None = None) -> tuple[float, Side, float]:
+    def largest(self, measure: Measure, bound: Measure | None = None) -> tuple[float, Side, float]:
         """Find the largest measure of the functions over the beam.
 
         Both ends of every interval are tried, and inside it samples, about the best of which finer and finer ones
@@ -145,26 +145,61 @@ class Piecewise:
         ----------
         measure : callable
             Of values (n, m) of the functions at n stations, to numbers (n,).
-        sampled : array (n,), optional
-            The measure of ``samples``, where it is known.
+        bound : callable, optional
+            Of sizes (n, m) of the functions, to numbers (n,) that no measure of functions of these sizes exceeds. With
+            it the measure is taken only where it can be the largest; the answer is the same.
 
         Returns
         -------
         tuple of float, Side and float
             Station [mm], side and value.
         """
-        grids, found = self._grids, measure(self.samples[1]) if sampled is None else sampled
-        peaks: list[tuple[float, Side, float]] = []
-        parts = np.split(found, np.cumsum([len(grid) for grid in grids])[:-1])
-        for c, x0, x1, grid, sizes in zip(
-            self.coefficients, self.breaks[:-1], self.breaks[1:], grids, parts, strict=True
-        ):
+        ends = np.cumsum([len(grid) for grid in self._grids])[:-1]
+        rows = np.split(self.samples[1], ends)
+        caps = self._caps(bound)
+        found, most = [-np.inf] * len(rows), -np.inf
+        places: list[tuple[float, Side]] = [(float(x), "after") for x in self.breaks[:-1]]
+        for k in sorted(range(len(rows)), key=lambda k: -caps[k].max()):
+            if caps[k].max() < most * (1.0 - 2.0 * TIE):
+                break
+            grid, sizes = self._grids[k], _where_it_counts(measure, rows[k], caps[k])
             i = first_largest(sizes)
-            s, peak = float(grid[i]), float(sizes[i])
+            s, found[k] = float(grid[i]), float(sizes[i])
             if 0 < i < len(grid) - 1:
-                s, peak = _refined(c, measure, (float(grid[i - 1]), float(grid[i + 1])), s, peak)
-            peaks.append((float(x1), "before", peak) if i == len(grid) - 1 else (float(x0) + s, "after", peak))
-        return peaks[first_largest([peak for _, _, peak in peaks])]
+                between = float(grid[i - 1]), float(grid[i + 1])
+                s, found[k] = _refined(self.coefficients[k], measure, between, s, found[k])
+            last = i == len(grid) - 1
+            places[k] = (float(self.breaks[k + 1]), "before") if last else (float(self.breaks[k]) + s, "after")
+            most = max(most, found[k])
+        k = first_largest(found)
+        return *places[k], found[k]
+
+    def _caps(self, bound: Measure | None) -> list[Floats]:
+        """What a measure does not exceed between neighbouring samples of each interval."""
+        grids = self._grids
+        if bound is None:
+            return [np.full(len(grid) - 1, np.inf) for grid in grids]
+        powers = np.arange(2, self.coefficients.shape[-1])
+        ends = np.cumsum([len(grid) for grid in grids])[:-1]
+        sizes = []
+        for c, grid, rows in zip(self.coefficients, grids, np.split(np.abs(self.samples[1]), ends), strict=True):
+            # Between two samples a function lies within h²/8 times its second derivative of their chord.
+            curved = (grid[1:, None] ** (powers - 2) * powers * (powers - 1)) @ np.abs(c[:, 2:]).T
+            sizes.append(np.maximum(rows[:-1], rows[1:]) + (np.diff(grid) ** 2 / 8.0)[:, None] * curved)
+        return np.split(bound(np.concatenate(sizes)), ends - np.arange(1, len(grids)))
+
+
+def _where_it_counts(measure: Measure, rows: Floats, caps: Floats) -> Floats:
+    """Measures (n,) of an interval's samples; -inf of those that are not its largest, by the caps beside them."""
+    if not np.isfinite(caps).all():
+        return measure(rows)
+    most = np.minimum(np.append(caps, np.inf), np.append(np.inf, caps))
+    found = np.full(len(rows), -np.inf)
+    best = int(np.argmax(most))
+    least = float(measure(rows[best : best + 1])[0])
+    counts = most >= least * (1.0 - 2.0 * TIE)
+    found[counts] = measure(rows[counts])
+    return found
 
 
 def _along(c: Floats, s: Floats) -> Floats:

@@ -27,19 +27,19 @@ def first_moment(wrench: Real) -> Real:
 
     Parameters
     ----------
-    wrench : ndarray, shape (6,)
+    wrench : ndarray, shape (..., 6)
         [N, N mm]
 
     Returns
     -------
-    ndarray, shape (2,)
+    ndarray, shape (..., 2)
         Along x and y [N mm].
     """
-    return np.array([wrench[4], -wrench[3]])
+    return np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1)
 
 
-def largest_between(eyes: tuple[Ring, Ring], rise: float, first: Real, second: Real) -> tuple[float, float]:
-    """Return the largest bending moment and shear force of a pin.
+def largest_between(eyes: tuple[Ring, Ring], rise: float, first: Real, second: Real) -> tuple[Real, Real]:
+    """Return the largest bending moment and shear force of a pin, in each of some equilibria.
 
     Parameters
     ----------
@@ -47,32 +47,33 @@ def largest_between(eyes: tuple[Ring, Ring], rise: float, first: Real, second: R
         Of the first and of the second link, about their mid-planes.
     rise : float
         Height of the second mid-plane above the first [mm].
-    first, second : ndarray, shape (6,)
+    first, second : ndarray, shape (..., 6)
         What the pin does to either link about the point of its mid-plane [N, N mm]; they balance.
 
     Returns
     -------
-    tuple of float
+    tuple of ndarray, shape (...)
         Moment [N mm] and force [N].
     """
     pieces: list[tuple[float, float, Real, Real]] = []  # from, to [mm]; -q there and its slope
     for eye, level, wrench in ((eyes[0], 0.0, first), (eyes[1], rise, second)):
-        about_middle = first_moment(wrench) - eye.middle * wrench[:2]
+        about_middle = first_moment(wrench) - eye.middle * wrench[..., :2]
         slope = about_middle / eye.second
         for low, high in eye.walls:
-            at_low = wrench[:2] / eye.thickness + slope * (low - eye.middle)
+            at_low = wrench[..., :2] / eye.thickness + slope * (low - eye.middle)
             pieces.append((level + low, level + high, -at_low, -slope))
     edges = np.unique([z for low, high, _, _ in pieces for z in (low, high)])
-    shear, moment, most_shear, most_moment = np.zeros(2), np.zeros(2), 0.0, 0.0
+    none = np.zeros((*first.shape[:-1], 2))
+    shear, moment, most_shear, most_moment = none, none, none[..., 0], none[..., 0]
     for low, high in itertools.pairwise(edges):
         z = np.linspace(0.0, high - low, POINTS)[:, None]
-        v, m = shear + 0.0 * z, moment + shear * z
+        v, m = shear[..., None, :] + 0.0 * z, moment[..., None, :] + shear[..., None, :] * z
         for start, end, at_start, slope in pieces:
             if start <= low and high <= end:
-                here = at_start + slope * (low - start)
-                v = v + here * z + slope * z**2 / 2.0
-                m = m + here * z**2 / 2.0 + slope * z**3 / 6.0
-        most_shear = max(most_shear, float(np.linalg.norm(v, axis=1).max()))
-        most_moment = max(most_moment, float(np.linalg.norm(m, axis=1).max()))
-        shear, moment = v[-1], m[-1]
+                here, steep = (at_start + slope * (low - start))[..., None, :], slope[..., None, :]
+                v = v + here * z + steep * z**2 / 2.0
+                m = m + here * z**2 / 2.0 + steep * z**3 / 6.0
+        most_shear = np.maximum(most_shear, np.linalg.norm(v, axis=-1).max(axis=-1))
+        most_moment = np.maximum(most_moment, np.linalg.norm(m, axis=-1).max(axis=-1))
+        shear, moment = v[..., -1, :], m[..., -1, :]
     return most_moment, most_shear

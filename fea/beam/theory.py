@@ -17,14 +17,15 @@ such and therefore exact at every station.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_beam import about_centre, cut_stress, nearest
-from fea.beam.loads import BeamLoads
+from fea.beam.loads import RECENT, BeamLoads
 from fea.beam.piecewise import Piecewise, Side, divided, integral, values
-from fea.beam.section_stress import SectionStress, bending_stress, equivalent_stress, section_stress
+from fea.beam.section_stress import SectionStress, bending_stress, equivalent_bound, equivalent_stress, section_stress
 from geometry.base.errors import CannotRunError
 from geometry.base.ties import first_largest
 from geometry.bodies.cut_section import CutSection
@@ -36,6 +37,7 @@ LARGEST_IMBALANCE = 1e-6
 """Resultant over load above which a set of loads is refused as unbalanced."""
 
 
+@lru_cache(maxsize=RECENT)
 def internal_forces(loads: BeamLoads) -> Piecewise:
     """Return the internal forces along the beam.
 
@@ -115,8 +117,6 @@ class BeamCheck:
         N/A, tension positive [MPa].
     bending : ndarray, shape (k,)
         Extreme-fibre bending stress, a magnitude [MPa].
-    equivalent : ndarray, shape (k,)
-        Largest von Mises stress over the section [MPa].
     worst_x : float
         Station of the largest equivalent stress [mm].
     worst : SectionStress
@@ -144,13 +144,21 @@ class BeamCheck:
     m_z: Floats
     axial: Floats
     bending: Floats
-    equivalent: Floats
     worst_x: float
     worst: SectionStress
     strength: float
     safety_factor: float
     without: str = ""
     cuts: Sequence[CutSection] = ()
+
+    @cached_property
+    def equivalent(self) -> Floats:
+        """Largest von Mises stress (k,) over the section at every station [MPa]."""
+        rows = np.column_stack([self.n, self.v_y, self.v_z, self.t, self.m_y, self.m_z])
+        if not self.cuts:
+            return equivalent_stress(self.section, rows, self.poisson)
+        own = (nearest(self.cuts, x) for x in self.x)
+        return np.array([cut_stress(cut, row, self.poisson).equivalent for cut, row in zip(own, rows, strict=True)])
 
     @property
     def idle(self) -> bool:
@@ -217,13 +225,12 @@ def check_beam(
         found = [cut_stress(cut, row, poisson) for cut, row in zip(own, rows, strict=True)]
         most = first_largest([stress.equivalent for stress in found])
         x, worst = float(stations[most]), found[most]
-        axial, bending, equivalent = (
-            np.array([getattr(stress, name) for stress in found]) for name in ("axial", "bending", "equivalent")
-        )
+        axial, bending = (np.array([getattr(stress, name) for stress in found]) for name in ("axial", "bending"))
     else:
         axial, bending = rows[:, 0] / section.area, bending_stress(section, rows[:, 4], rows[:, 5])
-        equivalent = equivalent_stress(section, rows, poisson)
-        x, side, _ = forces.largest(lambda f: equivalent_stress(section, f, poisson), equivalent)
+        x, side, _ = forces.largest(
+            lambda f: equivalent_stress(section, f, poisson), lambda sizes: equivalent_bound(section, sizes, poisson)
+        )
         worst = section_stress(section, forces.at(x, side), poisson)
     n, v_y, v_z, t, m_y, m_z = rows.T
     return BeamCheck(
@@ -239,7 +246,6 @@ def check_beam(
         m_z=m_z,
         axial=axial,
         bending=bending,
-        equivalent=equivalent,
         worst_x=x,
         worst=worst,
         strength=strength,

@@ -382,7 +382,7 @@ def deciding(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     Returns
     -------
     list of CheckOutcome
-        Of what fails a linkage that gives way first, at the least share of its load; else the nearest to its limit first.
+        Of what fails a linkage that gives way first, at the least share of its load; else by nearness to the limit.
     """
     checks = list(checks)
     verdict = overall(check.verdict for check in checks)

@@ -40,6 +40,20 @@ class Quadrature:
         """Centroid (3,) of the volume or area [mm]."""
         return np.asarray(np.einsum("kq,kqi->i", self.w, self.x) / self.w.sum())
 
+    def only(self, elements: NDArray[np.bool_]) -> "Quadrature":
+        """Return the points of some elements.
+
+        Parameters
+        ----------
+        elements : ndarray of bool, shape (k,)
+            Which.
+
+        Returns
+        -------
+        Quadrature
+        """
+        return Quadrature(nodes=self.nodes[elements], phi=self.phi, x=self.x[elements], w=self.w[elements])
+
     def load_vector(self, density: NDArray[np.float64], count: int) -> NDArray[np.float64]:
         """Return the consistent load vector of a force density.
 

@@ -434,13 +434,12 @@ def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Z
     real, virtual = loaded.internal_forces(i), unit.internal_forces(i)
     flexible = flexibility(element.section, element.young, element.poisson)
     nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
-    whole = Zone(start=0.0, end=length, least=np.ones(6), most=np.ones(6))
+    every = zones or (Zone(start=0.0, end=length, least=np.ones(6), most=np.ones(6)),)
+    start, end = (np.minimum([getattr(zone, name) for zone in every], length)[:, None] for name in ("start", "end"))
+    xs, dx = (start + end) / 2.0 + (end - start) / 2.0 * nodes, (end - start) / 2.0 * weights
+    terms = flexible * np.einsum("zq,zqi->zi", dx, real.along(xs) * virtual.along(xs))
     nominal, least, most = np.zeros(6), np.zeros(6), np.zeros(6)
-    for zone in zones or (whole,):
-        start, end = min(zone.start, length), min(zone.end, length)
-        xs, dx = (start + end) / 2.0 + (end - start) / 2.0 * nodes, (end - start) / 2.0 * weights
-        work = np.array([real.at(float(x)) * virtual.at(float(x)) for x in xs])
-        term = flexible * (dx @ work)
+    for zone, term in zip(every, terms, strict=True):
         nominal, least, most = nominal + term, least + zone.least * term, most + zone.most * term
     return nominal, least, most
 

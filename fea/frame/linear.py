@@ -25,8 +25,9 @@ from fea.beam.deflection import deflection
 from fea.beam.loads import BeamLoads, LineLoad, PointLoad
 from fea.beam.piecewise import Piecewise
 from fea.beam.theory import internal_forces
+from fea.frame.equations import equations_of
 from fea.frame.model import DOFS, FrameModel
-from fea.frame.system import FrameSystem, line_load_effect, natural_deformations, refuse_mechanism
+from fea.frame.system import FrameSystem, line_load_effect
 from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -166,6 +167,9 @@ def solve_frame(model: FrameModel) -> FrameSolution:
 class FactorisedFrame:
     """A frame whose equations are factorised, so that more than its own loads can be solved.
 
+    Frames that differ in their loads have one factorisation: those of unit loads, of ways in which pins tilt, and of a
+    pose under several load cases.
+
     Parameters
     ----------
     model : FrameModel
@@ -178,31 +182,18 @@ class FactorisedFrame:
     """
 
     def __init__(self, model: FrameModel) -> None:
-        from scipy.sparse import bmat, csc_matrix
-        from scipy.sparse.linalg import splu
-
-        self.system = FrameSystem(model)
-        B, F, v0, p = self.system.equations()
-        refuse_mechanism(self.system, B)
-        # Displacements in units of the softest element's answer to unit force: no block outgrows the rest.
-        self._scale = float(F.diagonal().max())
-        self._matrix = csc_matrix(bmat([[-F / self._scale, B], [B.T, None]]))
-        self._factors = splu(self._matrix)
-        self._size = len(v0)
-        self._own = self._refined(np.concatenate([v0 / self._scale, p]))
+        self.model = model
+        self._equations = equations_of(model)
+        self.system = self._equations.system
+        v0, p = self.system.loaded(model)
+        self._own = self._equations.solved(np.concatenate([v0 / self._equations.scale, p]))
 
     @cached_property
-    def _basic(self) -> tuple[Floats, Floats]:
-        """From natural forces (scaled) to forces (m, 12, 6) at beams' ends, and those (m, 12) of line loads alone."""
-        system, model = self.system, self.system.model
-        every = list(enumerate(zip(model.elements, system.lengths, strict=True)))
-        natural = [natural_deformations(length).T * system.natural_unit(i) for i, (_, length) in every]
-        held = [line_load_effect(e.section, e.young, length, *model.line_load(i))[1] for i, (e, length) in every]
-        return np.array(natural).reshape(-1, 12, 6), np.array(held).reshape(-1, 12)
-
-    def _refined(self, right: Floats) -> Floats:
-        found = self._factors.solve(right)
-        return np.asarray(found + self._factors.solve(right - self._matrix @ found))
+    def _held(self) -> Floats:
+        """Forces (m, 12) of line loads alone at beams' ends."""
+        every = enumerate(zip(self.model.elements, self.system.lengths, strict=True))
+        held = [line_load_effect(e.section, e.young, length, *self.model.line_load(i))[1] for i, (e, length) in every]
+        return np.array(held).reshape(-1, 12)
 
     def opened(self, rows: NDArray[np.int64]) -> Floats:
         """Return what a unit of further deformation in each of some natural rows does to a frame without loads.
@@ -219,8 +210,8 @@ class FactorisedFrame:
         """
         right = np.zeros((len(self._own), len(rows)))
         units = np.array([self.system.natural_unit(i // 6)[i % 6] for i in rows])
-        right[rows, np.arange(len(rows))] = units / self._scale
-        return self._refined(right)
+        right[rows, np.arange(len(rows))] = units / self._equations.scale
+        return self._equations.solved(right)
 
     def natural_forces(self, rows: NDArray[np.int64], unknowns: Floats) -> Floats:
         """Return natural forces from scaled unknowns.
@@ -262,16 +253,12 @@ class FactorisedFrame:
         CannotRunError
             Where the forces found do not balance to 1e-8 of the load, or 1e-6 with further deformations.
         """
-        from scipy.sparse.linalg import LinearOperator, onenormest
-
-        unknowns, condition = self._own if further is None else self._own + further, np.nan
-        if further is None:
-            # The matrix is symmetric, and so is its inverse.
-            solve = self._factors.solve
-            inverse = LinearOperator(self._matrix.shape, matvec=solve, rmatvec=solve, dtype=np.float64)
-            condition = float(abs(self._matrix).sum(axis=0).max() * onenormest(inverse, t=1))
-        q, u = unknowns[: self._size], unknowns[self._size :] * self._scale * self.system.unit
-        found = _collect(self.system, *self._basic, q, u, condition)
+        known = self._equations
+        unknowns, condition = self._own, known.condition
+        if further is not None:
+            unknowns, condition = self._own + further, np.nan
+        q, u = unknowns[: known.size], unknowns[known.size :] * known.scale * self.system.unit
+        found = _collect(self.model, self.system, known.natural, self._held, q, u, condition)
         allowed = LARGEST_RESIDUAL if further is None else OPENED_RESIDUAL
         if not found.residual <= allowed:
             raise CannotRunError(
@@ -283,10 +270,9 @@ class FactorisedFrame:
 
 
 def _collect(
-    system: FrameSystem, natural: Floats, held: Floats, q: Floats, u: Floats, condition: float
+    model: FrameModel, system: FrameSystem, natural: Floats, held: Floats, q: Floats, u: Floats, condition: float
 ) -> FrameSolution:
     """Turn natural forces (scaled) and displacements into the record, and check their balance."""
-    model = system.model
     n, m = len(model.nodes), len(model.elements)
     displacements = np.where(system.number >= 0, u[system.number] if len(u) else 0.0, 0.0).reshape(n, 6)
     nodes = np.array([e.nodes for e in model.elements], dtype=np.int64).reshape(m, 2)

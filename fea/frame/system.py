@@ -14,13 +14,14 @@ The six natural forces and the deformations that they work on (Przemieniecki, Th
     T           torque, that on the second end             twist
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.deflection import flexibility
-from fea.frame.model import DOFS, FrameModel
+from fea.frame.model import DOFS, FrameModel, NodeLoad
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Section
 
@@ -174,6 +175,8 @@ class FrameSystem:
         Factor from the scaled forces of the guides to N or N·mm.
     condensed_unit : ndarray, shape (6,)
         Factors from the scaled natural forces at a node of a condensed link to N and N·mm.
+    idle : ndarray of bool, shape (6 n,)
+        Rotations, by their owners, that are no unknowns since nothing takes part in them.
     matrices : ndarray, shape (m, 12, 12)
         From the displacements of every element's nodes, global axes, to those of its beam's ends, local axes.
     """
@@ -188,8 +191,8 @@ class FrameSystem:
         self.owner = self._owners()
         self.matrices = np.array([to_ends(model, i) for i in range(m)]).reshape(m, 12, 12)
         supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
-        idle = self._idle()
-        free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not idle[i]]
+        self.idle = self._idle()
+        free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not self.idle[i]]
         self.labels = [f"node {model.name(i // 6)} {_motion(i % 6)}" for i in free]
         self.unit = np.array([1.0 if i % 6 < 3 else 1.0 / mean for i in free])
         number = np.full(6 * n, -1)
@@ -275,8 +278,21 @@ class FrameSystem:
             for F, e in zip(flexibility, elements, strict=True)
         ]
 
-    def equations(self) -> tuple[Any, Any, Floats, Floats]:
-        """Return scaled B (6 m + g + c, k) and F, sparse, deformations v0 (6 m + g + c,) and nodal loads p - p0 (k,).
+    def bears(self, loads: Sequence[NodeLoad]) -> bool:
+        """Return whether the unknowns do for other loads: none is a moment about what was left out as idle.
+
+        Parameters
+        ----------
+        loads : sequence of NodeLoad
+
+        Returns
+        -------
+        bool
+        """
+        return not any(self.idle[6 * load.node + np.flatnonzero(load.wrench)].any() for load in loads)
+
+    def equations(self) -> tuple[Any, Any]:
+        """Return scaled B (6 m + g + c, k) and F, sparse.
 
         The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F. The c natural
         forces of condensed links come last.
@@ -285,10 +301,6 @@ class FrameSystem:
 
         m, guides = len(self.lengths), self.model.guides
         rows, columns, values, flexibility = [], [], [], []
-        v0, p = np.zeros(6 * m + len(guides)), np.zeros(len(self.unit))
-        for load in self.model.loads:
-            place = self.number[6 * load.node : 6 * load.node + 6]
-            np.add.at(p, place[place >= 0], load.wrench[place >= 0])
         for i, (e, length) in enumerate(zip(self.model.elements, self.lengths, strict=True)):
             unit = self.natural_unit(i)
             numbers, matrix = self.place(i)
@@ -297,10 +309,6 @@ class FrameSystem:
             columns.append(np.tile(numbers, 6))
             values.append(B.ravel())
             flexibility.append(unit[:, None] * natural_flexibility(e.section, e.young, e.poisson, length) * unit)
-            first, last = self.model.line_load(i)
-            v, ends = line_load_effect(e.section, e.young, length, first, last)
-            v0[6 * i : 6 * i + 6] = unit * v
-            np.add.at(p, numbers, -(matrix.T @ ends))
         flexibility = self._with_rigid(flexibility)
         for row, guide in enumerate(guides, start=6 * m):
             for node, sign in guide.nodes:
@@ -310,18 +318,44 @@ class FrameSystem:
                 columns.append(place[free])
                 values.append(sign * self.guide_unit[row - 6 * m] * guide.gradient[free] * self.unit[place[free]])
             flexibility.append(np.zeros((1, 1)))
+        size = 6 * m + len(guides)
         for link in self.model.condensed:
             unit, numbers = np.tile(self.condensed_unit, len(link.nodes) - 1), self.number[link.columns]
             free = numbers >= 0
             B = unit[:, None] * link.wrenches.T[:, free] * self.unit[numbers[free]]
-            rows.append(len(v0) + np.repeat(np.arange(len(unit)), len(B.T)))
+            rows.append(size + np.repeat(np.arange(len(unit)), len(B.T)))
             columns.append(np.tile(numbers[free], len(unit)))
             values.append(B.ravel())
             flexibility.append(unit[:, None] * link.natural_flexibility * unit)
-            v0 = np.concatenate([v0, unit * link.natural_moved])
-        shape = (len(v0), len(self.unit))
+            size += len(unit)
+        shape = (size, len(self.unit))
         B = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-        return B, block_diag(flexibility, format="csr"), v0, p * self.unit
+        return B, block_diag(flexibility, format="csr")
+
+    def loaded(self, model: FrameModel) -> tuple[Floats, Floats]:
+        """Return scaled deformations v0 (6 m + g + c,) and nodal loads p - p0 (k,) of a frame.
+
+        Parameters
+        ----------
+        model : FrameModel
+            This frame, or one that differs from it in its loads.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+        """
+        v0, p = np.zeros(6 * len(self.lengths) + len(model.guides)), np.zeros(len(self.unit))
+        for load in model.loads:
+            place = self.number[6 * load.node : 6 * load.node + 6]
+            np.add.at(p, place[place >= 0], load.wrench[place >= 0])
+        for i, (e, length) in enumerate(zip(model.elements, self.lengths, strict=True)):
+            if e.load_first.any() or e.load_last.any():
+                numbers, matrix = self.place(i)
+                v, ends = line_load_effect(e.section, e.young, length, *model.line_load(i))
+                v0[6 * i : 6 * i + 6] = self.natural_unit(i) * v
+                np.add.at(p, numbers, -(matrix.T @ ends))
+        moved = [np.tile(self.condensed_unit, len(link.nodes) - 1) * link.natural_moved for link in model.condensed]
+        return np.concatenate([v0, *moved]), p * self.unit
 
 
 def refuse_mechanism(system: FrameSystem, B: Any) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.cut_free import link_loads
 from fea.beam.deflection import deflection
 from fea.beam.details import Detail, details, remarks
 from fea.beam.flanks import flanks_of
@@ -15,6 +15,7 @@ from fea.beam.theory import BeamCheck, check_beam
 from fea.buckling.buckling import least_factor
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
+from fea.links.on_axis import on_axis
 from fea.links.second_order import second_order_loads
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.unloaded import load_size, without_rounding
@@ -149,7 +150,7 @@ def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
         ends = [PointLoad(point=np.array([x, 0.0, 0.0]), wrench=np.zeros(6)) for x in (0.0, 1.0)]
         nothing = check_beam(BeamLoads(points=tuple(ends)), section, material.allowable, material.poissons_ratio)
         return LinkByHand(check=replace(nothing, without=without), displacement=0.0, details=(), remarks=(without,))
-    acting = beam_loads(loads, body, material.density)
+    acting = on_axis(loads, body, material.density)
     check = check_beam(acting, section, material.allowable, material.poissons_ratio, body.cuts)
     bent = deflection(
         check.forces,

@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from fea.beam.column_factor import GAUSS, MERGED, Stretch, slopes, stiffness_matrices
 from fea.beam.cut_beam import curving_forces
-from fea.beam.cut_free import beam_loads
 from fea.beam.piecewise import Piecewise, Side
 from fea.beam.theory import internal_forces
 from fea.buckling.holding import columns, holding
 from fea.common.link_loads import LinkLoads
+from fea.links.on_axis import on_axis
 from geometry.bodies.body import no_beam
 from loads.case.case import Case
 from loads.records.applied import LineLoad
@@ -74,7 +74,7 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     body, material = case.body(link), case.material_of(link)
     if no_beam(body):
         return loads
-    forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.cuts)
+    forces = curving_forces(internal_forces(on_axis(loads, body, material.density)), body.cuts)
     young = material.youngs_modulus
     planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(body, free=True)]
     on_arms = {pin.name for pin in body.pins if pin.foot is not None}
@@ -105,7 +105,7 @@ def on_tilting_pins(case: Case, link: str, loads: LinkLoads) -> LinkLoads:
     body, material = case.body(link), case.material_of(link)
     if no_beam(body):
         return loads
-    forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.cuts)
+    forces = curving_forces(internal_forces(on_axis(loads, body, material.density)), body.cuts)
     if forces.largest(lambda f: -f[:, 0])[2] <= 0.0:
         return loads
     inertia, soft = columns(body, free=True)[1]
@@ -191,6 +191,8 @@ def _bowed(
         if found is None:
             return loads
         intensity[:, :, axis], point[:, axis], left[axis] = found
+    if not (intensity.any() or point.any() or left.any()):
+        return loads
     extra = {x: np.concatenate([force, np.zeros(3)]) for x, force in zip(marks, point, strict=True)}
     first, last = min(held), max(held)
     if first < last:

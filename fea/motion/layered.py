@@ -64,15 +64,20 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         return LayeredMotion(moved=moved)
     forces: dict[str, Kinetostatics] = {}
     ways: dict[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = {}
-    for name, solved in moved.forces.items():
-        wrenches = {joint: reaction.wrench.copy() for joint, reaction in solved.joints.items()}
-        for i in map(int, np.flatnonzero(evaluated)):
-            loads = _loads_at(moved, name, i)
-            frame, solution = solved_frame(case, pose_at(moved.motion, i), loads, moved.drive, bonded=False)
+    wrenches = {
+        name: {joint: reaction.wrench.copy() for joint, reaction in solved.joints.items()}
+        for name, solved in moved.forces.items()
+    }
+    for i in map(int, np.flatnonzero(evaluated)):
+        stands = pose_at(moved.motion, i)
+        for name in moved.forces:  # pose by pose: all load cases have one factorisation
+            frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.drive, bonded=False)
             found = frame.reactions(solution.joint_wrenches, solution.residual)
-            for joint, wrench in wrenches.items():
+            for joint, wrench in wrenches[name].items():
                 wrench[i, 2:5] = found.joints[joint].wrench[2:5]
-        joints = {joint: replace(reaction, wrench=wrenches[joint]) for joint, reaction in solved.joints.items()}
+    for name, solved in moved.forces.items():
+        own = wrenches[name]
+        joints = {joint: replace(reaction, wrench=own[joint]) for joint, reaction in solved.joints.items()}
         forces[name] = replace(solved, joints=joints)
         poses = _worst_poses(moved, name, forces[name], evaluated)
         for link, pose in poses.items():

@@ -43,6 +43,7 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
 
 from fea.beam.pin_between import largest_between
 from fea.common.band import Band
@@ -257,7 +258,7 @@ def fork_pin_stress(
     free = (end - start - eye.height) / 2.0
     wrench = np.array([force, 0.0, 0.0, 0.0, moment, 0.0])
     wrench[4] += force * fork.middle
-    most, shear = largest_between((fork, eye), 0.0, -wrench, wrench)
+    most, shear = map(float, largest_between((fork, eye), 0.0, -wrench, wrench))
     bent, sheared = 32.0 / (math.pi * diameter**3), _shear_stress(1.0, diameter, poisson)
     least = force * free / 4.0
     low = max(least * bent, math.sqrt(3.0) * force / 2.0 * sheared)
@@ -314,19 +315,27 @@ def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     wrench, rise = reaction.wrench, case.linkage.rise(joint)
     if rise == 0.0:
         return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
-    diameter, poisson = _pin_of(case, joint)
-    first = shifted(-wrench, np.array([0.0, 0.0, rise]))
-    moment, shear = largest_between(eyes(case, joint), rise, first, wrench)
-    bent = 32.0 / (math.pi * diameter**3) * moment
-    sheared = _shear_stress(shear, diameter, poisson)
-    equivalent = max(bent, math.sqrt(3.0) * sheared)
-    return PinStress(
-        lever=abs(rise),
-        moment=Band.exact(moment),
-        bending=Band.exact(bent),
-        shear=sheared,
-        equivalent=Band.exact(equivalent),
-    )
+    (found,) = _stresses_between(case, joint, wrench[None])
+    return found
+
+
+def _stresses_between(case: Case, joint: str, wrenches: NDArray[np.float64]) -> list[PinStress]:
+    """Stresses of a pin between layers under each of some wrenches (n, 6) on the joint's second link."""
+    (diameter, poisson), rise = _pin_of(case, joint), case.linkage.rise(joint)
+    first = shifted(-wrenches, np.array([0.0, 0.0, rise]))
+    found = []
+    for moment, shear in zip(*largest_between(eyes(case, joint), rise, first, wrenches), strict=True):
+        bent = 32.0 / (math.pi * diameter**3) * float(moment)
+        sheared = _shear_stress(float(shear), diameter, poisson)
+        stress = PinStress(
+            lever=abs(rise),
+            moment=Band.exact(float(moment)),
+            bending=Band.exact(bent),
+            shear=sheared,
+            equivalent=Band.exact(max(bent, math.sqrt(3.0) * sheared)),
+        )
+        found.append(stress)
+    return found
 
 
 def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: JointForces) -> PinStress:
@@ -354,8 +363,8 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     found = stress_at(case, joint, reaction)
     if not forces.sharings or case.linkage.rise(joint) == 0.0:
         return found
-    plain = stress_at(case, joint, forces.reactions.joints[joint])
-    others = [stress_at(case, joint, shared.reactions.joints[joint]) for shared in forces.sharings]
+    every = (forces.reactions, *(shared.reactions for shared in forces.sharings))
+    plain, *others = _stresses_between(case, joint, np.array([one.joints[joint].wrench for one in every]))
 
     def widened(name: str) -> Band:
         value, sizes = getattr(found, name).value, [getattr(one, name).value for one in (plain, *others)]

@@ -27,7 +27,7 @@ from fea.tractions.traction import (
     body_density,
     bore_middle,
     couple_traction,
-    line_density,
+    line_density_between,
     wrench_density,
 )
 from geometry.base.errors import CannotRunError
@@ -391,7 +391,8 @@ class _Builder:
         found = []
         for unit in np.eye(6)[[0, 1, 3, 4]]:
             load = LineLoad(link="", start=first, end=last, at_start=unit[:3], at_end=unit[3:], axes="link")
-            found.append(self._vector(self.volume, line_density(self.volume, load)))
+            own, density = line_density_between(self.volume, load)
+            found.append(self._vector(self.volume.only(own), density))
         return self._add(*found)
 
     def inertia(self, mass: PartMass, density: float) -> slice:

@@ -15,12 +15,13 @@ from fea.tractions.traction import (
     Transfer,
     body_density,
     couple_traction,
-    line_density,
+    line_density_between,
     pin_traction,
     thrust_traction,
     wrench_density,
 )
 from geometry.base.errors import CannotRunError
+from loads.records.applied import LineLoad
 from loads.records.bearing import PressureLaw, Span
 
 
@@ -50,12 +51,14 @@ class Variant:
 
 
 class LoadVectors:
-    """Consistent load vectors of the loads on one link; surfaces are integrated once."""
+    """Consistent load vectors of the loads on one link; surfaces, and what acts spread, are integrated once."""
 
     def __init__(self, space: DisplacementSpace, density: float) -> None:
         self._space = space
         self._density = density
         self._surfaces: dict[tuple[str, ...], SurfaceQuadrature] = {}
+        self._units: dict[tuple[float, float, int], tuple[NDArray[np.int64], NDArray[np.float64]]] = {}
+        self._inertia: tuple[bytes, float, NDArray[np.float64]] | None = None
         self._size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
 
     def variants(self, case: LinkLoads, laws: Sequence[PressureLaw], transfers: Sequence[Transfer]) -> list[Variant]:
@@ -110,8 +113,7 @@ class LoadVectors:
         for line in case.lines:
             total += float(np.linalg.norm([line.at_start, line.at_end], axis=1).mean()) * (line.end - line.start)
         if case.inertia is not None:
-            force = np.linalg.norm(body_density(self._volume, case.inertia, self._density), axis=2)
-            total += float((self._volume.w * force).sum())
+            total += self._inert(case)[0]
         if total == 0.0:
             raise CannotRunError(f"load case '{case.name}' puts no load on the link; leave it out")
         return float(total)
@@ -176,15 +178,41 @@ class LoadVectors:
         ndarray, shape (3n,)
             Nodal forces [N].
         """
-        count = len(self._space.nodes)
-        load = np.zeros(3 * count)
+        load = np.zeros(3 * len(self._space.nodes))
         if case.inertia is not None:
-            force = body_density(self._volume, case.inertia, self._density)
-            missing = case.on_mass - self._volume.wrench(
-                force, np.zeros(3)
-            )  # chords in place of arcs, on coarse meshes
-            force = force + wrench_density(self._volume, np.zeros(3), missing)
-            load += self._volume.load_vector(force, count)
+            load += self._inert(case)[1]
         for line in case.lines:
-            load += self._volume.load_vector(line_density(self._volume, line), count)
+            for component in np.flatnonzero(np.concatenate([line.at_start, line.at_end])):
+                nodal, unit = self._unit(line.start, line.end, int(component))
+                load[nodal] += float((line.at_start, line.at_end)[component // 3][component % 3]) * unit
         return load
+
+    def _unit(self, start: float, end: float, component: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Where a line load of unit intensity loads nodes, and how; along x, y, z at its start, then at its end.
+
+        Loads of many ways act between the same stations; each is a sum of these.
+        """
+        if (start, end, component) not in self._units:
+            at = np.eye(6)[component]
+            line = LineLoad(link="", start=start, end=end, at_start=at[:3], at_end=at[3:], axes="link")
+            own, density = line_density_between(self._volume, line)
+            found = self._volume.only(own).load_vector(density, len(self._space.nodes))
+            nodal = np.flatnonzero(found)
+            self._units[start, end, component] = nodal, found[nodal]
+        return self._units[start, end, component]
+
+    def _inert(self, case: LinkLoads) -> tuple[float, NDArray[np.float64]]:
+        """Sum of the sizes of weight and inertia [N], and their load vector (3n,).
+
+        Their resultant is that on the link's own mass, which a coarse mesh, with chords in place of arcs, has not quite.
+        """
+        assert case.inertia is not None
+        affine = case.inertia.per_mass(np.vstack([np.zeros(3), np.eye(3)]))  # in place: these four tell all
+        told = affine.tobytes() + case.on_mass.tobytes()
+        if self._inertia is None or self._inertia[0] != told:
+            density = body_density(self._volume, case.inertia, self._density)
+            missing = case.on_mass - self._volume.wrench(density, np.zeros(3))
+            density = density + wrench_density(self._volume, np.zeros(3), missing)
+            size = float((self._volume.w * np.linalg.norm(density, axis=2)).sum())
+            self._inertia = told, size, self._volume.load_vector(density, len(self._space.nodes))
+        return self._inertia[1:]

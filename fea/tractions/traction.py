@@ -252,14 +252,33 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
     ndarray, shape (k, q, 3)
         Force per volume [N/mm³].
     """
-    length = load.end - load.start
-    x = volume.x[..., 0]
-    place = (x - load.start) / length
+    own, density = line_density_between(volume, load)
+    found = np.zeros_like(volume.x)
+    found[own] = density
+    return found
+
+
+def line_density_between(volume: Quadrature, load: LineLoad) -> tuple[NDArray[np.bool_], Density]:
+    """Return the force per volume of a load spread along the axis in the elements that bear some of it.
+
+    Parameters
+    ----------
+    volume, load
+        As of ``line_density``.
+
+    Returns
+    -------
+    tuple of ndarray of bool (k,) and ndarray (l, q, 3)
+        Which elements bear it, and the density in these [N/mm³].
+    """
+    length, element = load.end - load.start, volume.measure / len(volume.w)
+    places = (volume.x[..., 0] - load.start) / length
+    own = np.asarray(((places >= 0.0) & (places < 1.0)).any(axis=1))
+    part, place = volume.only(own), places[own]
     inside = (place >= 0.0) & (place < 1.0)
-    element = volume.measure / len(volume.w)
     slices = int(np.clip(length / (2.0 * element ** (1.0 / 3.0)), 1, 40))
     number = np.clip((place * slices).astype(int), 0, slices - 1)
-    held = np.bincount(number[inside], weights=volume.w[inside], minlength=slices)
+    held = np.bincount(number[inside], weights=part.w[inside], minlength=slices)
     if not (held > 0.0).all():
         raise CannotRunError(
             f"a load spread from x = {load.start:g} mm to {load.end:g} mm lies partly outside of the link"
@@ -268,8 +287,8 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
     share = place[..., None]
     density = weight[..., None] * ((1.0 - share) * load.at_start + share * load.at_end)
     origin = np.zeros(3)
-    missing = load.about_origin(ALONG) - volume.wrench(density, origin)
-    return np.asarray(density + wrench_density(volume, origin, missing, weight))
+    missing = load.about_origin(ALONG) - part.wrench(density, origin)
+    return own, np.asarray(density + wrench_density(part, origin, missing, weight))
 
 
 def is_opening(wall: NDArray[np.float64], direction: float) -> bool:

@@ -12,7 +12,8 @@ import pytest
 from skfem import Basis, ElementQuad2, ElementTriP2, LinearForm, MeshQuad, MeshTri, condense, solve
 from skfem.models.poisson import laplace
 
-from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
+from fea.beam.piecewise import Piecewise
+from fea.beam.section_stress import equivalent_bound, equivalent_stress, rim_shear, section_stress
 from geometry.parts.part import rectangle, ring
 
 SECTIONS = {
@@ -102,6 +103,32 @@ def test_the_largest_von_mises_is_that_of_finite_elements(name, nu):
         normal, along, across = found @ (forces * size)
         expected = np.sqrt((normal**2 + 3.0 * (along**2 + across**2)).max())
         assert equivalent_stress(section, forces[None] * size, nu)[0] == pytest.approx(expected, rel=4e-3), forces
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_no_stress_exceeds_its_bound_and_a_moment_reaches_it(name):
+    section = SECTIONS[name]
+    forces = np.array([*loads()]) * (1.0, 1.0, 1.0, *3 * (np.hypot(section.half_y, section.half_z) / 2.0,))
+    largest = equivalent_stress(section, forces, 0.3)
+    bound = equivalent_bound(section, np.abs(forces), 0.3)
+    assert np.all(bound >= largest * (1.0 - 1e-12))
+    np.testing.assert_allclose(bound[[0, 4, 5]], largest[[0, 4, 5]], rtol=1e-2)
+
+
+@pytest.mark.parametrize("name", ["tall", "thin tube"])
+def test_the_largest_stress_of_a_beam_is_the_same_where_bounds_rule_stations_out(name):
+    section, generator = SECTIONS[name], np.random.default_rng(3)
+
+    def stress(forces):
+        return equivalent_stress(section, forces, 0.3)
+
+    for _ in range(20):
+        coefficients = generator.normal(size=(4, 6, 4)) * 0.2 ** np.arange(4) * generator.uniform(0.1, 1.0, (4, 1, 1))
+        coefficients[generator.integers(4), :, 2:] = 0.0  # as between stations without line loads
+        beam = Piecewise(breaks=np.array([0.0, 5.0, 8.0, 20.0, 30.0]), coefficients=coefficients)
+        found = beam.largest(stress, lambda sizes: equivalent_bound(section, sizes, 0.3))
+        x, side, value = beam.largest(stress)
+        assert found == (pytest.approx(x, rel=1e-6), side, pytest.approx(value, rel=1e-12))
 
 
 @pytest.mark.parametrize("name", SECTIONS)

@@ -217,9 +217,33 @@ def test_unloaded_frame_rests() -> None:
 
 def test_forces_that_do_not_balance_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """A factor that leaves out a part of the element's answer: the whole frame no longer balances."""
-    import fea.frame.linear
+    import fea.frame.equations
 
-    wrong = fea.frame.linear.natural_deformations(60.0) * (1.0 + 1e-7)
-    monkeypatch.setattr(fea.frame.linear, "natural_deformations", lambda length: wrong)
+    wrong = fea.frame.equations.natural_deformations(60.0) * (1.0 + 1e-7)
+    monkeypatch.setattr(fea.frame.equations, "natural_deformations", lambda length: wrong)
+    fea.frame.equations._known.cache_clear()
     with pytest.raises(CannotRunError, match=r"leave .* of the load unbalanced"):
         solve_frame(CANTILEVER)
+    fea.frame.equations._known.cache_clear()
+
+
+def test_frames_that_differ_in_their_loads_alone_share_one_factorisation() -> None:
+    from fea.frame.equations import equations_of
+
+    first = equations_of(CANTILEVER)
+    spread = element(0, 1, section=BAR, load_first=np.array([0.1, 0.2, 0.0]))
+    assert equations_of(replace(CANTILEVER, elements=(spread,), loads=(load(1, 2.0, 0, 3.0),))) is first
+    for other in (
+        replace(CANTILEVER, nodes=CANTILEVER.nodes * 1.01),
+        replace(CANTILEVER, elements=(replace(CANTILEVER.elements[0], young=1.0),)),
+        replace(CANTILEVER, elements=(replace(CANTILEVER.elements[0], offsets=np.full((2, 3), 0.1)),)),
+        replace(CANTILEVER, supports=(Support(node=1),)),
+    ):
+        assert equations_of(other) is not first
+
+
+def test_a_moment_about_what_nothing_turns_is_refused_beside_a_known_frame() -> None:
+    tied = replace(CANTILEVER, nodes=np.vstack([CANTILEVER.nodes, CANTILEVER.nodes[1]]), ties=(Tie(nodes=(1, 2)),))
+    solve_frame(tied)
+    with pytest.raises(CannotRunError, match=r"the frame is a mechanism"):
+        solve_frame(replace(tied, loads=(load(2, 0, 0, 0, 0, 0, 1.0),)))

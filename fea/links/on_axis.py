@@ -1,0 +1,28 @@
+"""What acts on a link reduced to its axis, once for all that ask: growth of bending and hand calculation."""
+
+from functools import lru_cache
+
+from fea.beam.cut_free import beam_loads
+from fea.beam.loads import RECENT, BeamLoads
+from fea.common.link_loads import LinkLoads
+from geometry.parts.part import Body
+
+
+@lru_cache(maxsize=RECENT)
+def on_axis(loads: LinkLoads, body: Body, density: float) -> BeamLoads:
+    """Return the loads of one pose on the link's axis, as ``beam_loads`` does.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        At one pose.
+    body : Body
+        The link's.
+    density : float
+        Of its material [tonne/mm³].
+
+    Returns
+    -------
+    BeamLoads
+    """
+    return beam_loads(loads, body, density)
