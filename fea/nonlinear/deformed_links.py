@@ -204,10 +204,11 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
             f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
             "stiffen the link"
         )
-    clamps = [i for i, end in enumerate(loads.ends) if end.clamped]
+    clamps = [i for i, end in enumerate(loads.ends) if end.clamped or not loads.pins]
     if clamps:
-        ends, end = list(loads.ends), loads.ends[clamps[0]]
-        ends[clamps[0]] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
+        holds = max(clamps, key=lambda i: float(np.linalg.norm(loads.ends[i].wrench[3:])))
+        ends, end = list(loads.ends), loads.ends[holds]
+        ends[holds] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
         return replace(loads, ends=tuple(ends))
     takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
     strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
