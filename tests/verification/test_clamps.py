@@ -11,6 +11,7 @@ import pytest
 from docs.extensions.examples import FOLDER
 from fea.beam.cut_free import link_loads
 from fea.buckling.buckling import column
+from fea.buckling.solid_holding import solid_holding
 from fea.check.run import check_case
 from fea.common.source import SourceKind
 from fea.common.verdict import Quantity, Verdict
@@ -109,6 +110,10 @@ def test_by_hand_the_free_length_begins_at_the_mouth(at):
     assert abs(hand.worst[0]) == pytest.approx(HELD)
     bent = FORCE * FREE**3 / (3.0 * young(of) * SECOND)
     assert bent < hand.displacement < (1.0 + 2.0 * SOFT) * bent
+    _, loads = forces(of)
+    frame, solution = solved_frame(of, of.solve_pose(), loads, None)
+    moved = frame.at_points(solution.displacements)["beam", "tip"]
+    assert np.linalg.norm(moved) == pytest.approx(hand.displacement, rel=1e-5)  # what is held does not give there
 
 
 def test_axial_force_torque_and_moment_out_of_the_plane_reach_the_mouth():
@@ -310,7 +315,9 @@ def test_a_cantilever_far_from_its_straight_shape_is_the_elastica():
     tip = moved.points["beam", "tip"]
     assert -tip[1] == pytest.approx(0.4935 * FREE, rel=0.005)
     assert -tip[0] == pytest.approx(0.1606 * FREE, rel=0.01)
-    assert moved.links["beam"].ends[0].clamped
+    bending = link_by_hand(of, "beam", moved.links["beam"]).worst[1].bending
+    moment = 2.0 * stiff / FREE**2 * (FREE + tip[0])  # of the force, whose arm is shorter
+    assert bending == pytest.approx(moment / (stiff / 68900.0), rel=0.02)
 
 
 def test_a_cantilever_rings_at_its_natural_frequencies():
@@ -358,6 +365,16 @@ def test_a_part_that_is_no_beam_has_the_edge_on_its_largest_stress():
     assert edge_stress(of.body("beam"), hand.check, 50.0) == pytest.approx(EDGE * 50.0)
     assert edge_stress(of.body("beam"), hand.check, 70.0) == pytest.approx(EDGE * 70.0)
     assert edge_stress(pressed().body("lever"), hand.check, 50.0) == 0.0
+
+
+def test_a_clamped_plate_is_built_in_where_it_is_held():
+    """As a solid against buckling, it is built in at its clamp alone, and held there by its faces."""
+    parts = {"tube": {"shape": "plate", "material": "aluminium-6061-t6", "thickness": "6 mm", "eye_diameter": "40 mm"}}
+    held = solid_holding(case(parts=parts), "beam")
+    assert list(held.places) == ["end:O"]
+    assert held.words == "built in at O"
+    assert held.value == pytest.approx(np.eye(6))
+    assert len(held.alone) == 1
 
 
 def pressed(**changes):
