@@ -47,7 +47,9 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
     """
     candidates = [_candidates(part, bores, one) for one in wanted]
     if not wanted:
-        raise CaseError("an imported part is placed by the bores of its pins, but the link has no joint with a pin; add one")
+        raise CaseError(
+            "an imported part is placed by the bores of its pins, but the link has no joint with a pin; add one"
+        )
     if len(wanted) == 1:
         return _placed_along(part, candidates[0], wanted[0])
     if part.along is not None:
