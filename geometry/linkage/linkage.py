@@ -228,9 +228,6 @@ class Linkage:
                 f"links: {len(grounds)} links have ground = true ({', '.join(grounds) or 'none'}); "
                 "mark exactly one link as the ground"
             )
-        for name, joint in self.joints.items():
-            self._check_joint(name, joint)
-            _check_clamp(name, joint)
         for name in self.moving:
             if len(self.links[name].points) < 2:
                 only = next(iter(self.links[name].points))
@@ -238,6 +235,10 @@ class Linkage:
                     f"links.{name}.points: it has the point '{only}' alone, but a link that moves needs two or more; "
                     "add a point, such as that of its load"
                 )
+        for name, joint in self.joints.items():
+            self._check_joint(name, joint)
+            _check_clamp(name, joint)
+        for name in self.moving:
             if not self.joints_of(name):
                 raise CaseError(f"links.{name}: it has no joint, so nothing holds it; add a joint or remove the link")
         reached = {self.ground}
