@@ -73,6 +73,7 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
         if linkage.joints[name].type != "revolute" and linkage.joints[name].links[0] == link
     }
     places = {f"bore:{pin.name}": np.array([pin.x, pin.y, 0.0]) for pin in body.pins}
+    places |= {f"end:{end.name}": np.array([end.x, end.y, 0.0]) for end in body.ends if end.clamped}
     support = case.links[link].held_at
     if support is not None:
         [end] = [end for end in body.ends if end.name == support]
@@ -81,7 +82,7 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     held_joints = [point for point in joints.values() if point not in carried] or list(joints.values())
     drive = case.drive.joint if case.drive is not None and case.drive.link == link else None
     kept = {point for name, point in joints.items() if linkage.joints[name].bonded or name == drive}
-    most = [held.kept(f"bore:{p}", ALL if p in kept else ALL[:TURN_Z]) for p in joints.values()]
+    most = [held.kept(held.surface(p), ALL if p in kept else ALL[:TURN_Z]) for p in joints.values()]
     if support is not None:
         value, words = held.kept(f"end:{support}", ALL), f"built in at {support}"
         return SolidHolding(places=places, value=value, alone=(), most=np.vstack([*most, value]), words=words)
@@ -89,7 +90,7 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     return SolidHolding(
         places=places,
         value=value,
-        alone=tuple(held.kept(f"bore:{point}", ALL) for point in sorted(kept)),
+        alone=tuple(held.kept(held.surface(point), ALL) for point in sorted(kept)),
         most=None if carried else np.vstack(most),
         words=words,
     )
@@ -108,24 +109,28 @@ class _Conditions:
             found[self._names.index(name)] = [*factors]
         return found.ravel()
 
+    def surface(self, point: str) -> str:
+        """Name of the surface at a point: its bore, or what a clamp holds."""
+        return f"end:{point}" if f"end:{point}" in self._places else f"bore:{point}"
+
     def kept(self, name: str, motions: Iterable[int]) -> Real:
         """Conditions (k, 6 p) that these motions of a place are zero."""
         return np.array([self.row((name, np.eye(6)[motion])) for motion in motions])
 
     def in_place(self, points: list[str]) -> tuple[Real, str]:
         """Conditions that take the rigid motions by bores that stay where they are, and the words for it."""
-        at = {point: self._places[f"bore:{point}"][:2] for point in points}
+        at = {point: self._places[self.surface(point)][:2] for point in points}
         pairs = list(itertools.combinations(points, 2))
         lengths = [float(np.linalg.norm(at[b] - at[a])) for a, b in pairs]
         if not pairs or max(lengths) <= 1e-9 * float(np.abs(list(self._places.values())).max()):
-            return self.kept(f"bore:{points[0]}", ALL), f"built in at {points[0]}"
+            return self.kept(self.surface(points[0]), ALL), f"built in at {points[0]}"
         first, last = pairs[int(np.argmax(lengths))]
         along = (at[last] - at[first]) / max(lengths)
-        one, other = f"bore:{first}", f"bore:{last}"
+        one, other = self.surface(first), self.surface(last)
         off = {p: abs(float(along[0] * (at[p] - at[first])[1] - along[1] * (at[p] - at[first])[0])) for p in points}
         third = max(points, key=off.__getitem__)
         if off[third] > OFF_LINE * max(lengths):
-            last_row = self.row((f"bore:{third}", np.eye(6)[2]))
+            last_row = self.row((self.surface(third), np.eye(6)[2]))
             words = f"in place at pins {first} and {last}, out of the plane at {third} too, and free to turn there"
         else:
             turn = [0.0, 0.0, 0.0, *along, 0.0]

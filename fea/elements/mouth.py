@@ -17,8 +17,9 @@ from geometry.parts.part import Body
 
 Real = NDArray[np.float64]
 DEGREE = 4
-"""Of the polynomials along the clamp. Measured on a rod held over one to four diameters: its tip's displacement is
-within 0.6 % of that of a rod built in at the mouth with 3, 4 or 5."""
+"""Of the polynomials along the clamp. Measured on a tube held over one, two and four diameters: with 4, 5 and 6 the
+displacement of its tip is the same within 0.1 %, and within 0.6 % that of a beam built in at the mouth; with 3 it is
+1 % less at four diameters."""
 
 
 @dataclass(frozen=True, kw_only=True)

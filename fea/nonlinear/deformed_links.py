@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_free import in_slot, link_loads
-from fea.common.link_loads import LinkLoads
+from fea.common.link_loads import EndLoad, LinkLoads
 from fea.frame.linkage_frame import LinkageFrame
 from fea.nonlinear.equilibrium_path import CorotationalSolution
 from geometry.base.errors import CannotRunError
 from geometry.bodies.body import mouth
-from geometry.parts.part import Body
+from geometry.parts.part import Body, PlainEnd
 from loads.records.applied import Load, shifted
 from loads.statics.statics import Reactions
 
@@ -35,7 +35,8 @@ def on_deformed_shape(
 ) -> LinkLoads:
     """Return what acts on a link on the deformed shape, for its straight shape along the chord.
 
-    The chord runs from the first to the last station; z is that of the first node, turned normal to it.
+    The chord runs from the first to the last station, or the mouth of a clamp there; z is that of the first node,
+    turned normal to it.
 
     Parameters
     ----------
@@ -60,7 +61,13 @@ def on_deformed_shape(
         Loads on the straight link.
     """
     nodes, stations = frame.model.nodes + found.displacements[: len(frame.model.nodes)], frame.stations[link]
+    mouths = {end.name: _node_at(stations, mouth(body, end)) for end in body.ends if mouth(body, end) != end.x}
+    free = [station for station in stations if station[1] in mouths.values()]
     (x, first), (_, last) = stations[0], stations[-1]
+    if any(mouth(body, end) > end.x for end in body.ends):
+        x, first = free[0]
+    if any(mouth(body, end) < end.x for end in body.ends):
+        _, last = free[-1]
     start, end = (nodes[n] + found.rotations[n] @ frame.arms.get(n, np.zeros(3)) for n in (first, last))
     along = (end - start) / np.linalg.norm(end - start)
     across = np.cross(found.rotations[first][:, 2], along)
@@ -70,11 +77,27 @@ def on_deformed_shape(
         point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
         for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
     }
-    for end in (end for end in body.ends if mouth(body, end) != end.x):
-        at = mouth(body, end)
-        _, node = min(stations, key=lambda station: abs(station[0] - at))
-        moved[end.name] = axes.T @ (nodes[node] - start) + np.array([x - at, 0.0, 0.0])
-    return in_slots(bent(_driven(link_loads(title, link, body, reactions, loads, axes), axes), moved), body, link)
+    cut = _driven(link_loads(title, link, body, reactions, loads, axes), axes)
+    for clamp in (clamp for clamp in body.ends if clamp.name in mouths):
+        held, at = nodes[frame.points[link, clamp.name]], nodes[mouths[clamp.name]]
+        moved[clamp.name] = axes.T @ (at - start) + np.array([x - mouth(body, clamp), 0.0, 0.0])
+        cut = _at_mouth(cut, clamp, axes.T @ (held - at))
+    return in_slots(bent(cut, moved), body, link)
+
+
+def _node_at(stations: Sequence[tuple[float, int]], x: float) -> int:
+    """Number of the node of the station at x."""
+    return min(stations, key=lambda station: abs(station[0] - x))[1]
+
+
+def _at_mouth(loads: LinkLoads, end: PlainEnd, arm: Real) -> LinkLoads:
+    """Return the loads with the wrench of a clamp moved to its mouth by the arm (3,) that the turned clamp has."""
+
+    def turned(load: EndLoad) -> EndLoad:
+        at_joint = shifted(load.wrench, load.point - np.array([end.x, end.y, 0.0]))
+        return replace(load, wrench=shifted(at_joint, arm))
+
+    return replace(loads, ends=tuple(turned(load) if load.name == end.name else load for load in loads.ends))
 
 
 def _driven(loads: LinkLoads, axes: Real) -> LinkLoads:
@@ -204,10 +227,11 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
             f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
             "stiffen the link"
         )
-    clamps = [i for i, end in enumerate(loads.ends) if end.clamped]
+    clamps = [i for i, end in enumerate(loads.ends) if end.clamped or not loads.pins]
     if clamps:
-        ends, end = list(loads.ends), loads.ends[clamps[0]]
-        ends[clamps[0]] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
+        holds = max(clamps, key=lambda i: float(np.linalg.norm(loads.ends[i].wrench[3:])))
+        ends, end = list(loads.ends), loads.ends[holds]
+        ends[holds] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
         return replace(loads, ends=tuple(ends))
     takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
     strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))

@@ -204,7 +204,7 @@ class LoadVectors:
     def _inert(self, case: LinkLoads) -> tuple[float, NDArray[np.float64]]:
         """Sum of the sizes of weight and inertia [N], and their load vector (3n,).
 
-        Their resultant is that on the link's own mass, which a coarse mesh, with chords in place of arcs, has not quite.
+        Their resultant is that on the link's own mass, which a coarse mesh, with chords in place of arcs, misses.
         """
         assert case.inertia is not None
         affine = case.inertia.per_mass(np.vstack([np.zeros(3), np.eye(3)]))  # in place: these four tell all

@@ -139,9 +139,7 @@ def _check_pins(body: Body) -> None:
 
 
 def _check_end(body: Body, end: PlainEnd) -> None:
-    entry = "end_patch"
     if end.clamped:
-        entry = "clamp_length"
         if body.part.is_beam and end.x not in extent(body):
             raise CaseError(
                 f"the clamp at {end.name} lies between the ends of the {body.part.shape}, but a clamp holds an end of "
@@ -157,7 +155,7 @@ def _check_end(body: Body, end: PlainEnd) -> None:
         raise CaseError(f"{end.name} is no pin, but lies in {wall}; move it out of there, or make it a joint")
     if end.patch >= room:
         raise CaseError(
-            f"the loaded patch of {end.name} would run into {wall}: set {entry} below {room:.4g} mm (now "
+            f"the loaded patch of {end.name} would run into {wall}: set {end.entry} below {room:.4g} mm (now "
             f"{end.patch:.4g} mm), or move {end.name} away from there"
         )
     low, high = patch_span(body, end)
@@ -165,7 +163,7 @@ def _check_end(body: Body, end: PlainEnd) -> None:
         low2, high2 = patch_span(body, other)
         if other is not end and low < high2 and low2 < high:
             raise CaseError(
-                f"the loaded patches of {end.name} and {other.name} overlap: reduce {entry} {end.patch:.4g} mm, or "
+                f"the loaded patches of {end.name} and {other.name} overlap: reduce {end.entry} {end.patch:.4g} mm, or "
                 "move the points further apart"
             )
 

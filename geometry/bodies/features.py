@@ -339,3 +339,8 @@ class PlainEnd:
     y: float = 0.0
     face: FlatFace | None = None
     clamped: bool = False
+
+    @property
+    def entry(self) -> str:
+        """Name of what states its patch, for messages."""
+        return "clamp_length" if self.clamped else "end_patch"

@@ -228,7 +228,7 @@ class Plate(PartKind):
         if end.patch >= most:
             raise CaseError(
                 f"the loaded patch of {end.name} is {end.patch:.4g} mm wide, but {what} leaves it less than "
-                f"{max(most, 0.0):.4g} mm: reduce end_patch, or move {end.name}"
+                f"{max(most, 0.0):.4g} mm: reduce {end.entry}, or move {end.name}"
             )
 
     @property

@@ -142,7 +142,7 @@ def check_widths(body: Body, side: Profile, *, round_ends: bool) -> None:
         if not side.even(max(low, first), min(high, last)):
             raise CaseError(
                 f"the loaded patch of {end.name} runs from x = {low:.4g} to {high:.4g} mm, over a station of widths or "
-                "its fillet: reduce end_patch, or move the station"
+                f"its fillet: reduce {end.entry}, or move the station"
             )
     if round_ends:
         reaches = [(pin, *_reach(body, side, pin)) for pin in body.pins]

@@ -56,7 +56,9 @@ def place(
     """
     candidates = [_candidates(part, bores, one) for one in wanted]
     if not wanted:
-        raise CaseError("an imported part is placed by the bores of its pins, but the link has no joint; add one")
+        raise CaseError(
+            "an imported part is placed by the bores of its pins, but the link has no joint with a pin; add one"
+        )
     if len(wanted) == 1:
         return _placed_about(part, bores, candidates[0], wanted[0], others)
     if part.along is not None:
