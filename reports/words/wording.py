@@ -371,19 +371,22 @@ def _all_named(checks: Iterable[CheckOutcome]) -> str:
 
     Such as ``safety factor of AE (dive, rest) and BC; buckling factor of AE``.
     """
-    groups: dict[Quantity, dict[str, list[CheckOutcome]]] = {}
+    groups: dict[Quantity, dict[tuple[str, ...], dict[str, CheckOutcome]]] = {}
+    asked: dict[tuple[Quantity, str], list[CheckOutcome]] = {}
     for check in checks:
-        groups.setdefault(check.quantity, {}).setdefault(str(check.subject), []).append(check)
+        asked.setdefault((check.quantity, str(check.subject)), []).append(check)
+    for (quantity, subject), found in asked.items():
+        cases = tuple(dict.fromkeys(check.load_case for check in found))
+        groups.setdefault(quantity, {}).setdefault(cases if len(cases) > 1 else (), {})[subject] = found[0]
     texts = []
-    for quantity, own in groups.items():
-        under = [list(dict.fromkeys(check.load_case for check in found)) for found in own.values()]
-        told = [f" ({', '.join(cases)})" if len(cases) > 1 else "" for cases in under]
-        if len(own) == 1:
-            [found] = own.values()
-            texts.append(f"{named(found[0])}{told[0]}")
+    for quantity, alike in groups.items():
+        own = [joined(list(names)) + (f" ({', '.join(cases)})" if cases else "") for cases, names in alike.items()]
+        found = [check for names in alike.values() for check in names.values()]
+        if len(found) == 1:
+            texts.append(named(found[0]) + own[0].removeprefix(str(found[0].subject)))
         else:
-            texts.append(f"{quantity} of {joined([name + cases for name, cases in zip(own, told, strict=True)])}")
-    return joined(texts) if len(texts) == sum(map(len, groups.values())) else "; ".join(texts)
+            texts.append(f"{quantity} of {', '.join(own)}")
+    return joined(texts) if len(texts) == len(asked) else "; ".join(texts)
 
 
 def _under(check: CheckOutcome, *, several: bool) -> str:
