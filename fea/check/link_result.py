@@ -23,7 +23,7 @@ from loads.case.case import Case
 from loads.case.forks import of_pair
 
 BEAM_ALONE = "beam theory without stress concentration"
-NO_BEAM = "no beam stands for this link"
+NO_BEAM = "no beam stands for this link; run the solid model (--fidelity solid)"
 IDLE = DecidedLink(decision=Decision(model="beam", why="nothing acts on it", next_cost=""))
 
 

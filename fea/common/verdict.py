@@ -386,7 +386,8 @@ def deciding(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     """
     checks = list(checks)
     verdict = overall(check.verdict for check in checks)
-    found = [check for check in checks if check.verdict is verdict and check.applies]
+    alike = [check for check in checks if check.verdict is verdict]
+    found = [check for check in alike if check.applies] or alike
     lost = [check for check in found if check.quantity is Quantity.LOAD_SHARE and verdict is Verdict.FAIL]
     lost.sort(key=lambda check: check.value.value)
     return lost + by_nearness(check for check in found if check not in lost)
@@ -407,6 +408,8 @@ def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
     -------
     str
     """
+    if value.unknowable or math.isnan(value.low):
+        return value.without or "it is not known"
     band = f"its band {value.low:.3g} to {value.high:.3g}".replace("inf", "∞")
     if verdict is Verdict.UNDECIDED:
         return f"{band} holds the limit {limit:g}, so it may pass or fail"

@@ -14,7 +14,6 @@ from geometry.base.errors import CannotRunError
 from reports.commands.envelope import drive_angle
 from reports.notebook.check_report import check_rows
 from reports.notebook.shown import Picture, Row, Table, pick, summary
-from reports.words.wording import joined
 
 Real = NDArray[np.float64]
 
@@ -35,6 +34,13 @@ class EnvelopeReport:
     def verdict(self) -> Verdict:
         """Pass, fail or undecided; equal to the text ``"pass"``, ``"fail"`` or ``"undecided"``."""
         return self.result.verdict
+
+    @property
+    def headline(self) -> str:
+        """The verdict, what decides it, and what it stands on besides."""
+        from reports.page.motion_pages import envelope_headline
+
+        return envelope_headline(self.result)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -128,21 +134,13 @@ class EnvelopeReport:
         return Picture(plots[link])
 
     def __str__(self) -> str:
-        return f"{self._lead}\n\n{self.table()}"
+        return f"{self.headline}\n\n{self.table()}"
 
     def __repr__(self) -> str:
         return f"<envelope of {self.result.case.title!r}: {self.verdict}>"
 
     def _repr_html_(self) -> str:
-        return summary(self.verdict, self.result.case.title, self._lead, self.table(), self.warnings)
-
-    @property
-    def _lead(self) -> str:
-        decisive = (c for c in self.result.checks if c.verdict is self.verdict and c.applies)
-        missed = [c for c in decisive if c.verdict is not Verdict.PASS]
-        named = joined(list(dict.fromkeys(f"{check.quantity}, {check.subject.long}" for check in missed)))
-        poses = f"{int(self.result.evaluated.sum())} of {len(self.result.angles)} poses"
-        return f"{self.verdict.value.capitalize()} over {poses}" + (f": {named}." if named else ".")
+        return summary(self.verdict, self.result.case.title, self.headline, self.table(), self.warnings)
 
     def _check_rows(self) -> list[Row]:
         return check_rows(self.result.checks)

@@ -12,7 +12,7 @@ from rich.console import Console
 from fea.buckling.linkage import NO_EQUILIBRIUM
 from fea.check.run import check_case
 from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, by_nearness, overall
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, by_nearness, deciding, overall
 from fea.outcomes.unloaded import undecided
 from fea.sizing.changes import changes
 from fea.study.margin import least_margin, nearest
@@ -22,7 +22,7 @@ from reports.page.html import render
 from reports.page.template import fill
 from reports.tables.console import print_result, say_checks
 from reports.tables.data import check_records
-from reports.words.wording import checks_of, inapplicable
+from reports.words.wording import checks_of, decision, inapplicable
 
 ENTRIES = (
     PLANAR,
@@ -179,3 +179,10 @@ def test_a_study_measures_how_near_a_limit_is_without_them():
     assert nearest(found) is numbers[1]
     assert nearest(found, worst=False) is numbers[1]
     assert least_margin(found)[1] == pytest.approx(0.8)
+
+
+def test_where_nothing_that_is_open_is_applicable_one_of_them_decides():
+    """It ended in an internal error."""
+    checks = [outcome("AE").not_applicable("gone"), outcome("CF")]
+    assert [check.link for check in deciding(checks)] == ["AE"]
+    assert decision(Verdict.UNDECIDED, checks, several=False).startswith("Undecided: ")

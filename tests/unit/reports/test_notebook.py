@@ -150,6 +150,8 @@ def test_an_envelope_has_the_worst_pose_of_every_link(rocker, monkeypatch):
     with pytest.raises(CannotRunError, match="rendering crashed"):
         found.plot_stress("rocker")
     assert found.verdict.value.upper() in Page(found._repr_html_()).texts
+    assert "Not checked: " in found.headline
+    assert str(found).startswith(found.headline)
     with pytest.raises(CaseError, match="there is no loaded link 'crank'"):
         found.plot_stress("crank")
 

@@ -179,3 +179,9 @@ def test_why_a_band_gives_its_verdict(ends, limit, verdict, text):
     low, high = ends
     value = high if math.isinf(low) else low
     assert reason_for(Band(value=value, low=low, high=high), limit, verdict) == text
+
+
+def test_a_number_that_is_not_known_is_open_for_its_reason():
+    """It said "its band nan to nan holds the limit 2"."""
+    unknown = Band(value=math.nan, low=math.nan, high=math.nan, without="no beam stands for this link")
+    assert reason_for(unknown, 2.0, Verdict.UNDECIDED) == "no beam stands for this link"
