@@ -199,7 +199,7 @@ def test_what_pins_sink_is_told_beside_the_band():
 def test_a_limit_inside_the_band_of_beams_is_left_to_solids():
     by_beam, _ = flat_bar("0.04 mm", "beam")
     assert (by_beam.verdict, flat_bar("0.04 mm", "auto")[0].verdict) == ("undecided", "pass")
-    assert by_beam.reason.endswith("; solid models of all links, --fidelity solid, have a narrower band")
+    assert by_beam.reason.endswith("; solid models of all links (--fidelity solid) have a narrower band")
 
 
 def bent_tube(force: str, fidelity: str) -> CheckOutcome:
@@ -284,7 +284,7 @@ def test_virtual_work_is_how_the_links_fit_together_at_their_bores():
 
 def test_links_decided_by_hand_add_what_their_beams_do():
     mixed, solids = displacement(checked(ROCKER, "auto")), displacement(checked(ROCKER))
-    assert "of the solid models of crank, rocker and of the frame's beams of coupler" in mixed.reason
+    assert "by the solid models of crank, rocker and of the frame's beams of coupler" in mixed.reason
     assert solids.reason.startswith("by the solid models of crank, coupler, rocker, by linear theory")
     assert mixed.value.value == pytest.approx(solids.value.value, rel=0.02)
     assert mixed.value.low < solids.value.value < mixed.value.high

@@ -6,11 +6,13 @@ at H; E 2400 MPa, nu 0.38, tubes of 5 over 2.5 mm, layers 7 mm apart. It was wri
 """
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from edited_cases import edited
 
+import fea.frame.equations
 import fea.frame.system
 from fea.beam.cut_free import link_loads
 from fea.frame.build import build_frame
@@ -53,7 +55,7 @@ def largest_stress(frame: LinkageFrame, solution: FrameSolution, link: str) -> f
 
 
 @pytest.fixture
-def no_shear(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_shear(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     with_shear = fea.frame.system.flexibility
 
     def flexibility(*of: object) -> tuple[float, ...]:
@@ -61,6 +63,9 @@ def no_shear(monkeypatch: pytest.MonkeyPatch) -> None:
         return along, 0.0, 0.0, twist, about_y, about_z
 
     monkeypatch.setattr(fea.frame.system, "flexibility", flexibility)
+    fea.frame.equations._known.cache_clear()
+    yield
+    fea.frame.equations._known.cache_clear()
 
 
 @pytest.mark.usefixtures("no_shear")

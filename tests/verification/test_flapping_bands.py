@@ -143,6 +143,9 @@ def test_a_checks_bands_hold_every_coefficient_of_the_range():
         assert other.keys() == found.keys()
         for key, one in other.items():
             band, direct_band = found[key].value, one.value
+            if band.unknowable:  # of layers hand calculation tells nothing
+                assert direct_band.unknowable
+                continue
             assert band.low <= direct_band.low * (1.0 + 1e-3), (key, coefficient)
             assert band.high >= direct_band.high / 1.05, (key, coefficient)
             wider[key] |= direct_band.value < 0.8 * band.value or direct_band.value > 1.2 * band.value

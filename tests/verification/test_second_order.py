@@ -44,7 +44,7 @@ def loaded(*pins: tuple[float, list[float]], q: float = 0.0, tip: tuple[float, l
 
 
 def forces(loads: LinkLoads):
-    body = SimpleNamespace(pins=[SimpleNamespace(name=pin.name, foot=None) for pin in loads.pins])
+    body = SimpleNamespace(pins=[SimpleNamespace(name=pin.name, foot=None) for pin in loads.pins], ends=())
     return internal_forces(beam_loads(loads, body, 0.0))
 
 

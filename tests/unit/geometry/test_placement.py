@@ -181,7 +181,7 @@ def test_named_bores_without_a_joint_tell_how_a_part_on_a_single_pin_lies(seed, 
         ({}, ONE, r"single pin, A, which does not tell how the part lies; name the bore of a second point"),
         ({"along": (0.0, 0.01, 1.0)}, ONE, "is the direction of bore 1, but the link's x axis lies across its pins"),
         ({"along": (1.0, 0.0, 0.0)}, POINTS, "along: the pins of the link tell how the part lies; leave it out"),
-        ({"along": (1.0, 0.0, 0.0)}, {}, "the link has no joint; add one"),
+        ({"along": (1.0, 0.0, 0.0)}, {}, "the link has no joint with a pin; add one"),
     ],
 )
 def test_a_direction_is_stated_where_it_is_needed_and_only_there(entries, points, said):

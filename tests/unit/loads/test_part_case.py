@@ -67,7 +67,7 @@ def test_a_rod_pulls_at_the_short_arm_of_a_part_with_three_bores(file, arms, pla
 def test_the_weight_of_the_part_pulls_down(plates, tmp_path):
     """60 x 16 x 5 mm of aluminium (2700 kg/m³); the bore of 6 mm is about the pin, and takes nothing of the moment."""
     case = written(plates / "arm.step", tmp_path, "load_cases.load.own_weight=true")
-    assert held(case).drive_torque == pytest.approx(520.0 + 60.0 * 16.0 * 5.0 * 2.70e-9 * 9806.65 * 22.0, rel=1e-6)
+    assert held(case).drive_torque == pytest.approx(520.0 + 60.0 * 16.0 * 5.0 * 2.70e-9 * 9806.65 * 22.0, abs=2e-3)
 
 
 def test_the_file_says_what_was_guessed_and_where_its_part_is_and_is_not_overwritten(tmp_path):

@@ -49,7 +49,7 @@ def test_every_link_has_its_safety_factor(result):
 
 def test_a_command_is_one_line_that_a_shell_takes_and_nothing_is_told_twice():
     """The command was broken at 80 columns, so that its copy ran half; the reason stood in two paragraphs."""
-    changes = ("joints.O2.pin_diameter=3 mm", "joints.O4.pin_diameter=3 mm")
+    changes = ("parts.bar.material=aluminium-6061-t6", "links.rocker.end_patch=8 mm")
     text = printed(by_hand("four-bar", *changes))
     [line] = [line for line in text.splitlines() if line.startswith("  alula size")]
     assert len(line) > 80

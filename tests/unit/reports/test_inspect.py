@@ -76,7 +76,7 @@ def test_the_entries_name_part_points_and_bores(tmp_path):
             "Kniehebel 1ß": {
                 "shape": "step",
                 "file": "Kniehebel 1ß.step",
-                "material": "pla-fdm-xy",
+                "material": "aluminium-6061-t6",
                 "bores": {"A": "bore 2", "B": "bore 3", "C": "bore 1"},
             }
         },

@@ -94,7 +94,7 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
     assert found.returncode == 0
     assert record["passing"] == "4 mm"  # README: 4 mm passes, 3.5 mm is undecided
     assert "3.5 mm" in record["undecided"]
-    assert [one["what"] for one in record["caveats"]] == ["pins of steel-wire"]
+    assert "pins of steel-wire" in [one["what"] for one in record["caveats"]]
     assert not list(tmp_path.iterdir())
 
 
