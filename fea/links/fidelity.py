@@ -17,6 +17,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind
 from fea.refine.link_task import LinkTask
 from fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
+from fea.solid.layers import in_worst_direction
 from geometry.base.errors import CannotRunError
 from geometry.bodies.body import extent, reference_line
 from geometry.bodies.eyes import eye_reach
@@ -319,6 +320,18 @@ def _limit(ends: tuple[float, float]) -> str:
     return f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g} (with stated scatter)"
 
 
+def _layers_open(task: LinkTask, hands: Sequence[HandBands]) -> bool:
+    """Whether layers, in the direction that is the worst for them, might not keep their limits."""
+    layers = task.layers
+    if layers is None:
+        return False
+    if layers.between is None:
+        return True
+    ratio = layers.across / layers.between
+    worst = max(in_worst_direction(hand.principal.high, hand.von_mises.high, ratio) for hand in hands)
+    return any(worst > least for least, _ in task.layer_limits)
+
+
 def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, str]:
     """Return the decision, if hand calculation can make it.
 
@@ -333,11 +346,11 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     tuple of (Decision or None, str)
         The decision, and why there is none; "" where there is one.
     """
-    if task.layers is not None:
-        return None, "hand calculation tells nothing of the stress on layers, so finite elements decided"
     for hand in hands:
         if hand.outside:
             return None, f"hand calculation is not calibrated for this link: {hand.outside}"
+    if _layers_open(task, hands):
+        return None, "by hand only the least of layers in any direction is known, so finite elements decided"
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
     open_limit = undecided(task, stresses, [hand.displacement for hand in hands])
     if open_limit:

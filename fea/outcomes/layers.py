@@ -14,6 +14,7 @@ from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.result import LinkResult
 from fea.solid.layers import in_worst_direction
+from geometry.materials.material import Material
 from loads.case.case import Case
 
 CHECK = "layers"
@@ -50,9 +51,7 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
         elif material.strength_across_layers is None:
             yield outcome(Band.unknown()).because(no_strength(material.title))
         else:
-            yield outcome(Band.unknown()).because(
-                "hand calculation tells nothing of the stress on layers; run the solid model (--fidelity solid)"
-            )
+            yield _bounded(outcome(_by_hand(material, result)))
 
 
 def may_lie_in_any_direction(case: Case, link: str) -> bool:
@@ -91,19 +90,42 @@ def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_m
     Band
         The same where the part states its direction, or the card knows nothing of layers.
     """
-    material = case.material_of(link)
-    across, between = material.strength_across_layers, material.shear_strength_between_layers
-    if across is None or not may_lie_in_any_direction(case, link) or math.isnan(factor.low):
+    if not may_lie_in_any_direction(case, link) or math.isnan(factor.low):
         return factor
-    least = 0.0
-    if between is not None:
-        worst = in_worst_direction(principal.high, von_mises.high, across / between)
-        least = layer_scatter(material).low * across / worst if worst > 0.0 else math.inf
+    material = case.material_of(link)
+    least = layer_scatter(material).low * _weakest(material, principal.high, von_mises.high)
     if not least < factor.low or factor.low == math.inf:
         return factor
     width = factor.low / least if least > 0.0 else math.inf
     build = Source(kind=SourceKind.BUILD, detail="none is stated", width=width)
     return replace(factor, low=least, sources=distinct(factor.sources, (build,)))
+
+
+def _weakest(material: Material, principal: float, von_mises: float) -> float:
+    """Return the safety factor of the weakest direction or less, 0 where shear has no strength."""
+    across, between = material.strength_across_layers, material.shear_strength_between_layers
+    if across is None or between is None:
+        return 0.0
+    worst = in_worst_direction(principal, von_mises, across / between)
+    return across / worst if worst > 0.0 else math.inf
+
+
+def _by_hand(material: Material, result: LinkResult) -> Band:
+    """Return the least safety factor that the layers can have by hand: a bound for whatever direction they have."""
+    principal, von_mises = result.principal_max, result.von_mises_max
+    if result.safety_factor.without or principal.unknowable or math.isinf(von_mises.high):
+        return Band.unknown()
+    value = _weakest(material, principal.value, von_mises.value)
+    least = layer_scatter(material).low * _weakest(material, principal.high, von_mises.high)
+    return Band(value=value, low=least, high=math.inf, sources=result.safety_factor.sources)
+
+
+def _bounded(outcome: CheckOutcome) -> CheckOutcome:
+    if outcome.verdict is Verdict.PASS:
+        return outcome.because(f"{outcome.reason}; by hand this is the least for any direction of the layers")
+    return outcome.because(
+        "by hand only the least of layers in any direction is known; run the solid model (--fidelity solid)"
+    )
 
 
 def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> CheckOutcome:

@@ -471,9 +471,7 @@ def test_one_point_of_a_link_is_held_in_one_way():
 
 def test_a_link_that_moves_needs_two_points():
     links = data()["links"] | {"beam": {"part": "tube", "points": points(O=0.0)}}
-    with pytest.raises(
-        CaseError, match=r"links\.beam\.points: it has 1, but at least 2 must be there"
-    ):
+    with pytest.raises(CaseError, match=r"links\.beam\.points: it has 1, but at least 2 must be there"):
         case(links=links, load_cases={"push": {"forces": []}})
 
 

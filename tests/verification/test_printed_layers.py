@@ -95,7 +95,6 @@ def test_the_factor_is_strength_over_the_largest_stress_of_all_variants(checked)
 
 def test_the_solid_decides_and_the_check_has_a_line(checked):
     assert checked.links["bar"].decided_by == "solid"
-    assert "tells nothing of the stress on layers" in checked.links["bar"].why
     [line] = [check for check in checked.checks if check.quantity is Quantity.LAYERS]
     assert (line.name, line.link, line.limit) == ("layers", "bar", 2.0)
     assert line.verdict is line.quantity.sense.verdict(line.value, line.limit)

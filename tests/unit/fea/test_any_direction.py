@@ -52,6 +52,26 @@ def test_a_pass_needs_the_weakest_direction_and_a_fail_the_strongest():
     assert crank(200.0).verdict is Verdict.FAIL, "in all directions"
 
 
+@cache
+def layers(load, fidelity, **lost):
+    """Outcome of the crank's layers, built along its pins, under a load [N]."""
+    case = edited("four-bar", [f"load_cases.lift.forces.0.force=['0 N','-{load:g} N']", "links.rocker.end_patch=8 mm"])
+    case = with_material(case, "pla-fdm-xy", PLA.model_copy(update=lost))
+    checks = check_case(case, fidelity=fidelity).load_cases["lift"].checks
+    [found] = [c for c in checks if c.quantity is Quantity.LAYERS and c.link == "crank"]
+    return found
+
+
+def test_by_hand_layers_of_a_stated_direction_have_the_least_of_all_directions():
+    found = layers(5.0, "beam")
+    assert (found.verdict, found.value.high) == (Verdict.UNDECIDED, np.inf)
+    assert found.value.value < layers(5.0, "auto").value.value, "its solid tells more"
+    assert "--fidelity solid" in found.reason
+    assert layers(0.5, "beam").verdict is Verdict.PASS
+    lost = {"shear_strength_between_layers": None, "shear_strength_between_layers_range": None}
+    assert layers(0.1, "beam", **lost).verdict is Verdict.UNDECIDED
+
+
 def test_without_a_shear_strength_no_direction_is_sure():
     lost = {"shear_strength_between_layers": None, "shear_strength_between_layers_range": None}
     found = crank(0.1, **lost)
