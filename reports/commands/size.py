@@ -342,6 +342,8 @@ def print_size(found: "Sized", console: "Console") -> None:
         say(console, f"No value of {found.path} from {span} passes over its whole band.", style="bold")
     else:
         say(console, f"{least} {found.path} that passes: {found.values[found.passing]}.", style="bold")
+        if found.passing == (0 if found.rising else len(found.values) - 1):
+            say(console, "The range begins with it; values beyond may pass, too.")
     if found.failing is None:
         say(console, f"None from {span} fails.")
     else:

@@ -58,7 +58,9 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     check = change.check
     told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
     if change.refuted and not told:
-        told.append("What its margin suggests was tried, and no load or material within reach does.")
+        told.append(
+            "Other loads and materials were tried by hand calculation; with none within reach does it pass."
+        )
     elif check.verdict is Verdict.UNDECIDED and not told:
         known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
         told.append(_of_itself(check) if known else sentence(check.reason))
@@ -68,8 +70,8 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
         told.append(
             _of_itself(check)
             if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
-            else "No factor on the loads is told: the number is not in proportion to them, since springs act or the "
-            "shape of the deformed linkage counts."
+            else "No factor on the loads is told: the number is not in proportion to them, since "
+            + ("springs act." if result.case.sprung else "the shape of the deformed linkage counts.")
         )
     return told
 
@@ -90,6 +92,9 @@ def size_command(change: VerdictChange, result: CheckResult) -> str:
         return ""
     size = change.size
     words = ["alula", "size", shlex.quote(result.name), "--vary", f'{size.entry}="{size.first}..{size.last}"']
+    every = [link for one in result.load_cases.values() for link in one.links.values()]
+    if any(isinstance(link, HandResult) and not link.decided_by for link in every):
+        words += ["--fidelity", "beam"]
     for path, value in result.case.changes:
         if path != size.entry:
             words += ["--set", shlex.quote(f"{path}={value}")]
@@ -119,6 +124,8 @@ def _of_load(change: VerdictChange, result: CheckResult) -> list[str]:
         factor = f"about {factor}"  # the path to it is followed in steps
     if check.verdict is not Verdict.PASS:
         return [f"It passes with {factor} times {every}{' at the latest' if change.faster else ''}."]
+    if rounded(load, up=False) <= 1.0:
+        return []
     less = "less than " if change.faster else ""
     if load > change.until:
         linear = _rounded(change.until, up=False)
@@ -136,6 +143,8 @@ def _of_material(change: MaterialChange | None, result: CheckResult, *, passes: 
         return [f"All moduli {_rounded(change.needed, up=True)} times as large {verb}."]
     title = result.case.all_materials[change.material].title
     needed, stated = _rounded(change.needed, up=True), plain(float(f"{change.stated:.4g}"))
+    if float(needed) == float(stated):
+        return []
     article = "An" if change.what[0] in "aeiou" else "A"
     return [f"{article} {change.what} of {needed} MPa in place of {stated} MPa ({title}) {verb}."]
 
