@@ -6,6 +6,7 @@ from dataclasses import replace
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity
 from geometry.base.errors import CaseError
+from geometry.materials.temperature import ROOM
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck
 from loads.records.conditions import modulus_unknown, strength_unknown
@@ -117,7 +118,7 @@ def as_if_cold(case: Case) -> Iterator[str]:
 
 
 def temperature_caveats(case: Case) -> Iterator[Caveat]:
-    """Yield the checked pins whose material tells nothing of the stated temperature, and why that matters.
+    """Yield thermal expansion, and the checked pins whose material tells nothing of the stated temperature.
 
     Parameters
     ----------
@@ -127,6 +128,10 @@ def temperature_caveats(case: Case) -> Iterator[Caveat]:
     ------
     Caveat
     """
+    stated = case.conditions.temperature
+    if stated is not None and not ROOM[0] <= stated <= ROOM[1]:
+        at = f"{stated:g} degC"
+        yield Caveat(topic=Topic.TEMPERATURE, what="thermal expansion", why=f"at {at} sizes are taken as stated")
     asked = [check.joints or case.pinned_joints for check in case.all_checks.values() if isinstance(check, PinCheck)]
     used = dict.fromkeys(case.joints[joint].pin_material for joints in asked for joint in joints)
     left = [

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from geometry.materials.material import Material
-from geometry.materials.plausible import FILLED, PLASTIC, class_of
+from geometry.materials.plausible import is_plastic
 from geometry.materials.printable import is_printed
 from loads.case.case import Case
 from loads.records.check_spec import SustainedCheck
@@ -11,7 +11,7 @@ from loads.text.caveat import Caveat, Topic
 
 
 def creep_caveats(case: Case) -> Iterator[Caveat]:
-    """Yield the creep of plastics under loads that stay: for the stated duration, or where the case states no motion.
+    """Yield the creep of plastics under loads that stay: for the stated duration, or where the linkage stands still.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def creep_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     creeping = [x for x in case.checked_links if _is_plastic(case.part_of(x).material, case.material_of(x))]
-    stays = case.motion is None and any(one.speed == 0.0 for one in case.load_cases.values())
+    stays = any(one.speed == 0.0 for one in case.load_cases.values())
     if case.conditions.duration is not None:
         checks = [check for check in case.all_checks.values() if isinstance(check, SustainedCheck)]
         judged = {link for check in checks for link in check.links or case.checked_links}
@@ -58,4 +58,4 @@ def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
 
 
 def _is_plastic(name: str, material: Material) -> bool:
-    return is_printed(material) or class_of(name, material) in (PLASTIC, FILLED)
+    return is_printed(material) or is_plastic(name, material)

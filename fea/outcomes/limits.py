@@ -6,6 +6,7 @@ from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_
 from fea.solid.layers import Layers
 from geometry.base.errors import CaseError
 from geometry.materials.material import Material
+from geometry.materials.plausible import is_plastic
 from geometry.materials.printable import is_printed, is_solid_stock
 from loads.case.case import Case
 from loads.records.check_spec import (
@@ -209,7 +210,7 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
 
 
 def layer_caveats(case: Case) -> Iterator[Caveat]:
-    """Yield the printed links of which nothing is known across the layers, and whose safety factor is checked.
+    """Yield the checked links that are or may be printed, of which nothing is known across the layers.
 
     Parameters
     ----------
@@ -221,15 +222,15 @@ def layer_caveats(case: Case) -> Iterator[Caveat]:
     """
     checks = [check for check in case.all_checks.values() if isinstance(check, SafetyFactorCheck)]
     asked = dict.fromkeys(link for check in checks for link in check.links or case.checked_links)
-    bare = [
-        link
-        for link in asked
-        if case.material_of(link).strength_across_layers is None
-        and case.part_of(link).build_direction is None
-        and is_printed(case.material_of(link))
-    ]
+    unknown = [link for link in asked if case.material_of(link).strength_across_layers is None]
+    bare = [link for link in unknown if case.part_of(link).build_direction is None and _may_be_printed(case, link)]
     if bare:
         which = "" if len(bare) == len(case.checked_links) else f" of {', '.join(bare)}"
         yield Caveat(
-            topic=Topic.LAYERS, what=f"layers{which}", why="strength between the layers of the print is not known"
+            topic=Topic.LAYERS, what=f"layers{which}", why="strength between the layers of a print is not known"
         )
+
+
+def _may_be_printed(case: Case, link: str) -> bool:
+    material = case.material_of(link)
+    return is_printed(material) or (is_plastic(case.part_of(link).material, material) and not is_solid_stock(material))

@@ -5,6 +5,7 @@ Every feature tells its own, in its own file; here they are gathered.
 
 from collections.abc import Iterator
 
+from fea.buckling.wall import wall_caveats
 from fea.common.at_temperature import as_if_cold, temperature_caveats
 from fea.common.lasting import creep_caveats, fatigue_caveats
 from fea.outcomes.limits import layer_caveats, limit_caveats
@@ -51,6 +52,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tup
         *shaft_caveats(case),
         *collision_caveats(case),
         *_pins(case),
+        *wall_caveats(case),
         *limit_caveats(case),
         *tolerance_caveats(case),
         *layer_caveats(case),

@@ -179,3 +179,20 @@ def untold(name: str, material: Material) -> tuple[str, ...]:
     lists = " and ".join(f"{where} of {', '.join(entries)}" for where, entries in left.items())
     said = f"materials.{name} does not state {lists}; write under [materials.{name}] for example {line}"
     return (said,) if lists else ()
+
+
+def is_plastic(name: str, material: Material) -> bool:
+    """Return whether a material creeps and may be printed: a plastic, or what is light.
+
+    Parameters
+    ----------
+    name : str
+        Name of the material's card.
+    material : Material
+        The card.
+
+    Returns
+    -------
+    bool
+    """
+    return class_of(name, material) in (PLASTIC, FILLED, LIGHT)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
+from loads.records.check_spec import MotorCheck
 from loads.text.caveat import Caveat, Heading, Topic
 
 LOOSE = 0.1
@@ -219,6 +220,11 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             topic=Topic.FRICTION,
             what=f"no couple on {', '.join(short)}",
             why="no guide_length stated",
+        )
+    asked = any(isinstance(check, MotorCheck) for check in case.checks.values())
+    if asked and not rubbing_joints(case):
+        yield Caveat(
+            heading=Heading.ASSUMED, topic=Topic.FRICTION, what="joints without friction", why="none states any"
         )
     for name, play in clearances(case).items():
         diameter = case.joints[name].pin_diameter or math.inf

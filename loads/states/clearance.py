@@ -264,7 +264,9 @@ def collision_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     if not case.stacked and len(case.checked_links) > 1:
-        yield Caveat(topic=Topic.COLLISIONS, what="collisions of links", why="no link states a layer")
+        yield Caveat(
+            topic=Topic.COLLISIONS, what="collisions of links and couples of their pins", why="no link states a layer"
+        )
 
 
 def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:

@@ -22,6 +22,7 @@ from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import PartMass
+from loads.records.check_spec import FrequencyCheck
 from loads.records.load_case import LoadCase
 from loads.records.settings import DriveSpec
 from loads.records.springs import LineSpring, Spring
@@ -401,7 +402,7 @@ def refuse_stops(case: Case, motion: Motion) -> None:
 
 
 def drive_caveats(case: Case) -> Iterator[Caveat]:
-    """Yield that the drive holds its link without giving, where a case states how stiffly it does.
+    """Yield that the drive holds its link without giving, where that matters.
 
     Parameters
     ----------
@@ -417,4 +418,8 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
             topic=Topic.DRIVE,
             what="a drive that does not give",
             why="its stiffness counts for natural frequencies alone",
+        )
+    elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+        yield Caveat(
+            heading=Heading.ASSUMED, topic=Topic.DRIVE, what="a drive that does not give", why="no drive.stiffness"
         )

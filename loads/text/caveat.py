@@ -24,6 +24,7 @@ class Topic(StrEnum):
     WEIGHT = "weight"
     LOADS = "loads"
     VIBRATION = "vibration"
+    BUCKLING = "buckling"
     DRIVE = "drive"
     FRICTION = "friction"
     BONDS = "bonds"

@@ -58,9 +58,7 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     check = change.check
     told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
     if change.refuted and not told:
-        told.append(
-            "Other loads and materials were tried by hand calculation; with none within reach does it pass."
-        )
+        told.append("Other loads and materials were tried by hand calculation; with none within reach does it pass.")
     elif check.verdict is Verdict.UNDECIDED and not told:
         known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
         told.append(_of_itself(check) if known else sentence(check.reason))

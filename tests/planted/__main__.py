@@ -39,11 +39,18 @@ def noticing(copy: Path, mistake: Mistake, tests: Sequence[str]) -> list[str]:
     """Plant a mistake in a copy of the checkout, return the tests that fail with it, and take it out again."""
     module = copy / mistake.file
     right = module.read_text(encoding="utf-8")
-    module.write_text(mistake.planted(right), encoding="utf-8")
+    _write(module, mistake.planted(right))
     try:
         return failing(copy, tests)
     finally:
-        module.write_text(right, encoding="utf-8")
+        _write(module, right)
+
+
+def _write(module: Path, text: str) -> None:
+    """Write a module, and forget what was compiled of it, which may look fresh."""
+    module.write_text(text, encoding="utf-8")
+    for compiled in (module.parent / "__pycache__").glob(f"{module.stem}.*.pyc"):
+        compiled.unlink()
 
 
 def is_one_of(test: str, names: Sequence[str]) -> bool:

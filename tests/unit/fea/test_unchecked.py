@@ -8,6 +8,7 @@ import pytest
 from frequency_cases import lever
 from materials import with_material
 
+from fea.buckling.wall import wall_stress
 from fea.check.run import check_case
 from fea.outcomes.unchecked import caveats, unchecked
 from fea.vibration.harmonics import nearest_harmonic
@@ -22,8 +23,9 @@ STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}
 STIFF = {"type": "displacement", "maximum": "1 m"}
 NO_PINS = "pins (no check)"
+CREEP = "creep under loads that stay (no conditions.duration)"
 SHAFT = 'drive shaft at O2 (its torque enters by the flat faces; with drive.transfer = "bore-shear" it twists the pin)'
-COLLISIONS = "collisions of links (no link states a layer)"
+COLLISIONS = "collisions of links and couples of their pins (no link states a layer)"
 
 
 def starter(checks, *bare):
@@ -47,8 +49,8 @@ def in_layers(checks, *bare, transfer="eye-faces"):
 
 
 def left(case, **over):
-    """What is not checked of a case, without shaft and collisions, which the starter has always."""
-    return tuple(one for one in unchecked(case, **over) if one not in (SHAFT, COLLISIONS))
+    """What is not checked of a case, without shaft, collisions and creep, which the starter has always."""
+    return tuple(one for one in unchecked(case, **over) if one not in (SHAFT, COLLISIONS, CREEP))
 
 
 @pytest.mark.parametrize(
@@ -81,11 +83,11 @@ def test_what_is_left_out(checks, bare, left_out):
 
 def test_the_drive_shaft_is_told_where_its_torque_is_not_in_the_pin():
     checks = {"a": STRENGTH, "b": PINS}
-    assert unchecked(starter(checks)) == (SHAFT, COLLISIONS)
-    assert unchecked(in_layers(checks)) == (SHAFT,)
-    assert unchecked(in_layers(checks, transfer="bore-shear")) == ()
+    assert unchecked(starter(checks)) == (SHAFT, COLLISIONS, CREEP)
+    assert unchecked(in_layers(checks)) == (SHAFT, CREEP)
+    assert unchecked(in_layers(checks, transfer="bore-shear")) == (CREEP,)
     balanced = starter(checks)
-    assert unchecked(balanced.model_copy(update={"drive": None})) == (COLLISIONS,)
+    assert unchecked(balanced.model_copy(update={"drive": None})) == (COLLISIONS, CREEP)
 
 
 def test_collisions_are_told_where_several_links_have_parts_and_none_states_a_layer():
@@ -104,17 +106,18 @@ def test_verdict_and_record_name_a_link_without_part():
     assert headline(result).endswith(
         " Assumed: pins of steel-wire (no pin_material stated). Unusual: checks.a.minimum = 0.01 (below 1 it lets pass "
         "what the load breaks); checks.b.minimum = 0.01 (below 1 it lets pass what the load breaks). Not checked: "
-        "coupler (no part); drive shaft at O2; collisions of links."
+        "coupler (no part); drive shaft at O2; collisions of links and couples of their pins; creep under loads "
+        "that stay (no conditions.duration)."
     )
-    assert result_record(result)["not_checked"] == ["coupler (no part)", SHAFT, COLLISIONS]
+    assert result_record(result)["not_checked"] == ["coupler (no part)", SHAFT, COLLISIONS, CREEP]
 
 
-def test_nothing_is_said_where_all_is_checked():
+def test_nothing_but_creep_is_said_where_all_else_is_checked():
     """In layers, and with the drive's torque in a pin that is checked."""
     case = in_layers({"a": STRENGTH, "b": PINS}, transfer="bore-shear")
     result = check_case(case, fidelity="beam")
-    assert "Not checked" not in headline(result)
-    assert result_record(result)["not_checked"] == []
+    assert headline(result).endswith(f"Not checked: {CREEP}.")
+    assert result_record(result)["not_checked"] == [CREEP]
 
 
 @pytest.mark.parametrize(("checks", "warned"), [({"a": STRENGTH}, False), ({"a": STRENGTH, "b": PINS}, True)])
@@ -134,7 +137,7 @@ def told(**tables):
     for name, more in tables.items():
         data[name] = data.get(name, {}) | more if isinstance(more, dict) else more
     found = caveats(validate(data))
-    known = ("stress", "pins", "shaft", "collisions", "fatigue")
+    known = ("stress", "pins", "shaft", "collisions", "fatigue", "creep")
     return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in known}
 
 
@@ -146,7 +149,7 @@ INERTIA, VIBRATION = ("not checked", "inertia"), ("not checked", "vibration")
 def test_inertia_that_is_left_out_is_told():
     assert told() == told(motion={"turn": True}) == {}
     assert told(motion=FAST) == {VIBRATION: 'vibration (no check of type "frequency")'}
-    assert told(motion=FAST, checks={"f": SPRING}) == {}
+    assert [key for key in told(motion=FAST, checks={"f": SPRING}) if key[1] != "drive"] == []
     assert told(motion=FAST | {"inertia": False}) == {INERTIA: "inertia (motion.inertia is false)"}
     still = {"own_weight": True, "speed": "0 rpm"}
     assert told(motion=FAST, load_cases={"lift": still}) == {
@@ -215,7 +218,7 @@ def test_limits_of_cards_below_one_are_told_where_they_decide():
     ("tables", "key", "text"),
     [
         (
-            {"motion": FAST, "checks": {"f": SPRING | {"minimum": 0.01}}},
+            {"motion": FAST, "drive": {"stiffness": "0.1 N*m/rad"}, "checks": {"f": SPRING | {"minimum": 0.01}}},
             ("unusual", "limit"),
             "checks.f.minimum = 0.01 (below 1 it lets pass what rings below its drive)",
         ),
@@ -252,7 +255,9 @@ def test_limits_of_cards_below_one_are_told_where_they_decide():
     ],
 )
 def test_what_a_case_states_and_no_check_looks_at_is_told(tables, key, text):
-    assert told(**tables) == {key: text}
+    found = told(**tables)
+    assert found.pop(key) == text
+    assert {topic for _, topic in found} <= {"drive"}
 
 
 def test_a_guide_that_rubs_without_a_length_is_told():
@@ -315,7 +320,7 @@ def of_material(material, **tables):
 
 
 def test_layers_of_a_print_whose_card_tells_nothing_of_them_are_named():
-    said = "layers (strength between the layers of the print is not known)"
+    said = "layers (strength between the layers of a print is not known)"
     assert of_topic(of_material("resin-tough"), Topic.LAYERS) == [said]
     asked = {"a": STRENGTH | {"links": ["rocker"]}}
     assert of_topic(of_material("resin-tough", checks=asked), Topic.LAYERS) == [
@@ -328,7 +333,9 @@ def test_layers_of_a_print_whose_card_tells_nothing_of_them_are_named():
 
 def test_creep_of_plastics_is_named_where_loads_stay_and_nothing_judges_it():
     lasting = {"conditions": {"duration": "1 year"}}
-    assert of_topic(of_material("pvc-u"), Topic.CREEP) == [], "it moves"
+    turning = {"motion": {"turn": True, "speed": "60 rpm"}}
+    assert of_topic(of_material("pvc-u", **turning), Topic.CREEP) == [], "it moves"
+    assert of_topic(of_material("pvc-u"), Topic.CREEP) == of_topic(of_material("pvc-u", motion=None), Topic.CREEP)
     assert of_topic(of_material("pvc-u", motion=None), Topic.CREEP) == [
         "creep under loads that stay (no conditions.duration)"
     ]
@@ -347,3 +354,43 @@ def test_fatigue_is_named_where_a_speed_repeats_it_and_nothing_judges_it():
     bare, known = (of_material(name, **turning) for name in ("steel-s235", "aluminium-6061-t6"))
     assert of_topic(bare, Topic.FATIGUE, over_motion=True) == ["fatigue (no fatigue data of steel-s235)"]
     assert of_topic(known, Topic.FATIGUE, over_motion=True) == []
+
+
+@pytest.mark.parametrize("title", ["PA6-CF, Bambu Lab", "PLA", "Onyx"])
+def test_own_cards_of_light_materials_may_be_printed_and_creep_whatever_their_name(title):
+    case = of_material("resin-tough", motion=None)
+    bare = {"title": title, "strength_across_layers": None, "shear_strength_between_layers": None}
+    case = with_material(case, "resin-tough", case.all_materials["resin-tough"].model_copy(update=bare))
+    for topic in (Topic.LAYERS, Topic.CREEP):
+        assert len(of_topic(case, topic)) == 1
+
+
+@pytest.mark.parametrize(("wall", "told"), [("0.05 mm", ["crank, coupler, rocker"]), ("1 mm", [])])
+def test_a_wall_that_may_buckle_before_it_yields_is_told(wall, told):
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    inner = f"{12.0 - 2.0 * float(wall.split()[0]):g} mm"
+    tube = {"shape": "tube", "material": "aluminium-7075-t6", "outer_diameter": "12 mm", "inner_diameter": inner}
+    case = validate(data | {"parts": {"bar": tube | {"eyes": "none"}}})
+    found = [one.what for one in caveats(case) if one.topic is Topic.BUCKLING]
+    assert found == [f"buckling of the wall of {links}" for links in told]
+
+
+def test_a_wall_bears_less_than_the_perfect_cylinder():
+    """E t/(R √(3 (1 - ν²))), 0.605 of E t/R at 0.3: a perfect one; thick walls reach it but for 0.6."""
+    perfect = 1000.0 / math.sqrt(3.0 * (1.0 - 0.09)) / 100.0
+    assert 0.3 * perfect < wall_stress(100.0, 1.0, 1000.0) < 0.7 * perfect
+    assert wall_stress(1.0, 1.0, 1000.0) == pytest.approx(0.6 * 1000.0, rel=0.06)
+
+
+def test_what_a_temperature_lengthens_is_told():
+    for degrees, told in (("22 degC", []), ("40 degC", ["thermal expansion (at 40 degC sizes are taken as stated)"])):
+        assert of_topic(of_material("pvc-u", conditions={"temperature": degrees}), Topic.TEMPERATURE) == told
+
+
+def test_a_drive_and_joints_without_what_their_checks_need_are_told():
+    motor = {"type": "motor", "voltage": "6 V", "current": "1 A", "efficiency": 0.5}
+    tables = {"motion": {"turn": True, "speed": "60 rpm"}, "checks": {"m": motor, "f": SPRING}}
+    case = of_material("pvc-u", **tables)
+    assert of_topic(case, Topic.DRIVE) == ["a drive that does not give (no drive.stiffness)"]
+    assert of_topic(case, Topic.FRICTION) == ["joints without friction (none states any)"]
+    assert of_topic(of_material("pvc-u"), Topic.DRIVE) == of_topic(of_material("pvc-u"), Topic.FRICTION) == []
