@@ -23,7 +23,7 @@ from fea.vibration.flexibility_doubt import flexibility_doubt, stiffest
 from fea.vibration.link_frame import link_frame
 from fea.vibration.link_holding import LinkHolding, link_holding
 from fea.vibration.link_solid import LinkSolid, first_mesh, refined_modes
-from fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motion
+from fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motions
 from fea.vibration.mass_matrix import mass_matrix
 from fea.vibration.modes import Mode, frequency
 from fea.vibration.running_holes import running_holes, with_low_ends
@@ -176,7 +176,7 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
     path.elements.stiffness = stiffest(case, frame, model, parents)
     K, _ = stiffness_parts(path, np.zeros((len(model.elements), 2, 6)), np.zeros(len(model.guides)))
     highest = frame_modes(path, K, mass, free + count).values[free:]
-    shapes = np.array([node_motion(path, vector) for vector in found.vectors.T])
+    shapes = node_motions(path, found.vectors)
     bands = flexibility_doubt(case, frame, model, parents, found, shapes, count)
     turn = pose.placement.axes(link)
     modes = []
