@@ -19,7 +19,7 @@ from fea.common.source import Source, SourceKind, distinct
 from fea.common.threads import bounded_run
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.stability import stiffness_parts
-from fea.vibration.flexibility_doubt import flexibility_doubt, stiffest
+from fea.vibration.flexibility_doubt import FlexibilityDoubt, stiffest
 from fea.vibration.link_frame import link_frame
 from fea.vibration.link_holding import LinkHolding, link_holding
 from fea.vibration.link_solid import LinkSolid, first_mesh, refined_modes
@@ -177,7 +177,7 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
     K, _ = stiffness_parts(path, np.zeros((len(model.elements), 2, 6)), np.zeros(len(model.guides)))
     highest = frame_modes(path, K, mass, free + count).values[free:]
     shapes = node_motions(path, found.vectors)
-    bands = flexibility_doubt(case, frame, model, parents, found, shapes, count)
+    bands = FlexibilityDoubt(case, frame, model, parents).bands(model, found, shapes, count)
     turn = pose.placement.axes(link)
     modes = []
     for shape, band, most, other in zip(shapes, bands, highest, spread, strict=False):

@@ -26,7 +26,7 @@ from fea.frame.model import FrameModel, Guide
 from fea.nonlinear.corotational import subdivide
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.stability import beam_answers, stiffness_parts
-from fea.vibration.flexibility_doubt import flexibility_doubt
+from fea.vibration.flexibility_doubt import FlexibilityDoubt
 from fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from fea.vibration.modes import Mode, NaturalModes, lowest
 from fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
@@ -122,6 +122,7 @@ def linkage_modes(
     tight = EquilibriumPath(model)
     beams = beam_answers(tight, held.end_forces)
     mass = mass_matrix(case, frame, model, parents, masses, carried=carried)
+    doubt = FlexibilityDoubt(case, frame, model, parents)
 
     def solved(path: EquilibriumPath, mass: MassMatrix) -> tuple[tuple[Mode, ...], float]:
         K, G = stiffness_parts(path, held.end_forces, guide_forces, beams)
@@ -132,7 +133,7 @@ def linkage_modes(
         found = frame_modes(path, tangent, mass, count + BASIS)
         unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
         rate = float(np.sqrt(-found.values[0])) if unstable.any() else 0.0
-        return _modes(case, frame, path, mass, found, count, parents), rate
+        return _modes(path, mass, found, count, doubt), rate
 
     (modes, rate), holes = solved(tight, mass), running_holes(case)
     if holes:
@@ -197,17 +198,11 @@ def divide(frame: LinkageFrame, subdivisions: int) -> tuple[FrameModel, NDArray[
 
 
 def _modes(
-    case: Case,
-    frame: LinkageFrame,
-    path: EquilibriumPath,
-    mass: MassMatrix,
-    found: NaturalModes,
-    count: int,
-    parents: NDArray[np.int64],
+    path: EquilibriumPath, mass: MassMatrix, found: NaturalModes, count: int, doubt: FlexibilityDoubt
 ) -> tuple[Mode, ...]:
     """Modes with the bands of their frequencies."""
     shapes = node_motions(path, found.vectors)
-    bands = flexibility_doubt(case, frame, path.model, parents, found, shapes, count)
+    bands = doubt.bands(path.model, found, shapes, count)
     modes = []
     for shape, band in zip(shapes, bands, strict=False):
         whole, plane = mass.energies(shape)
