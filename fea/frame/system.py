@@ -263,7 +263,7 @@ class FrameSystem:
         ndarray, shape (6,)
             Factors.
         """
-        return self.natural_units[i]
+        return np.asarray(self.natural_units[i])
 
     @cached_property
     def natural_units(self) -> Floats:
@@ -346,8 +346,8 @@ class FrameSystem:
             for first, F in blocks
             for row, column in [np.divmod(np.arange(F.size), len(F))]
         ]
-        row, column, value = (np.concatenate(part) for part in zip(*known, strict=True))
-        return B, coo_matrix((value, (row, column)), shape=(size, size)).tocsr()
+        down, across, entries = (np.concatenate(part) for part in zip(*known, strict=True))
+        return B, coo_matrix((entries, (down, across)), shape=(size, size)).tocsr()
 
     def loaded(self, model: FrameModel) -> tuple[Floats, Floats]:
         """Return scaled deformations v0 (6 m + g + c,) and nodal loads p - p0 (k,) of a frame.

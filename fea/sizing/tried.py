@@ -194,7 +194,8 @@ class Trials:
         float
             1 or more where it keeps it; 0 where hand calculation does not judge it then.
         """
-        plain, found = self._plain(check.load_case), self._checked(check.load_case, change, _links([check]))
+        tilting = None if _whole(check) else _links([check])  # a linkage that holds its load is looked at in full next
+        plain, found = self._plain(check.load_case), self._checked(check.load_case, change, tilting)
         after = None if found is None else _outcomes(found).get(_key(check))
         if plain is None or found is None or after is None or (found.gives_way and check.subject != LINKAGE):
             return 0.0
