@@ -124,7 +124,14 @@ class _LoadCase:
     doubts: Sequence[Doubt]
 
     @classmethod
-    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, doubts: Sequence[Doubt]) -> "_LoadCase":
+    def of(
+        cls,
+        statics: CaseStatics,
+        load_case: str,
+        moved: LargeDisplacement,
+        doubts: Sequence[Doubt],
+        tilting: Sequence[str] | None = None,
+    ) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
         moved = with_growth(case, load_case, moved, loads)
@@ -147,7 +154,7 @@ class _LoadCase:
             plates=plates,
             grown=grown,
             uneven=uneven,
-            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved)),
+            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved), links=tilting),
             size=load_size(loads, case.linkage.longest),
             doubts=doubts,
         )
@@ -306,6 +313,7 @@ def check_case(
     frames: Mapping[str, LargeDisplacement] | None = None,
     only: Collection[str] | None = None,
     bare: bool = False,
+    tilting: Sequence[str] | None = None,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
@@ -329,6 +337,8 @@ def check_case(
     bare : bool, optional
         True where only the load cases are wanted, of a case without checks of the linkage's gaps, mass, size, motor and
         frequencies: these numbers and all warnings are left out.
+    tilting : sequence of str, optional
+        Links by hand for which it counts that pins may tilt; the others' bands leave that out. All when left out.
     progress : callable
         Called with a sentence before every stage that may take long.
 
@@ -369,7 +379,7 @@ def check_case(
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {x: _LoadCase.of(statics, x, what, (airs[x], rubs[x])) for x, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what, (airs[x], rubs[x]), tilting) for x, what in moved.items()}
     clock("hand calculations")
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:

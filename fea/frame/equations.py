@@ -79,9 +79,8 @@ class Equations:
         self.matrix = csc_matrix(bmat([[-F / self.scale, B], [B.T, None]]))
         self.factors = splu(self.matrix)
         self.size = B.shape[0]
-        lengths = self.system.lengths
-        natural = [natural_deformations(length).T * self.system.natural_unit(i) for i, length in enumerate(lengths)]
-        self.natural = np.array(natural).reshape(-1, 12, 6)
+        deformed = natural_deformations(self.system.lengths)
+        self.natural = deformed.swapaxes(-1, -2) * self.system.natural_units[:, None]
 
     @cached_property
     def condition(self) -> float:

@@ -191,9 +191,11 @@ class FactorisedFrame:
     @cached_property
     def _held(self) -> Floats:
         """Forces (m, 12) of line loads alone at beams' ends."""
-        every = enumerate(zip(self.model.elements, self.system.lengths, strict=True))
-        held = [line_load_effect(e.section, e.young, length, *self.model.line_load(i))[1] for i, (e, length) in every]
-        return np.array(held).reshape(-1, 12)
+        held = np.zeros((len(self.model.elements), 12))
+        for i, (e, length) in enumerate(zip(self.model.elements, self.system.lengths, strict=True)):
+            if e.load_first.any() or e.load_last.any():
+                held[i] = line_load_effect(e.section, e.young, length, *self.model.line_load(i))[1]
+        return held
 
     def opened(self, rows: NDArray[np.int64]) -> Floats:
         """Return what a unit of further deformation in each of some natural rows does to a frame without loads.
@@ -324,8 +326,7 @@ def _residual(model: FrameModel, left_over: Floats, reactions: Floats) -> float:
     if scale == 0.0:
         return 0.0
     # Simpson's rule for the line loads, at both ends and in the middle: exact for the force and its moment.
-    m = len(model.elements)
-    starts, ends = np.array([model.ends(i) for i in range(m)]).reshape(m, 2, 3).swapaxes(0, 1)
+    m, (starts, ends) = len(model.elements), model.all_ends
     lengths = np.linalg.norm(ends - starts, axis=1)[:, None] / 6.0
     lines = np.array([(e.load_first, e.load_last) for e in model.elements]).reshape(m, 2, 3).swapaxes(0, 1)
     first, last = lines[0] * lengths, lines[1] * lengths

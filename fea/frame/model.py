@@ -254,8 +254,7 @@ class FrameModel:
         for pair in named:
             if not all(0 <= i < len(nodes) for i in pair):
                 raise CannotRunError(f"the frame has nodes 0 to {len(nodes) - 1}, but {pair} are named")
-        for i in range(len(self.elements)):
-            self._check_element(i)
+        self._check_elements()
         joined = [t.nodes for t in self.ties]
         joined += [(g.carrier, g.pin) for g in self.guides if g.carrier is not None and g.pin is not None]
         for i, j in joined:
@@ -264,13 +263,13 @@ class FrameModel:
                     f"tied nodes {self.name(i)} and {self.name(j)} of a frame lie at different places; move one of them"
                 )
 
-    def _check_element(self, i: int) -> None:
-        start, end = self.ends(i)
-        along = end - start
-        if not np.linalg.norm(along) > 1e-9 * self.size:
+    def _check_elements(self) -> None:
+        starts, ends = self.all_ends
+        along, z = ends - starts, np.array([e.z_axis for e in self.elements]).reshape(-1, 3)
+        lengths, leans = np.linalg.norm(along, axis=1), np.linalg.norm(z, axis=1)
+        for i in np.flatnonzero(~(lengths > 1e-9 * self.size)):
             raise CannotRunError(f"element {i} of the frame has no length; give its nodes different places")
-        z = self.elements[i].z_axis
-        if not np.linalg.norm(np.cross(along, z)) > 1e-6 * np.linalg.norm(along) * np.linalg.norm(z):
+        for i in np.flatnonzero(~(np.linalg.norm(np.cross(along, z), axis=1) > 1e-6 * lengths * leans)):
             raise CannotRunError(f"element {i} of the frame lies along its own z_axis; choose another z_axis for it")
 
     @cached_property
@@ -306,9 +305,15 @@ class FrameModel:
         tuple of 2 ndarray
             First and second end (3,) [mm].
         """
-        a, b = self.elements[i].nodes
-        arms = self.elements[i].offsets
-        return self.nodes[a] + arms[0], self.nodes[b] + arms[1]
+        starts, ends = self.all_ends
+        return starts[i], ends[i]
+
+    @cached_property
+    def all_ends(self) -> tuple[Floats, Floats]:
+        """First and second ends (m, 3) of the beams of all elements, arms included [mm]."""
+        a, b = np.array([e.nodes for e in self.elements], dtype=np.int64).reshape(-1, 2).T
+        arms = np.array([e.offsets for e in self.elements]).reshape(-1, 2, 3)
+        return self.nodes[a] + arms[:, 0], self.nodes[b] + arms[:, 1]
 
     def length(self, i: int) -> float:
         """Return the length of the beam of an element between its arms.
@@ -380,7 +385,8 @@ class FrameModel:
         for p in self.loads:
             wrench = p.wrench
             total += float(np.linalg.norm(wrench[:3]) + np.linalg.norm(wrench[3:]) / self.size)
-        for i in range(len(self.elements)):
-            first, last = self.line_load(i)
-            total += float(np.linalg.norm(first) + np.linalg.norm(last)) / 2.0 * self.length(i)
+        for i, e in enumerate(self.elements):
+            if e.load_first.any() or e.load_last.any():
+                first, last = self.line_load(i)
+                total += float(np.linalg.norm(first) + np.linalg.norm(last)) / 2.0 * self.length(i)
         return total

@@ -15,6 +15,7 @@ The six natural forces and the deformations that they work on (Przemieniecki, Th
 """
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,28 +39,28 @@ def _motion(dof: int) -> str:
     return f"{'along' if dof < 3 else 'about'} {'xyz'[dof % 3]}"
 
 
-def natural_deformations(length: float) -> Floats:
+def natural_deformations(length: float | Floats) -> Floats:
     """Return the matrix G from the displacements of both ends to the natural deformations.
 
     Parameters
     ----------
-    length : float
-        Of the beam [mm].
+    length : float or ndarray, shape (...)
+        Of the beam, or of many [mm].
 
     Returns
     -------
-    ndarray, shape (6, 12)
+    ndarray, shape (..., 6, 12)
         G; Gᵀ gives end forces.
     """
-    G = np.zeros((6, 12))
-    G[0, [0, 6]] = -1.0, 1.0
+    G, slope = np.zeros((*np.shape(length), 6, 12)), 1.0 / length
+    G[..., 0, [0, 6]] = -1.0, 1.0
     for row, rotation in ((1, 5), (2, 11)):
-        G[row, rotation] = 1.0
-        G[row, [1, 7]] = 1.0 / length, -1.0 / length
+        G[..., row, rotation] = 1.0
+        G[..., row, 1], G[..., row, 7] = slope, -slope
     for row, rotation in ((3, 4), (4, 10)):
-        G[row, rotation] = 1.0
-        G[row, [2, 8]] = -1.0 / length, 1.0 / length
-    G[5, [3, 9]] = -1.0, 1.0
+        G[..., row, rotation] = 1.0
+        G[..., row, 2], G[..., row, 8] = -slope, slope
+    G[..., 5, [3, 9]] = -1.0, 1.0
     return G
 
 
@@ -211,9 +212,11 @@ class FrameSystem:
         _, first = np.unique(group, return_index=True)
         return np.asarray(first[group])
 
-    def _node_columns(self, i: int) -> NDArray[np.int64]:
-        a, b = self.model.elements[i].nodes
-        return np.concatenate([np.arange(6 * a, 6 * a + 6), np.arange(6 * b, 6 * b + 6)])
+    @cached_property
+    def _columns(self) -> NDArray[np.int64]:
+        """(m, 12) displacements of the nodes of every element."""
+        nodes = np.array([e.nodes for e in self.model.elements], dtype=np.int64).reshape(-1, 2)
+        return np.asarray((6 * nodes[:, :, None] + np.arange(6)).reshape(-1, 12))
 
     def _idle(self) -> NDArray[np.bool_]:
         """(6 n,) rotations in which no element takes part, at nodes of ties alone, and no moment or guide.
@@ -222,8 +225,7 @@ class FrameSystem:
         """
         needed = np.zeros(len(self.owner), dtype=bool)
         needed[np.arange(len(needed)) % 6 < 3] = True
-        for i in range(len(self.matrices)):
-            needed[self.owner[self._node_columns(i)]] = True
+        needed[self.owner[self._columns]] = True
         for link in self.model.condensed:
             needed[self.owner[link.columns]] = True
         acting = [(load.node, load.wrench) for load in self.model.loads]
@@ -245,7 +247,7 @@ class FrameSystem:
         tuple of ndarray of int and ndarray
             Numbers (k,) of the unknowns, and the matrix (12, k) from them to the beam's ends.
         """
-        numbers = self.number[self._node_columns(i)]
+        numbers = self.number[self._columns[i]]
         return numbers[numbers >= 0], self.matrices[i][:, numbers >= 0]
 
     def natural_unit(self, i: int) -> Floats:
@@ -261,7 +263,12 @@ class FrameSystem:
         ndarray, shape (6,)
             Factors.
         """
-        return np.array([1.0, *[self.lengths[i]] * 5])
+        return np.asarray(self.natural_units[i])
+
+    @cached_property
+    def natural_units(self) -> Floats:
+        """(m, 6) those of all elements."""
+        return np.column_stack([np.ones(len(self.lengths)), *[self.lengths] * 5])
 
     def _with_rigid(self, flexibility: list[Floats]) -> list[Floats]:
         """Return the scaled flexibilities of all elements, those that stand for rigid bodies stiffer than any other."""
@@ -297,19 +304,23 @@ class FrameSystem:
         The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F. The c natural
         forces of condensed links come last.
         """
-        from scipy.sparse import block_diag, coo_matrix
+        from scipy.sparse import coo_matrix
 
-        m, guides = len(self.lengths), self.model.guides
-        rows, columns, values, flexibility = [], [], [], []
-        for i, (e, length) in enumerate(zip(self.model.elements, self.lengths, strict=True)):
-            unit = self.natural_unit(i)
-            numbers, matrix = self.place(i)
-            B = unit[:, None] * (natural_deformations(length) @ matrix) * self.unit[numbers]
-            rows.append(np.repeat(np.arange(6 * i, 6 * i + 6), len(numbers)))
-            columns.append(np.tile(numbers, 6))
-            values.append(B.ravel())
-            flexibility.append(unit[:, None] * natural_flexibility(e.section, e.young, e.poisson, length) * unit)
-        flexibility = self._with_rigid(flexibility)
+        m, guides, units = len(self.lengths), self.model.guides, self.natural_units
+        numbers = self.number[self._columns]
+        size = np.append(self.unit, 0.0)[numbers]  # -1 stands for what does not move
+        moved = units[:, :, None] * (natural_deformations(self.lengths) @ self.matrices) * size[:, None]
+        moves = np.broadcast_to((numbers >= 0)[:, None], moved.shape)
+        strained = np.broadcast_to(np.arange(6 * m).reshape(m, 6, 1), moved.shape)
+        rows, values = [strained[moves]], [moved[moves]]
+        columns = [np.broadcast_to(numbers[:, None], moved.shape)[moves]]
+        every = zip(self.model.elements, self.lengths, units, strict=True)
+        flexibility = self._with_rigid(
+            [
+                unit[:, None] * natural_flexibility(e.section, e.young, e.poisson, length) * unit
+                for e, length, unit in every
+            ]
+        )
         for row, guide in enumerate(guides, start=6 * m):
             for node, sign in guide.nodes:
                 place = self.number[6 * node : 6 * node + 6]
@@ -317,8 +328,8 @@ class FrameSystem:
                 rows.append(np.full(np.count_nonzero(free), row))
                 columns.append(place[free])
                 values.append(sign * self.guide_unit[row - 6 * m] * guide.gradient[free] * self.unit[place[free]])
-            flexibility.append(np.zeros((1, 1)))
-        size = 6 * m + len(guides)
+        size, blocks = 6 * m + len(guides), [(6 * i, F) for i, F in enumerate(flexibility)]
+        blocks += [(6 * m + i, np.zeros((1, 1))) for i in range(len(guides))]
         for link in self.model.condensed:
             unit, numbers = np.tile(self.condensed_unit, len(link.nodes) - 1), self.number[link.columns]
             free = numbers >= 0
@@ -326,11 +337,17 @@ class FrameSystem:
             rows.append(size + np.repeat(np.arange(len(unit)), len(B.T)))
             columns.append(np.tile(numbers[free], len(unit)))
             values.append(B.ravel())
-            flexibility.append(unit[:, None] * link.natural_flexibility * unit)
+            blocks.append((size, unit[:, None] * link.natural_flexibility * unit))
             size += len(unit)
         shape = (size, len(self.unit))
         B = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-        return B, block_diag(flexibility, format="csr")
+        known = [
+            (first + row, first + column, F[row, column])
+            for first, F in blocks
+            for row, column in [np.divmod(np.arange(F.size), len(F))]
+        ]
+        down, across, entries = (np.concatenate(part) for part in zip(*known, strict=True))
+        return B, coo_matrix((entries, (down, across)), shape=(size, size)).tocsr()
 
     def loaded(self, model: FrameModel) -> tuple[Floats, Floats]:
         """Return scaled deformations v0 (6 m + g + c,) and nodal loads p - p0 (k,) of a frame.

@@ -113,13 +113,16 @@ class State:
 
 
 class EquilibriumPath:
-    """The equilibrium path of a frame from load factor 0 to 1."""
+    """The equilibrium path of a frame from load factor 0 to 1.
 
-    def __init__(self, model: FrameModel) -> None:
+    Its elements may be those of another frame, where these differ by the nodes alone that they end at.
+    """
+
+    def __init__(self, model: FrameModel, elements: CorotationalElements | None = None) -> None:
         n = len(model.nodes)
         self.model = model
         self.chain = KinematicChain(model)
-        self.elements = CorotationalElements(model)
+        self.elements = elements or CorotationalElements(model)
         self.springs = SpringForces(model.springs, self.chain)
         self.pairs = np.array([e.nodes for e in model.elements])
         guided = [[-1 if node is None else node for node in (g.carrier, g.pin)] for g in model.guides]

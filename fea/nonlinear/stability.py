@@ -23,6 +23,7 @@ from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame, slot_normal
 from fea.frame.model import FrameModel
 from fea.nonlinear.corotational import SUBDIVISIONS, subdivide
+from fea.nonlinear.corotational_element import ElementResponse
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
@@ -106,7 +107,33 @@ def _largest(A: Floats, B: Floats) -> float:
     return float(eigh(A, B, eigvals_only=True)[-1])
 
 
-def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Floats) -> tuple[Floats, Floats]:
+def beam_answers(path: EquilibriumPath, end_forces: Floats) -> tuple[ElementResponse, ElementResponse]:
+    """Return what the beams of a frame as it stands answer by their stiffness, and by the forces in them and on them.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        Of the frame, at its start.
+    end_forces : ndarray, shape (m, 2, 6)
+        As of ``stiffness_parts``.
+
+    Returns
+    -------
+    tuple of 2 ElementResponse
+    """
+    start, f = path.state, end_forces
+    first, last = (path.elements.loads @ path.elements.axes)[..., 0].T
+    mean = (f[:, 1, 0] - f[:, 0, 0]) / 2.0 + (last - first) * path.elements.lengths / 12.0
+    natural = np.column_stack([mean, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]])
+    return path.respond(start, 0.0), path.elements.geometric(natural)
+
+
+def stiffness_parts(
+    path: EquilibriumPath,
+    end_forces: Floats,
+    guide_forces: Floats,
+    answers: tuple[ElementResponse, ElementResponse] | None = None,
+) -> tuple[Floats, Floats]:
     """Return the stiffness of a frame as it stands, and the geometric stiffness of the forces in it and on it.
 
     Parameters
@@ -117,19 +144,19 @@ def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Flo
         On the beams' ends, local axes, as ``FrameSolution`` has them [N, N·mm].
     guide_forces : ndarray, shape (g,)
         Of the guides.
+    answers : tuple of 2 ElementResponse, optional
+        Those of ``beam_answers``, where they are known.
 
     Returns
     -------
     tuple of 2 ndarray
         K and K_g (k + g, k + g) with the guides' rows and columns, for ``EquilibriumPath.free``.
     """
-    start, f = path.state, end_forces
-    first, last = (path.elements.loads @ path.elements.axes)[..., 0].T
-    mean = (f[:, 1, 0] - f[:, 0, 0]) / 2.0 + (last - first) * path.elements.lengths / 12.0
-    natural = np.column_stack([mean, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]])
-    K = path.assemble(path.respond(start, 0.0), start, 0.0)[1]
+    start = path.state
+    plain, pressed = answers or beam_answers(path, end_forces)
+    K = path.assemble(plain, start, 0.0)[1]
     loaded = replace(start, guide_forces=guide_forces)
-    bent = path.assemble(path.elements.geometric(natural), loaded, 1.0)[1]
+    bent = path.assemble(pressed, loaded, 1.0)[1]
     if path.model.springs:
         # Their stiffness is in K already; what their forces make of it is left.
         elastic = path.springs.tangent(start.displacements, path.chain.axes(start.rotations), 0.0)

@@ -148,7 +148,7 @@ class Trials:
     """
 
     result: CheckResult
-    _done: dict[tuple[str, Change], LoadCaseResult | None] = field(default_factory=dict)
+    _done: dict[tuple[str, Change, tuple[str, ...] | None], LoadCaseResult | None] = field(default_factory=dict)
 
     def share(self, check: CheckOutcome, change: Scaled) -> float:
         """Return by which factor a check and all that passes beside it keep their limits with a change, the least.
@@ -166,11 +166,20 @@ class Trials:
         if change.modulus == 1.0:  # a strength changes no stress and no equilibrium
             lost = self.result.load_cases[check.load_case].gives_way
             return 0.0 if lost else min(1.0, check.margin * change.strength)
-        plain, found = self._plain(check.load_case), self._checked(check.load_case, change)
+        told = self.result.load_cases[check.load_case].checks
+        compared = [
+            one
+            for one in told
+            if goes_with_load(one) and not _whole(one) and (_key(one) == _key(check) or one.verdict is Verdict.PASS)
+        ]
+        plain, found = self._plain(check.load_case), self._checked(check.load_case, change, _links(compared))
         if plain is None or found is None or (found.gives_way and check.subject != LINKAGE):
             return 0.0
-        told = self.result.load_cases[check.load_case].checks
-        return min((1.0, *_shares(check, told, _outcomes(plain), _outcomes(found))))
+        whole = [one for one in told if _whole(one)]
+        after, least = _outcomes(found), [1.0]
+        if _whole(check) or all(one.verdict is Verdict.PASS for one in whole):
+            least += [one.margin for one in after.values() if _whole(one)]
+        return min((*least, *(x for one in compared for x in _margins(one, _outcomes(plain), after))))
 
     def expected(self, check: CheckOutcome, change: Change) -> float:
         """Return by which factor a check keeps its limit with a change.
@@ -185,7 +194,8 @@ class Trials:
         float
             1 or more where it keeps it; 0 where hand calculation does not judge it then.
         """
-        plain, found = self._plain(check.load_case), self._checked(check.load_case, change)
+        tilting = None if _whole(check) else _links([check])  # a linkage that holds its load is looked at in full next
+        plain, found = self._plain(check.load_case), self._checked(check.load_case, change, tilting)
         after = None if found is None else _outcomes(found).get(_key(check))
         if plain is None or found is None or after is None or (found.gives_way and check.subject != LINKAGE):
             return 0.0
@@ -221,12 +231,14 @@ class Trials:
         by_hand = all(isinstance(link, HandResult) for link in case.links.values())
         return case if by_hand else self._checked(load_case, Scaled())
 
-    def _checked(self, load_case: str, change: Change) -> LoadCaseResult | None:
-        if (load_case, change) not in self._done:
-            self._done[load_case, change] = self._check(load_case, change)
-        return self._done[load_case, change]
+    def _checked(self, load_case: str, change: Change, tilting: tuple[str, ...] | None = None) -> LoadCaseResult | None:
+        """A load case with a change, with what tilting pins make of some links, or of all."""
+        key = (load_case, change, None if (load_case, change, None) in self._done else tilting)
+        if key not in self._done:
+            self._done[key] = self._check(*key)
+        return self._done[key]
 
-    def _check(self, load_case: str, change: Change) -> LoadCaseResult | None:
+    def _check(self, load_case: str, change: Change, tilting: tuple[str, ...] | None) -> LoadCaseResult | None:
         try:
             case = change.on(self.result.case)
         except CaseError:
@@ -234,26 +246,17 @@ class Trials:
         checks = {name: check for name, check in case.all_checks.items() if isinstance(check, _STATIC)}
         alone = case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "checks": checks})
         try:
-            found = check_case(alone, name=self.result.name, fidelity="beam", threads=1, bare=True)
+            found = check_case(alone, name=self.result.name, fidelity="beam", threads=1, bare=True, tilting=tilting)
         except (CaseError, CannotRunError):
             return None
         return found.load_cases[load_case]
 
 
-def _shares(
-    check: CheckOutcome,
-    told: Sequence[CheckOutcome],
-    plain: Mapping[_Key, CheckOutcome],
-    found: Mapping[_Key, CheckOutcome],
-) -> Iterator[float]:
-    """Yield by which factor each number that counts keeps its limit."""
-    if _whole(check) or all(one.verdict is Verdict.PASS for one in told if _whole(one)):
-        yield from (one.margin for one in found.values() if _whole(one))
-    for one in told:
-        asked = _key(one) == _key(check)
-        if _whole(one) or not goes_with_load(one) or not (asked or one.verdict is Verdict.PASS):
-            continue
-        yield from _margins(one, plain, found)
+def _links(compared: Sequence[CheckOutcome]) -> tuple[str, ...] | None:
+    """Return the links whose numbers are compared; None where others may hold those of any link."""
+    if any(one.subject.kind not in ("link", "pin") and not _whole(one) for one in compared):
+        return None
+    return tuple(dict.fromkeys(one.subject.name for one in compared if one.subject.kind == "link"))
 
 
 def _margins(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.superposition.pin_units import HIGHEST_ORDER, fourier_coefficients
-from fea.tractions.traction import into_opening, is_opening
+from fea.tractions.traction import first_opening, into_opening
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Pin
 from loads.records.bearing import PressureLaw
@@ -78,9 +78,9 @@ class CoupleUnits:
         about_middle = np.column_stack([wrench[:, 4], -wrench[:, 3]]) - self.lift * force
         along = force / self.length + self.heights[:, None, None] * about_middle / self.second
         size, direction = np.hypot(along[..., 0], along[..., 1]), np.arctan2(along[..., 1], along[..., 0])
-        for at in direction[size > _FAINT * size.max(initial=0.0)]:
-            if is_opening(self.wall, float(at)):
-                raise CannotRunError(into_opening(self.pin.name, float(at)))
+        bare = first_opening(self.wall, direction[size > _FAINT * size.max(initial=0.0)])
+        if bare is not None:
+            raise CannotRunError(into_opening(self.pin.name, bare))
         a = fourier_coefficients(law, HIGHEST_ORDER)[:, None]
         order = np.arange(HIGHEST_ORDER + 1)[:, None]
         peak = law.peak(force=1.0, diameter=self.pin.diameter, thickness=1.0) * size

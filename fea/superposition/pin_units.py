@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.tractions.traction import LARGEST_CORRECTION, into_opening, is_opening
+from fea.tractions.traction import LARGEST_CORRECTION, first_opening, into_opening
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Pin
 from loads.records.bearing import PressureLaw
@@ -115,9 +115,9 @@ class PinUnits:
             raise CannotRunError(
                 f"the hole at pin {self.pin.name} is meshed too coarsely to carry the pin's pressure; refine it"
             )
-        for at in direction:
-            if is_opening(self.wall, float(at)):
-                raise CannotRunError(into_opening(self.pin.name, float(at)))
+        bare = first_opening(self.wall, direction)
+        if bare is not None:
+            raise CannotRunError(into_opening(self.pin.name, bare))
         got *= size[loaded] / np.hypot(got[0], got[1])
         missing = np.vstack([got[:2] - force[loaded].T, got[2:]])
         gap = np.linalg.norm(missing[:3], axis=0) + np.linalg.norm(missing[3:], axis=0) / self.pin.diameter

@@ -143,10 +143,11 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
         if left <= _NOTHING * size or left >= last:
             break
         last = left
-    for at in np.array([-0.5, 0.5]) * float(np.ptp(height)) if tilts else (0.0,):
-        per_length = push + at * slope
-        if is_opening(angle, math.atan2(per_length[1], per_length[0])):
-            raise CannotRunError(into_opening(pin.name, math.atan2(per_length[1], per_length[0])))
+    ends = np.array([-0.5, 0.5]) * float(np.ptp(height)) if tilts else np.zeros(1)
+    pushed = push + ends[:, None] * slope
+    bare = first_opening(angle, np.arctan2(pushed[:, 1], pushed[:, 0]))
+    if bare is not None:
+        raise CannotRunError(into_opening(pin.name, bare))
     _limit(missing, target, pin.diameter, f"the hole at pin {pin.name}")
     return np.asarray(density + wrench_density(bore, middle, missing))
 
@@ -291,21 +292,27 @@ def line_density_between(volume: Quadrature, load: LineLoad) -> tuple[NDArray[np
     return own, np.asarray(density + wrench_density(part, origin, missing, weight))
 
 
-def is_opening(wall: NDArray[np.float64], direction: float) -> bool:
-    """Return True where a hole has no wall within ``OPENING`` of a direction.
+def first_opening(wall: NDArray[np.float64], directions: NDArray[np.float64]) -> float | None:
+    """Return the first direction within ``OPENING`` of which a hole has no wall.
 
     Parameters
     ----------
     wall : ndarray
         Angles at which there is some [rad].
-    direction : float
-        Angle [rad].
+    directions : ndarray, shape (n,)
+        Angles [rad].
 
     Returns
     -------
-    bool
+    float or None
+        None where all have a wall.
     """
-    return bool(np.cos(wall - direction).max() < math.cos(OPENING))
+    known, wanted = np.sort(np.ravel(wall) % (2.0 * math.pi)), directions % (2.0 * math.pi)
+    around = np.concatenate([known[-1:] - 2.0 * math.pi, known, known[:1] + 2.0 * math.pi])
+    after = np.searchsorted(around, wanted).clip(1, len(around) - 1)
+    nearest = np.minimum(wanted - around[after - 1], around[after] - wanted)
+    bare = np.flatnonzero(nearest > OPENING)
+    return float(directions[bare[0]]) if bare.size else None
 
 
 def into_opening(pin: str, direction: float) -> str:

@@ -15,6 +15,7 @@ the forces, else to first order in dF, as displacements have it; and but for the
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,57 +44,6 @@ class _Change:
     more: Floats
 
 
-def flexibility_doubt(
-    case: Case,
-    frame: LinkageFrame,
-    model: FrameModel,
-    parents: NDArray[np.int64],
-    found: NaturalModes,
-    shapes: Floats,
-    count: int,
-) -> list[Band]:
-    """Return the frequencies of the lowest modes with their bands.
-
-    Parameters
-    ----------
-    case : Case
-    frame : LinkageFrame
-        Of the linkage, or of one of its links.
-    model : FrameModel
-        Of the frame with divided beams.
-    parents : ndarray of int, shape (m,)
-        Element of the frame that each one is part of.
-    found : NaturalModes
-        More than are asked for.
-    shapes : ndarray, shape (c, n, 6)
-        Motions of the nodes, of unit modal mass.
-    count : int
-        Frequencies that are asked for.
-
-    Returns
-    -------
-    list of Band
-        [Hz]
-    """
-    values = [frequency(value) for value in found.values[:count]]
-    links = list(dict.fromkeys(beam.link for beam in frame.beams.values()))
-    blind = blind_link(case, links)
-    if blind:
-        why = f"the frame takes link {blind} for a beam along its axis, which does not tell how far it gives"
-        return [Band(value=value, low=0.0, high=math.inf, without=why) for value in values]
-    modulus, eyes, both = _Forces(case, frame, model, parents, shapes).changes()
-    ends = [_ends(found, change) for change in (modulus, eyes, both)]
-    scatters = [compliance_scatter(case.material_of(link)) for link in links]
-    ranges = distinct(*(one.sources for one in scatters))
-    bands = []
-    for k, value in enumerate(values):
-        own, plain, (low, high) = (one[k] for one in ends)
-        sources = [Source(kind=one.kind, detail=one.detail, width=_width(own, len(ranges))) for one in ranges]
-        sources.append(Source(kind=SourceKind.EYES, width=_width(plain, 1)))
-        bands.append(Band(value=value, low=min(low, value), high=max(high, value), sources=tuple(sources)))
-    return bands
-
-
 def stiffest(case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArray[np.int64]) -> Floats:
     """Return the natural stiffness of every element where modulus, eyes, bores and holes make it stiffest.
 
@@ -114,7 +64,7 @@ def stiffest(case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArra
     -------
     ndarray, shape (m, 6, 6)
     """
-    known = _Forces(case, frame, model, parents, np.zeros((0, len(model.nodes), 6)))
+    known = FlexibilityDoubt(case, frame, model, parents)
     found = [natural_flexibility(e.section, e.young, e.poisson, model.length(i)) for i, e in enumerate(model.elements)]
     for i, (plain, low, _), scatter in known.doubtful():
         found[i] = scatter.low * (low + STIFFEST * plain)  # eyes may leave nothing of it
@@ -141,12 +91,21 @@ def _sorted(found: NaturalModes, change: Floats) -> Floats:
     return np.asarray(mu[::-1])
 
 
-class _Forces:
-    """Forces of modes in the beams and at the bores of a frame."""
+class FlexibilityDoubt:
+    """What the flexibility of a frame's beams and bores may be; with hinges in the holes of its pins it is the same.
 
-    def __init__(
-        self, case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArray[np.int64], shapes: Floats
-    ) -> None:
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        Of the linkage, or of one of its links.
+    model : FrameModel
+        Of the frame with divided beams.
+    parents : ndarray of int, shape (m,)
+        Element of the frame that each one is part of.
+    """
+
+    def __init__(self, case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArray[np.int64]) -> None:
         self.case, self.frame, self.model, self.parents = case, frame, model, parents
         self.zones, self.bores = give_of_links(case, frame)
         self.links: Mapping[str, Scatter] = {
@@ -157,32 +116,81 @@ class _Forces:
             for name, i in frame.pin_beams.items()
             if not frame.model.elements[i].rigid
         }
-        c = len(shapes)
-        self.natural = np.zeros((len(model.elements), 6, c))
-        self.at_nodes = np.zeros((len(model.nodes), 6, c))
-        built_in = set(frame.pin_beams.values())
-        for i, e in enumerate(model.elements):
-            length = model.length(i)
-            B = natural_deformations(length) @ to_ends(model, i)
-            ends = shapes[:, e.nodes].reshape(c, 12).T
-            F = natural_flexibility(e.section, e.young, e.poisson, length)
-            self.natural[i] = np.linalg.solve(F, B @ ends)
-            if int(parents[i]) not in built_in:
-                wrenches = (B.T @ self.natural[i]).reshape(2, 6, c)
-                for node, wrench in zip(e.nodes, wrenches, strict=True):
-                    self.at_nodes[node] += wrench
 
-    def changes(self) -> tuple[_Change, _Change, _Change]:
-        """By the moduli alone, by eyes, bores and holes alone, and by both together."""
-        c = self.natural.shape[2]
-        less, more = np.zeros((3, c, c)), np.zeros((3, c, c))
+    @cached_property
+    def _elements(self) -> tuple[Floats, Floats]:
+        """Natural deformations by the motion of both ends (m, 6, 12), and natural flexibilities (m, 6, 6)."""
+        lengths = [self.model.length(i) for i in range(len(self.model.elements))]
+        known = list(zip(self.model.elements, lengths, strict=True))
+        return (
+            np.array([natural_deformations(length) @ to_ends(self.model, i) for i, length in enumerate(lengths)]),
+            np.array([natural_flexibility(e.section, e.young, e.poisson, length) for e, length in known]),
+        )
+
+    @cached_property
+    def _given(self) -> tuple[NDArray[np.int64], Floats]:
+        """Elements in doubt, and what their natural flexibility may be beside itself (2, 3, d, 6, 6).
+
+        Less and more, by the moduli alone, by eyes and holes alone, and by both together.
+        """
+        numbers, found = [], []
         for i, (F, low, high), scatter in self.doubtful():
-            q = self.natural[i]
-            for into, eyes, factor in ((less, low, scatter.low), (more, high, scatter.high)):
-                for row, own in enumerate((factor * F, eyes, factor * eyes)):
-                    into[row] += q.T @ (own - F) @ q
+            numbers.append(i)
+            ends = ((low, scatter.low), (high, scatter.high))
+            found.append([[factor * F - F, eyes - F, factor * eyes - F] for eyes, factor in ends])
+        return np.array(numbers, dtype=np.int64), np.array(found).reshape(-1, 2, 3, 6, 6).transpose(1, 2, 0, 3, 4)
+
+    def bands(self, model: FrameModel, found: NaturalModes, shapes: Floats, count: int) -> list[Band]:
+        """Return the frequencies of the lowest modes with their bands.
+
+        Parameters
+        ----------
+        model : FrameModel
+            The one with divided beams, or that with hinges.
+        found : NaturalModes
+            More than are asked for.
+        shapes : ndarray, shape (c, n, 6)
+            Motions of the nodes, of unit modal mass.
+        count : int
+            Frequencies that are asked for.
+
+        Returns
+        -------
+        list of Band
+            [Hz]
+        """
+        values = [frequency(value) for value in found.values[:count]]
+        links = list(dict.fromkeys(beam.link for beam in self.frame.beams.values()))
+        blind = blind_link(self.case, links)
+        if blind:
+            why = f"the frame takes link {blind} for a beam along its axis, which does not tell how far it gives"
+            return [Band(value=value, low=0.0, high=math.inf, without=why) for value in values]
+        modulus, eyes, both = self._changes(model, shapes)
+        ends = [_ends(found, change) for change in (modulus, eyes, both)]
+        scatters = [compliance_scatter(self.case.material_of(link)) for link in links]
+        ranges = distinct(*(one.sources for one in scatters))
+        bands = []
+        for k, value in enumerate(values):
+            own, plain, (low, high) = (one[k] for one in ends)
+            sources = [Source(kind=one.kind, detail=one.detail, width=_width(own, len(ranges))) for one in ranges]
+            sources.append(Source(kind=SourceKind.EYES, width=_width(plain, 1)))
+            bands.append(Band(value=value, low=min(low, value), high=max(high, value), sources=tuple(sources)))
+        return bands
+
+    def _changes(self, model: FrameModel, shapes: Floats) -> tuple[_Change, _Change, _Change]:
+        """By the moduli alone, by eyes, bores and holes alone, and by both together."""
+        c, (B, F) = len(shapes), self._elements
+        nodes = np.array([e.nodes for e in model.elements], dtype=np.int64)
+        ends = shapes[:, nodes].reshape(c, -1, 12).transpose(1, 2, 0)
+        natural = np.linalg.solve(F, B @ ends)
+        on_links = ~np.isin(self.parents, list(self.frame.pin_beams.values()))
+        at_nodes = np.zeros((len(model.nodes), 6, c))
+        np.add.at(at_nodes, nodes[on_links], (B.swapaxes(1, 2) @ natural)[on_links].reshape(-1, 2, 6, c))
+        numbers, changed = self._given
+        q = natural[numbers]
+        less, more = (q.swapaxes(1, 2) @ changed @ q).sum(axis=2)
         for link, node, give in self.bores:
-            w, factor = self.at_nodes[node], self.links[link].high
+            w, factor = at_nodes[node], self.links[link].high
             sunk = w.T @ (give[:, None] * w)
             more[1] += sunk
             more[2] += factor * sunk

@@ -136,6 +136,8 @@ def nearest_harmonic(case: Case) -> str:
     if any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
         return ""
     driven = {abs(one.speed): (name, one) for name, one in reversed(case.load_cases.items()) if one.speed != 0.0}
+    if not driven:
+        return ""  # before anything is weighed
     try:
         found = pose_frequencies(case.model_copy(update={"load_cases": dict(driven.values())}), count=1)
     except (CannotRunError, CaseError):

@@ -19,11 +19,11 @@ from fea.common.source import Source, SourceKind, distinct
 from fea.common.threads import bounded_run
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.stability import stiffness_parts
-from fea.vibration.flexibility_doubt import flexibility_doubt, stiffest
+from fea.vibration.flexibility_doubt import FlexibilityDoubt, stiffest
 from fea.vibration.link_frame import link_frame
 from fea.vibration.link_holding import LinkHolding, link_holding
 from fea.vibration.link_solid import LinkSolid, first_mesh, refined_modes
-from fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motion
+from fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motions
 from fea.vibration.mass_matrix import mass_matrix
 from fea.vibration.modes import Mode, frequency
 from fea.vibration.running_holes import running_holes, with_low_ends
@@ -176,8 +176,8 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
     path.elements.stiffness = stiffest(case, frame, model, parents)
     K, _ = stiffness_parts(path, np.zeros((len(model.elements), 2, 6)), np.zeros(len(model.guides)))
     highest = frame_modes(path, K, mass, free + count).values[free:]
-    shapes = np.array([node_motion(path, vector) for vector in found.vectors.T])
-    bands = flexibility_doubt(case, frame, model, parents, found, shapes, count)
+    shapes = node_motions(path, found.vectors)
+    bands = FlexibilityDoubt(case, frame, model, parents).bands(model, found, shapes, count)
     turn = pose.placement.axes(link)
     modes = []
     for shape, band, most, other in zip(shapes, bands, highest, spread, strict=False):

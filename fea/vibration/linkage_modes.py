@@ -25,8 +25,8 @@ from fea.frame.linkage_frame import LinkageFrame, slot_normal
 from fea.frame.model import FrameModel, Guide
 from fea.nonlinear.corotational import subdivide
 from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import stiffness_parts
-from fea.vibration.flexibility_doubt import flexibility_doubt
+from fea.nonlinear.stability import beam_answers, stiffness_parts
+from fea.vibration.flexibility_doubt import FlexibilityDoubt
 from fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from fea.vibration.modes import Mode, NaturalModes, lowest
 from fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
@@ -119,24 +119,29 @@ def linkage_modes(
         model, guide_forces = _released(case, frame, divided, held)
     carried = case.load_cases[load_case].carried
 
-    def solved(model: FrameModel) -> tuple[tuple[Mode, ...], float]:
-        path = EquilibriumPath(model)
-        K, G = stiffness_parts(path, held.end_forces, guide_forces)
+    tight = EquilibriumPath(model)
+    beams = beam_answers(tight, held.end_forces)
+    mass = mass_matrix(case, frame, model, parents, masses, carried=carried)
+    doubt = FlexibilityDoubt(case, frame, model, parents)
+
+    def solved(path: EquilibriumPath, mass: MassMatrix) -> tuple[tuple[Mode, ...], float]:
+        K, G = stiffness_parts(path, held.end_forces, guide_forces, beams)
         tangent = K + G
         if stiffness:
             way = _drive_way(frame, path)
             tangent[: path.chain.count, : path.chain.count] += stiffness * np.outer(way, way)
-        mass = mass_matrix(case, frame, model, parents, masses, carried=carried)
         found = frame_modes(path, tangent, mass, count + BASIS)
         unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
         rate = float(np.sqrt(-found.values[0])) if unstable.any() else 0.0
-        return _modes(case, frame, path, mass, found, count, parents), rate
+        return _modes(path, mass, found, count, doubt), rate
 
-    (modes, rate), holes = solved(model), running_holes(case)
+    (modes, rate), holes = solved(tight, mass), running_holes(case)
     if holes:
         hinged: tuple[Mode, ...] = ()
+        loose = with_hinges(frame, model, parents, holes)
         with suppress(CannotRunError):  # a pin alone may move freely, as between a hinge and a slot
-            hinged, _ = solved(with_hinges(frame, model, parents, holes))
+            # Beams and bodies stay where they are, so that they answer and weigh the same.
+            hinged, _ = solved(EquilibriumPath(loose, tight.elements), replace(mass, model=loose))
         modes = with_low_ends(modes, hinged)
     notes = _notes(frame, rate)
     return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=model, modes=modes, notes=notes)
@@ -193,17 +198,11 @@ def divide(frame: LinkageFrame, subdivisions: int) -> tuple[FrameModel, NDArray[
 
 
 def _modes(
-    case: Case,
-    frame: LinkageFrame,
-    path: EquilibriumPath,
-    mass: MassMatrix,
-    found: NaturalModes,
-    count: int,
-    parents: NDArray[np.int64],
+    path: EquilibriumPath, mass: MassMatrix, found: NaturalModes, count: int, doubt: FlexibilityDoubt
 ) -> tuple[Mode, ...]:
     """Modes with the bands of their frequencies."""
-    shapes = np.array([node_motion(path, vector) for vector in found.vectors.T])
-    bands = flexibility_doubt(case, frame, path.model, parents, found, shapes, count)
+    shapes = node_motions(path, found.vectors)
+    bands = doubt.bands(path.model, found, shapes, count)
     modes = []
     for shape, band in zip(shapes, bands, strict=False):
         whole, plane = mass.energies(shape)
@@ -224,29 +223,30 @@ def _notes(frame: LinkageFrame, rate: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def node_motion(path: EquilibriumPath, vector: Floats) -> Floats:
-    """Return the motion of the nodes by the unknowns of a path.
+def node_motions(path: EquilibriumPath, vectors: Floats) -> Floats:
+    """Return the motions of the nodes by the unknowns of a path.
 
     Parameters
     ----------
     path : EquilibriumPath
         Of the frame, at its start.
-    vector : ndarray, shape (k + g,)
-        Its unknowns.
+    vectors : ndarray, shape (k + g, c)
+        Its unknowns in every motion.
 
     Returns
     -------
-    ndarray, shape (n, 6)
+    ndarray, shape (c, n, 6)
         Displacements and rotations, global axes [mm, rad].
     """
     chain = path.chain
-    axes = chain.axes(path.state.rotations)
-    found = np.zeros((len(path.model.nodes), 6))
-    found[:, :3] = np.where(chain.translations >= 0, vector[chain.translations], 0.0)
+    turns = chain.axes(path.state.rotations)[:, None] * vectors[: chain.count, :, None]
+    found = np.zeros((len(path.model.nodes), vectors.shape[1], 6))
+    moved = np.where(chain.translations[..., None] >= 0, vectors[chain.translations], 0.0)
+    found[..., :3] = moved.swapaxes(1, 2)
     for node, steps in enumerate(chain.nodes):
         for step in steps:
-            found[node, 3:] += axes[step.number] * vector[step.number]
-    return found
+            found[node, :, 3:] += turns[step.number]
+    return np.ascontiguousarray(found.swapaxes(0, 1))
 
 
 def _drive_stiffness(case: Case, frame: LinkageFrame) -> float | None:

@@ -95,6 +95,21 @@ def test_a_bare_check_gives_the_same_load_cases_without_what_the_loads_do_not_ma
     assert bare.warnings == ()
 
 
+def test_a_trial_looks_at_tilting_pins_in_the_links_that_it_compares_alone():
+    """Numbers of the link that is compared, of pins and of the linkage stay; bands of the other links leave it out."""
+    case = read_case("six-bar")
+    every, few = (
+        check_case(case, name=case.origin, fidelity="beam", threads=1, bare=True, tilting=links)
+        .load_cases["wind"]
+        .checks
+        for links in (None, ("connector",))
+    )
+    pairs = list(zip(every, few, strict=True))
+    others = {"crank", "coupler", "rocker", "flap"}
+    assert all(one == other for one, other in pairs if one.subject.name not in others)
+    assert {one.subject.name for one, other in pairs if one != other} == others
+
+
 def test_the_linkage_holds_the_told_share_of_its_load():
     """The owl wing fails; just below that share of its load the same check passes, and just above it does not.
 

@@ -10,8 +10,10 @@ from fea.elements.quadrature import surface_quadrature, volume_quadrature
 from fea.elements.space import displacement_space
 from fea.elements.supports import rigid_motions
 from fea.tractions.traction import (
+    OPENING,
     body_density,
     couple_traction,
+    first_opening,
     line_density,
     pin_traction,
     thrust_traction,
@@ -62,6 +64,15 @@ def part_of(bore, *, low, high):
     return dataclasses.replace(
         bore, **{name: getattr(bore, name)[kept] for name in ("nodes", "x", "w", "normals")}
     ), kept
+
+
+def test_the_first_direction_without_a_wall_is_found_wherever_angles_are_cut():
+    """The wall is from -100 to 100 degrees, and bears ``OPENING`` beyond; its opening is behind, about 180 degrees."""
+    wall, reach = np.radians(np.linspace(-100.0, 100.0, 201)), np.degrees(OPENING)
+    borne = np.radians([0.0, 100.0, -100.0, 99.9 + reach, -99.9 - reach, 460.0])
+    assert first_opening(wall, borne) is None
+    for bare in np.radians([180.0, -180.0, 100.1 + reach, -100.1 - reach, 540.0]):
+        assert first_opening(wall, np.array([*borne, bare, np.pi])) == bare
 
 
 @pytest.mark.parametrize("law", [WIDE, NARROW])
