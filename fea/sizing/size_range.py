@@ -20,6 +20,8 @@ REACHES = ((2.0, 1.8, 1.6, 1.4, 1.2), (4.0, 3.5, 3.0, 2.5))
 HOPELESS = 0.5
 """Margin at the end of the next step, by the power law of the last one, below which that step is not tried."""
 _DOUBLED = math.log(2.0)
+_FARTHEST = REACHES[-1][0] ** -4
+"""Margin that no size takes to 1: the most, a second moment of area, goes with its fourth power."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,20 +63,22 @@ def size_range(trials: Trials, check: CheckOutcome) -> SizeRange | None:
         below = next(_taken(case, path, [size / reach for reach in REACHES[0]]), None)
         kept = next(_taken(case, path, [size]), None)
         return None if below is None or kept is None else SizeRange(entry=path, first=below, last=_text(size))
-    margin = check.margin
+    margin, value = check.margin, check.value
+    if check.quantity.margins(value.value, value.low, value.high, check.limit)[0] < _FARTHEST:
+        return None
     for step in REACHES:
-        value = next(_taken(case, path, [size * reach for reach in step]), None)
-        if value is None:
+        stated = next(_taken(case, path, [size * reach for reach in step]), None)
+        if stated is None:
             return None
-        larger = Resized(entry=path, value=value)
+        larger = Resized(entry=path, value=stated)
         now = trials.expected(check, larger)
         if now >= 1.0 and trials.holds(larger):
-            return SizeRange(entry=path, first=_text(size), last=value)
+            return SizeRange(entry=path, first=_text(size), last=stated)
         # By the power law of this step, doubled again.
         if (
             now < 1.0
             and margin > 0.0
-            and now * (now / margin) ** (_DOUBLED / math.log(_number(value) / size)) < HOPELESS
+            and now * (now / margin) ** (_DOUBLED / math.log(_number(stated) / size)) < HOPELESS
         ):
             return None
     return None

@@ -70,6 +70,7 @@ def reasons(checks: Sequence[CheckOutcome]) -> list[str]:
     return [
         ""
         if check.quantity not in _TELLING
+        and not check.value.unknowable
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks

@@ -200,7 +200,7 @@ def test_the_rocker_of_the_starter_in_warm_pvc_does_not_buckle():
     tables["large_displacement"] = "off"
     result = check_case(validate(tables), fidelity="beam").load_cases["lift"]
     (rocker,) = [c for c in result.checks if (c.name, c.link) == ("buckling", "rocker")]
-    assert rocker.value.value == pytest.approx(4.74, abs=0.02)
+    assert rocker.value.value == pytest.approx(4.74 * 0.9027, abs=0.02)  # the modulus at 35 degC, from 23 and 37.8 degC
     assert rocker.verdict is Verdict.PASS
 
 

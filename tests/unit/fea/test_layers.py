@@ -124,7 +124,8 @@ def outcome_of(case, factor, *, decided=True, loaded=True):
         scan=None,
     )
     beam = SimpleNamespace(idle=not loaded)
-    link = SimpleNamespace(layers=stress if decided and layers else None, beam=beam)
+    hand = {"safety_factor": Band.unknown(), "principal_max": Band.unknown(), "von_mises_max": Band.unknown()}
+    link = SimpleNamespace(layers=stress if decided and layers else None, beam=beam, **hand)
     [found] = layer_outcomes(case, "weight", {"AE": link})
     assert (found.name, found.limit, str(found.subject)) == ("layers", 3.0, "AE")
     return found

@@ -60,7 +60,8 @@ def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
     assert wording.headline(result) == (
         "Pass: all 20 checks keep their limits over the whole error band. Closest to its limit: safety factor of "
         f"link AE under load case weight, {beams.safety_factor.value:.2f} (no band); limit ≥ 3. "
-        "Not checked: pins (no check); drive shaft at A; collisions of links."
+        "Not checked: pins (no check); drive shaft at A; collisions of links and couples of their pins; "
+        "creep under loads that stay (no conditions.duration)."
     )
 
 
