@@ -258,14 +258,15 @@ class SizeChange:
         Returns
         -------
         tuple of 2 ndarray, shape (3, n), or None
-            None where the size does not touch the outcome; NaN where an end does not tell.
+            None where the size does not touch the outcome; NaN where an end does not tell, or has no limit.
         """
         subject = outcome.subject
         touched = {"link": self.ends.links, "pin": self.ends.joints}.get(subject.kind, frozenset((subject.name,)))
         if subject.name not in touched:
             return None
         with np.errstate(divide="ignore", invalid="ignore"):
-            low, high = (np.log(self._at(end, outcome, bands) / bands) for end in (self.low, self.high))
+            logs = [np.log(self._at(end, outcome, bands) / bands) for end in (self.low, self.high)]
+        low, high = (np.where(np.isfinite(log), log, np.nan) for log in logs)
         return low, high
 
     @staticmethod

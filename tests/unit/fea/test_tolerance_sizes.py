@@ -12,7 +12,7 @@ from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.refine.refinement import Effort
 from fea.tolerance.analysis import tolerance_case
 from fea.tolerance.numbers import covered
-from fea.tolerance.sizes import resized, size_ends
+from fea.tolerance.sizes import SizeChange, resized, size_ends
 from fea.tolerance.states import Sampler
 from geometry.base.errors import AlulaError, CaseError
 from loads.case.case_file import read_case
@@ -201,3 +201,17 @@ def test_a_case_without_file_has_no_other_sizes(lever):
     case = lever.model_copy(update={"title": "x"})
     with pytest.raises(CaseError, match="built or changed in Python"):
         size_ends(case, toleranced(lever.with_values({"tolerances": SIZES})))
+
+
+def test_an_upper_end_without_limit_at_one_size_leaves_the_others_known():
+    """Layers that are clear of their limit have none: infinite at both ends, it was subtracted from itself."""
+    t = np.linspace(-1.0, 1.0, 5)
+    result = SimpleNamespace(load_cases={"pull": SimpleNamespace(checks=[OUTCOME])})
+    at = SimpleNamespace(check=SimpleNamespace(result=result))
+    far = SimpleNamespace(bands=lambda outcome: np.array([[5.0], [4.0], [np.inf]]) * np.ones((3, 5)), **vars(at))
+    ends = SimpleNamespace(links=frozenset({"arm"}), joints=frozenset())
+    one = SizeChange(ends=ends, t=t, low=far, high=far)
+    value, low, high = resized(OUTCOME, np.array([[5.0], [4.0], [8.0]]) * np.ones((3, 5)), [one])
+    assert value == pytest.approx(5.0)
+    assert low == pytest.approx(4.0)
+    assert np.isnan(high).all()
