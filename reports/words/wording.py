@@ -282,13 +282,14 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool)
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
         closest = _with_limit(deciding(checks)[0], several=several)
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
-    decisive = [c for c in checks if c.verdict is verdict and c.applies]
-    names = _all_named(decisive)
-    share, first = f"{len(decisive)} of {count} checks", deciding(checks)[0]
+    found = deciding(checks)
+    chosen, first = {id(check) for check in found}, found[0]
+    names = _all_named(check for check in checks if id(check) in chosen)
+    share = f"{len(found)} of {count} checks"
     if verdict is Verdict.UNDECIDED:
-        verb = "is" if len(decisive) == 1 else "are"
+        verb = "is" if len(found) == 1 else "are"
         return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
-    missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
+    missed = f"{share} {'misses its limit' if len(found) == 1 else 'miss their limits'} over the whole error band"
     if first.quantity is Quantity.LOAD_SHARE:
         return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}: {names}."
     return f"Fail: {missed}: {names}. Worst: {_with_limit(first, several=several)}."
