@@ -85,7 +85,7 @@ distclean: clean ## remove .venv as well
 libraries:
 	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' || \
 	  { echo "alula needs Python 3.11 to 3.13, and $(PYTHON) is another: make PYTHON=python3.12 $(MAKECMDGOALS)" >&2; exit 1; }
-	@missing=$$($(PYTHON) -m geometry.base.system_libraries) || exit 1; \
+	@missing=$$($(PYTHON) geometry/base/system_libraries.py) || exit 1; \
 	if [ -z "$$missing" ]; then exit 0; fi; \
 	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
 	  echo "Installing system libraries: $$missing"; \
@@ -93,15 +93,18 @@ libraries:
 	  apt-get update -qq && apt-get install -qq --yes --no-install-recommends $$missing >/dev/null; \
 	else \
 	  echo "System libraries are missing. Run this once, then make again:" >&2; \
-	  $(PYTHON) -m geometry.base.system_libraries --advice >&2; \
+	  $(PYTHON) geometry/base/system_libraries.py --advice >&2; \
 	  exit 1; \
 	fi
 
-$(INSTALLED): requirements.lock pyproject.toml | libraries
+$(INSTALLED): requirements.lock pyproject.toml setup.py | libraries
 	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
 	@echo "Installing the locked packages into $(VENV): some 2 GB, a minute or more"
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+# What type checkers and editors look through, which do not ask the finder of an editable install.
+	@rm -rf $(VENV)/types && mkdir -p $(VENV)/types/alula
+	@ln -s $(addprefix $(CURDIR)/,$(wildcard alula/*.py) alula/py.typed geometry loads fea reports) $(VENV)/types/alula/
 	@touch $@
 # Other users of the machine may run it, whatever the umask: pip keeps to that.
 	@chmod -R a+rX $(VENV)

@@ -24,9 +24,9 @@ import accuracy_parts  # noqa: E402
 from record import Stopwatch, save  # noqa: E402
 from solid_problems import Problem, Solved  # noqa: E402
 
-from fea.common.threads import bounded  # noqa: E402
-from fea.refine.target_sizes import LocalGoal, next_sizes, reduction  # noqa: E402
-from geometry.base.errors import AlulaError  # noqa: E402
+from alula.fea.common.threads import bounded  # noqa: E402
+from alula.fea.refine.target_sizes import LocalGoal, next_sizes, reduction  # noqa: E402
+from alula.geometry.base.errors import AlulaError  # noqa: E402
 
 TARGETS = (0.10, 0.05, 0.02, 0.01)
 STEP = 1.4

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from solid_problems import Problem, Solved
 
-from fea.elements.quadrature import SurfaceQuadrature
-from geometry.meshing.tagged_mesh import TaggedMesh
+from alula.fea.elements.quadrature import SurfaceQuadrature
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
 Answer = tuple[float, float]
 """Peak von Mises stress [MPa] and displacement [mm]."""
@@ -110,9 +110,9 @@ def mesh(part: Part, size: float | tuple[np.ndarray, np.ndarray], *, curved: boo
 
 def tube() -> Part:
     """Cantilever tube of the owl wing's link, 5 over 2.5 mm, 88 mm long, 1 N at its tip; a half by symmetry."""
-    from fea.frame.linear import solve_frame
-    from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-    from geometry.parts.part import Section
+    from alula.fea.frame.linear import solve_frame
+    from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+    from alula.geometry.parts.part import Section
 
     E, nu, length, outer, inner, force = 2900.0, 0.38, 88.0, 2.5, 1.25, 1.0
     area, second = math.pi * (outer**2 - inner**2), math.pi * (outer**4 - inner**4) / 4.0
@@ -179,7 +179,7 @@ def tube() -> Part:
 
 def section_peak(section: Any, forces: np.ndarray) -> float:
     """Largest von Mises stress that a beam's section forces make."""
-    from fea.beam.section_stress import section_stress
+    from alula.fea.beam.section_stress import section_stress
 
     return float(section_stress(section, forces).equivalent)
 
@@ -237,9 +237,9 @@ def cylinder() -> Part:
 
 def strip() -> Part:
     """Howland's strip, 20 mm wide, hole of 6 mm, 10 MPa tension, plane strain; a quarter by symmetry."""
-    from fea.frame.linear import solve_frame
-    from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-    from geometry.parts.part import Section
+    from alula.fea.frame.linear import solve_frame
+    from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+    from alula.geometry.parts.part import Section
 
     E, nu, half, hole, length, thickness, tension = 2900.0, 0.38, 10.0, 3.0, 60.0, 4.0, 10.0
     share = math.sqrt(1.0 - nu + nu * nu)  # von Mises over the stress along the strip, in plane strain

@@ -5,8 +5,8 @@
 
 What the solids say is kept in ``benchmarks/results/calibration.json``, so that a better estimate needs no new solid.
 Every part is solved on one moderate mesh under some twenty load cases with every pin pressure and torque transfer.
-The largest von Mises and principal stress at each critical location (``fea.beam.critical_locations``) is divided by the
-estimate there.
+The largest von Mises and principal stress at each critical location (``alula.fea.beam.critical_locations``) is divided
+by the estimate there.
 """
 
 import datetime
@@ -18,16 +18,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fea.beam.calibration import proportions
-from fea.beam.critical_locations import critical_locations, displacement_estimate
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import BeamCheck, check_beam
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.bodies.eyes import RIM
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from alula.fea.beam.calibration import proportions
+from alula.fea.beam.critical_locations import critical_locations, displacement_estimate
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import BeamCheck, check_beam
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.bodies.eyes import RIM
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
 KEPT = Path(__file__).with_name("results") / "calibration.json"

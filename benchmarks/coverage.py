@@ -10,16 +10,16 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from alula.fea.refine import refinement
+from alula.fea.refine.link_series import CasePrecision
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.refinement import START as FIRST
+from alula.fea.refine.refinement import Effort, refine_links
+from alula.geometry.base.errors import AlulaError
 from benchmarks.coverage_parts import PLANE, YOUNG, Drawn, drawn
 from benchmarks.coverage_plane import plane_truths
 from benchmarks.coverage_table import HEADER, judged, rows
 from benchmarks.coverage_truth import truths
-from fea.refine import refinement
-from fea.refine.link_series import CasePrecision
-from fea.refine.link_task import LinkTask
-from fea.refine.refinement import START as FIRST
-from fea.refine.refinement import Effort, refine_links
-from geometry.base.errors import AlulaError
 
 RESULTS = Path(__file__).with_name("results")
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "verification.md"

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from geometry.base.errors import CaseError
-from geometry.bodies.eyes import RIM
-from geometry.meshing.mesh import check_body
-from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Tube
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.eyes import RIM
+from alula.geometry.meshing.mesh import check_body
+from alula.geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Tube
 
 WIDTH = 10.0
 """Of every section [mm]: errors depend on proportions alone."""

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.link_loads import PinLoad
+from alula.geometry.meshing.mesh_settings import MeshSettings
+from alula.geometry.meshing.mesher import size_formulas
+from alula.geometry.solids.solid_model import build, initialised
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
 from benchmarks.coverage_parts import YOUNG, Drawn
-from fea.common.link_loads import PinLoad
-from geometry.meshing.mesh_settings import MeshSettings
-from geometry.meshing.mesher import size_formulas
-from geometry.solids.solid_model import build, initialised
-from loads.records.bearing import NARROW, WIDE, PressureLaw
 
 PLACED = 1e-9
 """Tolerance of scikit-fem's places on curved sides: its 1e-12 is below the rounding of small elements."""

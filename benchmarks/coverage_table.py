@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from alula.fea.refine.convergence import ALONE, SERIES, GridConvergence, grid_convergence
+from alula.fea.refine.refinement import FAR, ROUGH
 from benchmarks.coverage_parts import Drawn
-from fea.refine.convergence import ALONE, SERIES, GridConvergence, grid_convergence
-from fea.refine.refinement import FAR, ROUGH
 
 EXACT = 1.0 / 3.0
 """Most error of a truth over the band that it judges."""

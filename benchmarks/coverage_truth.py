@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from alula.fea.refine.refinement import START
+from alula.fea.refine.target_sizes import next_sizes
+from alula.fea.solid.solution import SolidSolution, solve_solid
+from alula.fea.solid.stress import StressField, extreme_principal, stress_field, von_mises
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from benchmarks.coverage_parts import YOUNG, Drawn
-from fea.refine.refinement import START
-from fea.refine.target_sizes import next_sizes
-from fea.solid.solution import SolidSolution, solve_solid
-from fea.solid.stress import StressField, extreme_principal, stress_field, von_mises
-from geometry.meshing.mesh import MeshSettings, mesh_body
 
 FIRST, FINER = 2.2, (3.2, 4.8)
 """Times as fine at the peaks as the first mesh of a series."""

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.meshing.mesh import check_body
+from alula.geometry.parts.part import Body, Pin, Tube
 from benchmarks.coverage_parts import Drawn
-from fea.common.link_loads import LinkLoads, PinLoad
-from geometry.base.errors import AlulaError, CaseError
-from geometry.meshing.mesh import check_body
-from geometry.parts.part import Body, Pin, Tube
 
 KIND = "pinned tube"
 DIAMETER = 8.0

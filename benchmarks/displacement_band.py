@@ -17,19 +17,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.frame.displacement_band import bore_gives, bounds, zones
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from fea.refine.level import level_of
-from fea.refine.link_series import precision
-from fea.solid.solution import SolidSolution, solve_solid
-from fea.solid.virtual_work import virtual_work
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.bodies.body_rules import check_body
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from alula.fea.frame.displacement_band import bore_gives, bounds, zones
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.refine.level import level_of
+from alula.fea.refine.link_series import precision
+from alula.fea.solid.solution import SolidSolution, solve_solid
+from alula.fea.solid.virtual_work import virtual_work
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
 
 FORCE = 100.0
 WAYS = {0: "pulled", 1: "bent", 2: "bent out of the plane"}

@@ -25,18 +25,18 @@ from typing import Any
 import numpy as np
 from record import save
 
-from fea.common.threads import bounded
-from fea.elements.space import displacement_space
-from fea.motion.link_envelope import link_motion
-from fea.motion.link_history import link_histories
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.solvers.solve import Method, available_methods
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.records.bearing import WIDE
-from loads.states.case_motion import solve_case_motion
+from alula.fea.common.threads import bounded
+from alula.fea.elements.space import displacement_space
+from alula.fea.motion.link_envelope import link_motion
+from alula.fea.motion.link_history import link_histories
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.solvers.solve import Method, available_methods
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.records.bearing import WIDE
+from alula.loads.states.case_motion import solve_case_motion
 
 POSES = 360
 REPEATS = 3

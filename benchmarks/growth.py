@@ -21,21 +21,21 @@ sys.path[:0] = [str(ROOT)]
 from record import Stopwatch, save  # noqa: E402
 from solvers import NU, E, grid  # noqa: E402
 
-from fea.common.threads import bounded  # noqa: E402
-from fea.elements.elasticity import assemble_stiffness  # noqa: E402
-from fea.elements.space import displacement_space  # noqa: E402
-from fea.elements.supports import isostatic_supports  # noqa: E402
-from fea.motion.link_envelope import link_motion  # noqa: E402
-from fea.motion.link_history import link_histories  # noqa: E402
-from fea.solid.solution import solve_solid  # noqa: E402
-from fea.solid.stress import stress_field  # noqa: E402
-from fea.solvers.solve import available_methods, factorise  # noqa: E402
-from fea.solvers.two_level import LinearLevel  # noqa: E402
-from geometry.meshing.mesh import MeshSettings, mesh_body  # noqa: E402
-from geometry.meshing.tagged_mesh import TaggedMesh  # noqa: E402
-from loads.case.case_file import read_case  # noqa: E402
-from loads.records.bearing import WIDE  # noqa: E402
-from loads.states.case_motion import solve_case_motion  # noqa: E402
+from alula.fea.common.threads import bounded  # noqa: E402
+from alula.fea.elements.elasticity import assemble_stiffness  # noqa: E402
+from alula.fea.elements.space import displacement_space  # noqa: E402
+from alula.fea.elements.supports import isostatic_supports  # noqa: E402
+from alula.fea.motion.link_envelope import link_motion  # noqa: E402
+from alula.fea.motion.link_history import link_histories  # noqa: E402
+from alula.fea.solid.solution import solve_solid  # noqa: E402
+from alula.fea.solid.stress import stress_field  # noqa: E402
+from alula.fea.solvers.solve import available_methods, factorise  # noqa: E402
+from alula.fea.solvers.two_level import LinearLevel  # noqa: E402
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body  # noqa: E402
+from alula.geometry.meshing.tagged_mesh import TaggedMesh  # noqa: E402
+from alula.loads.case.case_file import read_case  # noqa: E402
+from alula.loads.records.bearing import WIDE  # noqa: E402
+from alula.loads.states.case_motion import solve_case_motion  # noqa: E402
 
 MOTION, ENVELOPE, LOADS = (36, 360, 3600, 36_000), (36, 360, 3600), (1, 2, 4, 8, 16)
 LINK = "AE"

@@ -17,11 +17,11 @@ import numpy as np  # noqa: E402
 from record import save  # noqa: E402
 from trade import LINKS, task_of  # noqa: E402
 
-from fea.elements.elasticity import assemble_stiffness  # noqa: E402
-from fea.elements.supports import isostatic_supports  # noqa: E402
-from fea.refine.refinement import START, Effort, refine_links  # noqa: E402
-from fea.solvers.solve import factorise  # noqa: E402
-from fea.solvers.two_level import TOLERANCE, linear_level  # noqa: E402
+from alula.fea.elements.elasticity import assemble_stiffness  # noqa: E402
+from alula.fea.elements.supports import isostatic_supports  # noqa: E402
+from alula.fea.refine.refinement import START, Effort, refine_links  # noqa: E402
+from alula.fea.solvers.solve import factorise  # noqa: E402
+from alula.fea.solvers.two_level import TOLERANCE, linear_level  # noqa: E402
 
 MORE = (("owl-wing-static", "CF"), ("owl-wing-static", "ED"), ("flapping-wing-chosen", "crank"), ("ornithopter", "rod"))
 

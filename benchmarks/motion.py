@@ -11,11 +11,11 @@ import time
 
 import numpy as np
 
-from geometry.linkage.motion import solve_motion
-from loads.case.case_file import read_case
-from loads.records.applied import PartMass, PointLoad
-from loads.states.actions import inertia_loads
-from loads.states.kinetostatics import energies, solve_kinetostatics
+from alula.geometry.linkage.motion import solve_motion
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import PartMass, PointLoad
+from alula.loads.states.actions import inertia_loads
+from alula.loads.states.kinetostatics import energies, solve_kinetostatics
 
 POSES = 100_000
 REPEATS = 3

@@ -8,14 +8,14 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from fea.common.threads import bounded
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import DisplacementSpace, displacement_space
-from fea.solid.stress import stress_field, von_mises
-from fea.solvers.solve import factorise
-from fea.solvers.two_level import linear_level
-from geometry.meshing.tagged_mesh import TaggedMesh
+from alula.fea.common.threads import bounded
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import DisplacementSpace, displacement_space
+from alula.fea.solid.stress import stress_field, von_mises
+from alula.fea.solvers.solve import factorise
+from alula.fea.solvers.two_level import linear_level
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
 E, NU = 2900.0, 0.38
 

@@ -57,7 +57,7 @@ def write_deck(mesh: Path, deck: Path) -> None:
     """Write the same problem for CalculiX (not part of its time: its mesh file)."""
     from peer_alula import NU, E, problem
 
-    from fea.calculix.program import write_deck as write
+    from alula.fea.calculix.program import write_deck as write
 
     space, fixed, load = problem(str(mesh))
     write(deck, space, E=E, nu=NU, loads=load.reshape(-1, 3), supports=fixed, title="clamped bar")
@@ -67,8 +67,8 @@ def calculix_answer(mesh: Path, deck: Path) -> dict[str, Any]:
     """CalculiX's own displacement and largest stress, read from its printed results (not part of its time)."""
     from peer_alula import problem
 
-    from fea.calculix.program import read_dat
-    from fea.solid.stress import von_mises
+    from alula.fea.calculix.program import read_dat
+    from alula.fea.solid.stress import von_mises
 
     space, *_ = problem(str(mesh))
     u, stress = read_dat(deck.with_suffix(".dat"), nodes=len(space.nodes), elements=len(space.cells), points=4)

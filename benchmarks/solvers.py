@@ -72,17 +72,17 @@ def measured(path: Path, solver: str, threads: int) -> dict[str, Any]:
         return value
 
     def imported() -> None:
-        import fea.solid.solution  # noqa: F401
+        import alula.fea.solid.solution  # noqa: F401
 
     stage("import", imported)
-    from fea.common.threads import bounded
-    from fea.elements.elasticity import assemble_stiffness
-    from fea.elements.space import displacement_space
-    from fea.elements.supports import isostatic_supports, rigid_motions
-    from fea.solid.stress import stress_field
-    from fea.solvers.solve import factorise
-    from fea.solvers.two_level import LinearLevel
-    from geometry.meshing.tagged_mesh import TaggedMesh
+    from alula.fea.common.threads import bounded
+    from alula.fea.elements.elasticity import assemble_stiffness
+    from alula.fea.elements.space import displacement_space
+    from alula.fea.elements.supports import isostatic_supports, rigid_motions
+    from alula.fea.solid.stress import stress_field
+    from alula.fea.solvers.solve import factorise
+    from alula.fea.solvers.two_level import LinearLevel
+    from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
     def read() -> TaggedMesh:
         with np.load(path) as file:

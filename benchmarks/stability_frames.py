@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from alula.fea.beam.column_factor import AxialForce, column_factors
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import isostatic_supports
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.geometry.parts.part import Section
 from benchmarks.stability_report import Row, figure, table, timed
 from benchmarks.stability_solids import box
-from fea.beam.column_factor import AxialForce, column_factors
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.space import displacement_space
-from fea.elements.supports import isostatic_supports
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
-from fea.nonlinear.stability import buckling_factor
-from geometry.parts.part import Section
 
 SECTION = Section(area=8.0, i_y=2.0, i_z=3.0, torsion=4.0, half_y=1.0, half_z=1.0, round=False)
 YOUNG, LENGTH = 2900.0, 100.0

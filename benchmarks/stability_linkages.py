@@ -6,21 +6,21 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.grashof import classify
+from alula.geometry.mechanisms.synthesis import synthesise
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import Load, PointLoad
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.masses import part_mass
+from alula.loads.statics import statics
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, solve_statics
 from benchmarks.stability_report import Row, figure, table, timed
-from geometry.base.errors import CaseError
-from geometry.linkage.continuation import DeadPointError
-from geometry.linkage.linkage import Joint, Link, Linkage
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.grashof import classify
-from geometry.mechanisms.synthesis import synthesise
-from loads.case.case_file import read_case
-from loads.records.applied import Load, PointLoad
-from loads.states.actions import acting_loads
-from loads.states.masses import part_mass
-from loads.statics import statics
-from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, solve_statics
 
 DECADES = tuple(10.0**-k for k in range(10))
 """Distance from the dead point [degrees]."""

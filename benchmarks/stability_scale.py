@@ -5,18 +5,18 @@ from typing import Any
 
 import numpy as np
 
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.links.solid_result import link_task
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field, von_mises
+from alula.geometry.base.errors import AlulaError
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.loads.case.case_file import validate
+from alula.loads.records.bearing import WIDE
+from alula.loads.statics.statics import Reactions
 from benchmarks.stability_report import Row, figure, table, timed
-from fea.beam.cut_free import link_loads
-from fea.check.run import check_case
-from fea.frame.case_statics import solve_case_statics
-from fea.links.solid_result import link_task
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field, von_mises
-from geometry.base.errors import AlulaError
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from loads.case.case_file import validate
-from loads.records.bearing import WIDE
-from loads.statics.statics import Reactions
 
 CASE = """
 schema_version = 1

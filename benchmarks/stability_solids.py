@@ -8,23 +8,23 @@ from typing import Any
 
 import numpy as np
 
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.theory import internal_forces
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import DisplacementSpace, displacement_space
+from alula.fea.elements.supports import isostatic_supports
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.refine.error_estimate import ErrorEstimate, energy_density, estimate_error
+from alula.fea.solid.stress import stress_field, von_mises
+from alula.fea.solvers.solve import Method, factorise
+from alula.fea.solvers.two_level import linear_level
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.part import Section
 from benchmarks.stability_report import Row, figure, table, timed
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, PointLoad
-from fea.beam.theory import internal_forces
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import DisplacementSpace, displacement_space
-from fea.elements.supports import isostatic_supports
-from fea.frame.linear import solve_frame
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
-from fea.refine.error_estimate import ErrorEstimate, energy_density, estimate_error
-from fea.solid.stress import stress_field, von_mises
-from fea.solvers.solve import Method, factorise
-from fea.solvers.two_level import linear_level
-from geometry.base.errors import CannotRunError
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.part import Section
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "tests"))
 from known_solutions import NU, PRESSURE, kirsch, lame, tensor
@@ -335,8 +335,8 @@ def mesh_quality() -> Row:
 
 def stress_error(found: Solved, exact: Stress, nu: float) -> float:
     """True error in the energy norm [√(N mm)]: of the elements' own stress, against the exact one."""
-    from fea.elements.elasticity import reference_basis
-    from fea.refine.error_estimate import DEGREE, _own_stress
+    from alula.fea.elements.elasticity import reference_basis
+    from alula.fea.refine.error_estimate import DEGREE, _own_stress
 
     space = found.space
     _, W, phi, gradient = reference_basis(space, DEGREE)

@@ -23,7 +23,7 @@ def check(case: str, fidelity: str, threads: int) -> dict[str, Any]:
     """One check in a process of its own, with the stages that its result tells."""
     with tempfile.TemporaryDirectory() as folder:
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-        command = [sys.executable, "-c", "from reports.commands.cli import main; main()", "check", case]
+        command = [sys.executable, "-c", "from alula.reports.commands.cli import main; main()", "check", case]
         ended = subprocess.run(
             [*command, "--fidelity", fidelity, "--threads", str(threads), "--output", folder],
             cwd=ROOT,

@@ -16,12 +16,12 @@ from typing import Any
 
 from record import Others, Stopwatch, save
 
-from fea.study.engine import Engine, local_engine
-from fea.study.numbers import VariantResult
-from fea.study.store import NAME, Store
-from fea.study.study import Study, task_of
-from loads.plans.plan import plan_of
-from loads.plans.variants import Variants
+from alula.fea.study.engine import Engine, local_engine
+from alula.fea.study.numbers import VariantResult
+from alula.fea.study.store import NAME, Store
+from alula.fea.study.study import Study, task_of
+from alula.loads.plans.plan import plan_of
+from alula.loads.plans.variants import Variants
 
 CASE, ENTRY = "owl-wing-static", "parts.tube.outer_diameter"
 AT_ONCE = 2

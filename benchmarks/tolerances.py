@@ -17,14 +17,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.run import check_case
-from fea.refine.refinement import Effort
-from fea.tolerance.analysis import tolerance_case
-from fea.tolerance.result import ToleranceResult
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.case.toleranced import Variable, toleranced
+from alula.fea.check.run import check_case
+from alula.fea.refine.refinement import Effort
+from alula.fea.tolerance.analysis import tolerance_case
+from alula.fea.tolerance.result import ToleranceResult
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.case.toleranced import Variable, toleranced
 
 Real = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ ONE_MESH = Effort(max_meshes=1)
 
 def starter() -> Case:
     """Return the starter case with tolerances."""
-    text = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
+    text = files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     path = Path(tempfile.mkdtemp()) / "starter.toml"
     path.write_text(text, encoding="utf-8")
     return read_case(str(path)).with_values({"tolerances": TOLERANCES})

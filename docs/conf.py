@@ -6,8 +6,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from alula.geometry.base.version import alula_version  # noqa: E402
 from docs.extensions.gallery import NOT_RUN_PICTURE, not_run, run_pattern  # noqa: E402 - the path comes first
-from geometry.base.version import alula_version  # noqa: E402
 
 project = "alula"
 author = "the alula developers"

@@ -3,8 +3,8 @@
 import tomllib
 from functools import cache
 
-from fea.check.run import check_case
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.loads.case.case_file import validate
 
 ARM = """
 schema_version = 1

@@ -4,8 +4,8 @@ import tomllib
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 TEXT = """
 schema_version = 1

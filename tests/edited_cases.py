@@ -4,8 +4,8 @@ import tomllib
 from collections.abc import Sequence
 from typing import Any
 
-from loads.case.case import Case
-from loads.case.case_file import read_text, validate
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_text, validate
 
 PLANAR = 'layer_spacing="0 mm"'
 """Entry that puts all layers of a case in one plane: for tests of what has nothing to do with layers."""

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
-from geometry.base.model import CaseModel
-from loads.case.case import Case
-from loads.plans.plan import StudyPlan
+from alula.geometry.base.model import CaseModel
+from alula.loads.case.case import Case
+from alula.loads.plans.plan import StudyPlan
 
 FILE = Path(__file__).resolve().parents[1] / "geometry" / "base" / "entry_texts.toml"
 FILES = Case, StudyPlan
@@ -20,7 +20,7 @@ FILES = Case, StudyPlan
 def records(base: type[CaseModel] = CaseModel) -> Iterator[type[CaseModel]]:
     """Yield the program's records that derive from a class."""
     for record in base.__subclasses__():
-        if record.__module__.startswith(("geometry.", "loads.")):
+        if record.__module__.startswith(("alula.geometry.", "alula.loads.")):
             yield record
             yield from records(record)
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import BeamCheck, check_beam
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.refine.link_task import LinkTask
-from geometry.parts.part import Body, HoleRow, Pin, Tube
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import BeamCheck, check_beam
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.refine.link_task import LinkTask
+from alula.geometry.parts.part import Body, HoleRow, Pin, Tube
 
 TUBE = Tube(
     shape="tube",

@@ -5,8 +5,8 @@ import tomllib
 
 from scipy.optimize import brentq
 
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 LEVER = """
 schema_version = 1

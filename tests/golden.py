@@ -17,8 +17,8 @@ from typing import Any
 
 import solved
 
-from loads.case.case_file import built_in_cases, read_text
-from reports.tables.record import as_json
+from alula.loads.case.case_file import built_in_cases, read_text
+from alula.reports.tables.record import as_json
 
 FOLDER = Path(__file__).parent / "regression" / "golden"
 EXACT, ITERATED, MESHED = 1e-9, 1e-7, 1e-6
@@ -103,7 +103,7 @@ def run(name: str) -> dict[str, float | str | None]:
     """Run the command of a golden result and return its numbers by path; hand calculations are shared with tests."""
     if name.startswith("hand-"):
         return dict(numbers(json.loads(as_json(solved.by_hand(name.removeprefix("hand-"))))))
-    from reports.commands.cli import app
+    from alula.reports.commands.cli import app
 
     told = io.StringIO()
     with contextlib.redirect_stdout(told), contextlib.redirect_stderr(io.StringIO()), contextlib.suppress(SystemExit):

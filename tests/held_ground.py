@@ -5,8 +5,8 @@ The load at B acts along the strut AB, and so the second strut OB bears nothing:
 
 import tomllib
 
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 L, WIDTH, THICKNESS, E, POISSON = 80.0, 8.0, 4.0, 2800.0, 0.38
 """Of the bar from A to base [mm], and of its material, pvc-u [MPa]."""

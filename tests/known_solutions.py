@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import isostatic_supports
-from fea.solvers.solve import factorise
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import isostatic_supports
+from alula.fea.solvers.solve import factorise
 
 E, NU = 2900.0, 0.38
 PRESSURE, INNER, OUTER = 10.0, 1.0, 2.0

@@ -4,9 +4,9 @@ from typing import Annotated
 
 from strip_part import Strip
 
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.bodies.body import Body, extent
-from geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.bodies.body import Body, extent
+from alula.geometry.bodies.kernel import Entity, Kernel
 
 
 class Lopsided(Strip):

@@ -1,7 +1,7 @@
 """Cases with a changed material card."""
 
-from geometry.materials.material import TOLD, Material
-from loads.case.case import Case
+from alula.geometry.materials.material import TOLD, Material
+from alula.loads.case.case import Case
 
 SOURCED_ENTRIES = tuple(
     f"{where}={{" + ",".join(f'{entry}="{said}"' for entry in TOLD) + "}"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.meshing.element_geometry import TETRA_EDGES
+from alula.geometry.meshing.element_geometry import TETRA_EDGES
 
 
 def shape_quality(points, cells):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from fea.refine.convergence import grid_convergence
-from fea.refine.discretisation import Discretisation
-from fea.refine.refinement import MeshRecord
-from fea.refine.singular import SharpPeak
+from alula.fea.refine.convergence import grid_convergence
+from alula.fea.refine.discretisation import Discretisation
+from alula.fea.refine.refinement import MeshRecord
+from alula.fea.refine.singular import SharpPeak
 
 SERIES = grid_convergence([1.0], [5.0], estimate=0.1)
 

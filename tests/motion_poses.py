@@ -5,13 +5,13 @@ import math
 import numpy as np
 from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
 
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import Motion
-from geometry.linkage.pose import Pose, solve_pose
-from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
-from loads.states.actions import inertia_loads
-from loads.states.kinetostatics import Kinetostatics, energies, solve_kinetostatics, torque_by_virtual_work
-from loads.statics.statics import Drive
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import Motion
+from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
+from alula.loads.states.actions import inertia_loads
+from alula.loads.states.kinetostatics import Kinetostatics, energies, solve_kinetostatics, torque_by_virtual_work
+from alula.loads.statics.statics import Drive
 
 CRANK = math.radians(40.0)
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.linkage import Joint, Link, Linkage
 
 
 def link(*, ground: bool = False, **points: tuple[float, float]) -> Link:

@@ -12,17 +12,17 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from reports.commands import ending
-from reports.commands.cli import app
+from alula.reports.commands import ending
+from alula.reports.commands.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
-COMMAND = [sys.executable, "-c", "from reports.commands.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from alula.reports.commands.cli import main; main()"]
 BEAM = ("check", "four-bar-synthesis", "--fidelity", "beam")
 """The whole check that takes least."""
 WRITING = (
     "import json, os, sys\n"
     "from pathlib import Path\n"
-    "from reports.page import output\n"
+    "from alula.reports.page import output\n"
     "def write_folder(folder, fill):\n"
     "    output.write_folder(folder, 'check', fill)\n"
     "def fill(text):\n"

@@ -83,7 +83,10 @@ def texts() -> Iterator[tuple[Path, int, str]]:
     """Yield all prose that a person reads: its file, its first line, and the text without blocks of code."""
     for file in markdown_files():
         yield file, 1, without_code(file.read_text(encoding="utf-8"))
-    for file in [ROOT / "alula.py", *(file for package in PACKAGES for file in (ROOT / package).rglob("*"))]:
+    for file in [
+        *(ROOT / "alula").glob("*.py"),
+        *(file for package in PACKAGES for file in (ROOT / package).rglob("*")),
+    ]:
         read = _of_module if file.suffix == ".py" else _of_case if ".toml" in file.name else None
         if read:
             yield from ((file, line, text) for line, text in read(file.read_text(encoding="utf-8")))

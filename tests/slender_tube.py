@@ -1,6 +1,6 @@
 """A tube of any number of diameters as a case: on a pin at one end and a strut in the middle, loaded at the other."""
 
-from loads.case.case_file import validate
+from alula.loads.case.case_file import validate
 
 DIAMETER = 5.0
 

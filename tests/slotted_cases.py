@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.records.applied import shifted
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.records.applied import shifted
 
 BAR = {
     "shape": "bar",

@@ -3,8 +3,8 @@
 import tomllib
 from typing import Any
 
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 LEVER = """
 schema_version = 1

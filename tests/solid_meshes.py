@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
-from geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
 
 def _quadratic(points, cells, holes):

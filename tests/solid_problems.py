@@ -1,7 +1,7 @@
 """Boundary-value problems on structured meshes, for the published benchmarks: fixed faces, symmetry, pressure.
 
-Links are free bodies, so ``fea.solid.solution`` offers no fixed faces; here they are put on top of the same space,
-stiffness, solver and quadrature.
+Links are free bodies, so ``alula.fea.solid.solution`` offers no fixed faces; here they are put on top of the same
+space, stiffness, solver and quadrature.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 from known_solutions import law
 
-from fea.elements.elasticity import assemble_stiffness, jacobians, reference_basis
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import EDGES, displacement_space
-from fea.elements.supports import rigid_motions
-from fea.refine.convergence import GridConvergence, grid_convergence, observed_order
-from fea.refine.error_estimate import energy_density, energy_factor, estimate_error, relative_error
-from fea.solid.stress import stress_field
-from fea.solvers.solve import factorise
-from geometry.meshing.tagged_mesh import TaggedMesh
+from alula.fea.elements.elasticity import assemble_stiffness, jacobians, reference_basis
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import EDGES, displacement_space
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.refine.convergence import GridConvergence, grid_convergence, observed_order
+from alula.fea.refine.error_estimate import energy_density, energy_factor, estimate_error, relative_error
+from alula.fea.solid.stress import stress_field
+from alula.fea.solvers.solve import factorise
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
 SIDES = ("u0", "u1", "v0", "v1", "w0", "w1")
 

@@ -11,16 +11,16 @@ from unittest.mock import patch
 
 from edited_cases import PLANAR
 
-from fea.check.run import check_case
-from fea.claims.audit import ClaimResult
-from fea.claims.sources import check_all
-from fea.outcomes.result import CheckResult
-from geometry.base.locks import locked
-from geometry.meshing.mesh import MassProperties, mass_properties
-from geometry.parts.part import Body
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.states import masses
+from alula.fea.check.run import check_case
+from alula.fea.claims.audit import ClaimResult
+from alula.fea.claims.sources import check_all
+from alula.fea.outcomes.result import CheckResult
+from alula.geometry.base.locks import locked
+from alula.geometry.meshing.mesh import MassProperties, mass_properties
+from alula.geometry.parts.part import Body
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.states import masses
 
 T = TypeVar("T")
 
@@ -45,7 +45,7 @@ def shared(name: str, solve: Callable[[], T]) -> T:
 
 
 def share_masses() -> None:
-    """Measure equal bodies once per run: ``loads.states.masses`` measures them once per process."""
+    """Measure equal bodies once per run: ``alula.loads.states.masses`` measures them once per process."""
 
     @cache
     def measured(body: Body) -> MassProperties:
@@ -76,5 +76,5 @@ def _claims() -> dict[str, tuple[ClaimResult, ...]]:
             by_hand(name, PLANAR) if fidelity == "beam" else check_case(case, name=name, fidelity=fidelity, **options)
         )
 
-    with patch("fea.claims.data.check_case", of_this_process):
+    with patch("alula.fea.claims.data.check_case", of_this_process):
         return check_all()

@@ -3,10 +3,10 @@
 import tomllib
 from typing import Any
 
-from fea.frame.case_statics import CaseStatics, solve_case_statics
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.states.standing import Standing
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.states.standing import Standing
 
 LEVER = """
 schema_version = 1

@@ -2,12 +2,12 @@
 
 from typing import Annotated, ClassVar, Literal
 
-from geometry.base.errors import CaseError
-from geometry.base.units import POSITIVE, Length
-from geometry.bodies.body import Body, Feature, PartKind, extent
-from geometry.bodies.footprint import Footprint, strip
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.bodies.section import Section, rectangle
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import POSITIVE, Length
+from alula.geometry.bodies.body import Body, Feature, PartKind, extent
+from alula.geometry.bodies.footprint import Footprint, strip
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.bodies.section import Section, rectangle
 
 
 class Strip(PartKind):

@@ -3,9 +3,9 @@
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, nullcontext
 
-from fea.study.engine import Engine
-from fea.study.evaluate import Task, evaluate
-from fea.study.numbers import VariantResult
+from alula.fea.study.engine import Engine
+from alula.fea.study.evaluate import Task, evaluate
+from alula.fea.study.numbers import VariantResult
 
 
 def here() -> AbstractContextManager[Engine]:

@@ -31,7 +31,7 @@ LAYERS = {
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
 PACKAGES = tuple(LAYERS)
 OUTSIDE = ("alula", "tests", "benchmarks")
-"""What stands above or beside the packages: ``alula.py`` is their public face."""
+"""What stands above or beside the packages: ``alula/__init__.py`` is their public face, and a bare ``fea`` is none."""
 OWNERS = {
     "gmsh": ("geometry/solids/*.py", "geometry/meshing/*.py"),
     "skfem": ("fea/*.py",),
@@ -69,6 +69,12 @@ def _imported(source: str) -> Iterator[tuple[int, str]]:
                 yield node.lineno, module
 
 
+def in_room(module: str) -> str:
+    """Return the name of a module without ``alula.`` where it stands in one of the packages."""
+    below = module.removeprefix("alula.")
+    return below if below.partition(".")[0] in PACKAGES else module
+
+
 def violations(root: Path) -> list[str]:
     """Return one line per import that the house forbids, over all Python files of the four rooms below `root`."""
     found = {}
@@ -78,10 +84,13 @@ def violations(root: Path) -> list[str]:
             name = file.relative_to(root).as_posix()
             own = name.split("/")[1]
             above = layers[layers.index(own) + 1 :] if own in layers else ()
-            for line, module in imported(file.read_text(encoding="utf-8")):
+            for line, stated in imported(file.read_text(encoding="utf-8")):
+                module = in_room(stated)
                 other, _, rest = module.partition(".")
                 where = f"{name}:{line} imports"
-                if other in forbidden:
+                if other in PACKAGES and module == stated:
+                    found[f"{where} a bare {other}, whose name is alula.{other}"] = True
+                elif other in forbidden:
                     found[f"{where} {other}, a higher package or none"] = True
                 if other == package and rest.partition(".")[0] in above:
                     found[f"{where} {package}/{rest.partition('.')[0]}, which stands above {package}/{own}"] = True
@@ -107,7 +116,7 @@ def test_imports_go_one_way_and_libraries_stay_at_home():
 def module_graph(root: Path) -> dict[str, set[str]]:
     """Return the modules that each module of the packages below `root` imports, for types as well."""
     files = {file for package in PACKAGES for file in (root / package).rglob("*.py")}
-    modules = {file.relative_to(root).with_suffix("").as_posix().replace("/", "."): file for file in files}
+    modules = {f"alula.{'.'.join(file.relative_to(root).with_suffix('').parts)}": file for file in files}
     graph = {}
     for module, file in modules.items():
         names = {name for _, name in imported(file.read_text(encoding="utf-8"))}
@@ -118,8 +127,8 @@ def module_graph(root: Path) -> dict[str, set[str]]:
 def test_no_module_imports_itself_by_way_of_others(tmp_path):
     graphlib.TopologicalSorter(module_graph(ROOT)).prepare()
     (tmp_path / "fea").mkdir()
-    (tmp_path / "fea" / "a.py").write_text("from fea.b import x", encoding="utf-8")
-    (tmp_path / "fea" / "b.py").write_text("if TYPE_CHECKING:\n    import fea.a", encoding="utf-8")
+    (tmp_path / "fea" / "a.py").write_text("from alula.fea.b import x", encoding="utf-8")
+    (tmp_path / "fea" / "b.py").write_text("if TYPE_CHECKING:\n    import alula.fea.a", encoding="utf-8")
     with pytest.raises(graphlib.CycleError):
         graphlib.TopologicalSorter(module_graph(tmp_path)).prepare()
 
@@ -127,14 +136,18 @@ def test_no_module_imports_itself_by_way_of_others(tmp_path):
 @pytest.mark.parametrize(
     ("path", "source"),
     [
-        ("geometry/linkage/pose.py", "from loads.case.case import Case"),
-        ("geometry/linkage/pose.py", "import fea"),
+        ("geometry/linkage/pose.py", "from alula.loads.case.case import Case"),
+        ("geometry/linkage/pose.py", "import alula.fea"),
+        ("reports/page/html.py", "import fea"),
         ("reports/notebook/shown.py", "import alula"),
-        ("loads/statics/statics.py", "import numpy, reports.commands.cli"),
-        ("loads/cases/__init__.py", "from fea import check"),
-        ("fea/check/run.py", "def late():\n    from reports import html"),
-        ("fea/check/run.py", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import reports.tables.record"),
-        ("fea/check/run.py", "import importlib\nimportlib.import_module('reports.page.html')"),
+        ("loads/statics/statics.py", "import numpy, alula.reports.commands.cli"),
+        ("loads/cases/__init__.py", "from alula.fea import check"),
+        ("fea/check/run.py", "def late():\n    from alula.reports import html"),
+        (
+            "fea/check/run.py",
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import alula.reports.tables.record",
+        ),
+        ("fea/check/run.py", "import importlib\nimportlib.import_module('alula.reports.page.html')"),
         ("fea/solvers/solve.py", "import tests.unit"),
         ("fea/solvers/solve.py", "import gmsh"),
         ("geometry/parts/part.py", "def late():\n    import gmsh"),
@@ -142,8 +155,8 @@ def test_no_module_imports_itself_by_way_of_others(tmp_path):
         ("loads/records/bearing.py", "from skfem.helpers import dot"),
         ("reports/page/html.py", "from pyvista import Plotter"),
         ("reports/commands/cli.py", "from meshio import Mesh"),
-        ("fea/beam/theory.py", "from fea.check.run import check_case"),
-        ("fea/common/band.py", "from fea import motion"),
+        ("fea/beam/theory.py", "from alula.fea.check.run import check_case"),
+        ("fea/common/band.py", "from alula.fea import motion"),
     ],
 )
 def test_a_forbidden_import_is_found(tmp_path, path, source):
@@ -157,12 +170,12 @@ def test_a_forbidden_import_is_found(tmp_path, path, source):
 
 def test_allowed_imports_pass(tmp_path):
     allowed = {
-        "geometry/meshing/mesh_worker.py": "import gmsh\nfrom . import errors\nfrom geometry.parts.part import Part",
+        "geometry/meshing/mesh_worker.py": "import gmsh\nfrom . import a\nfrom alula.geometry.parts.part import Part",
         "geometry/solids/solid_model.py": "import gmsh",
-        "loads/statics/statics.py": "from geometry.linkage.pose import Pose",
-        "fea/check/run.py": "import geometry, loads.case.case, skfem, fea.solvers.solve",
+        "loads/statics/statics.py": "from alula.geometry.linkage.pose import Pose",
+        "fea/check/run.py": "import alula.geometry, alula.loads.case.case, skfem, alula.fea.solvers.solve",
         "reports/figures/figures_stress.py": "import pyvista",
-        "reports/page/export.py": "import meshio, fea, loads, geometry",
+        "reports/page/export.py": "import meshio, alula.fea, alula.loads, alula.geometry",
         "tests/test_any.py": "import reports",
     }
     for path, source in allowed.items():

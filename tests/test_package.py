@@ -1,4 +1,4 @@
-"""The wheel holds ``alula.py`` and the four packages with their data alone, and its command runs from any folder."""
+"""The wheel holds the one package ``alula`` with its data alone, and its command runs from any folder."""
 
 import os
 import re
@@ -39,7 +39,7 @@ def run(*command: str | Path, cwd: Path) -> str:
 def wheel(tmp_path_factory) -> Path:
     """Build the wheel from a copy, so that nothing is left in the checkout and nothing in it is left out."""
     source = tmp_path_factory.mktemp("source")
-    for folder in (*PACKAGES, "tests", "benchmarks"):
+    for folder in ("alula", *PACKAGES, "tests", "benchmarks"):
         if (ROOT / folder).is_dir():
             shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
     for file in ROOT.iterdir():
@@ -75,8 +75,16 @@ def test_the_wheel_holds_the_rooms_with_their_data_and_no_tests(wheel):
         for file in (ROOT / package).rglob("*")
         if file.is_file() and "__pycache__" not in file.parts
     }
-    assert shipped == tracked | {"alula.py"}
-    assert "geometry/materials/materials.toml" in shipped
+    face = {file.name for file in (ROOT / "alula").iterdir() if file.is_file()}
+    assert face == {"__init__.py", "__main__.py", "py.typed"}
+    assert shipped == {f"alula/{name}" for name in tracked | face}
+    assert "alula/geometry/materials/materials.toml" in shipped
+
+
+def test_alula_is_the_only_name_that_an_installation_adds(installed):
+    [site] = installed.glob("lib/python*/site-packages")
+    added = {path.name for path in site.iterdir() if path.name not in ("dependencies.pth", "__pycache__")}
+    assert {name for name in added if not name.endswith(".dist-info")} == {"alula"}
 
 
 def test_the_wheel_carries_the_licence(wheel):
@@ -90,12 +98,11 @@ def test_the_installed_packages_are_those_of_the_wheel(installed, tmp_path):
     files = run(
         installed / "bin" / "python",
         "-c",
-        "import alula, fea, geometry, loads, reports\n"
-        "for module in (alula, geometry, loads, fea, reports): print(module.__file__)",
+        "import alula.fea, alula.geometry, alula.loads, alula.reports\n"
+        "for module in (alula, alula.geometry, alula.loads, alula.fea, alula.reports): print(module.__file__)",
         cwd=tmp_path,
     ).splitlines()
-    assert Path(files[0]).name == "alula.py"
-    assert [Path(file).parent.name for file in files[1:]] == list(PACKAGES)
+    assert [Path(file).parent.name for file in files] == ["alula", *PACKAGES]
     assert all(Path(file).is_relative_to(installed) for file in files)
 
 
@@ -116,7 +123,7 @@ def test_what_is_installed_is_what_the_metadata_says(installed):
         for file in (ROOT / package).rglob("*.py")
         for _, name in imported(file.read_text(encoding="utf-8"))
     }
-    foreign = modules - sys.stdlib_module_names - set(PACKAGES)
+    foreign = modules - sys.stdlib_module_names - {"alula"}
     needed = {canonical(name) for module in foreign for name in owners[module][:1]}
     assert needed <= declared | optional
     assert declared <= needed
@@ -134,21 +141,29 @@ def test_the_command_runs_from_another_folder(installed, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_command_names_a_file_that_is_in_the_way(installed, tmp_path):
-    """The command itself finds its own packages first, unless PYTHONPATH says otherwise."""
-    (tmp_path / "reports.py").touch()
-    command = [str(installed / "bin" / "alula"), "cases"]
-    assert "owl-wing-static" in run(*command, cwd=tmp_path)
-    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith(f"alula: '{tmp_path / 'reports.py'}' is in the way of alula's own package 'reports';")
-    assert done.stderr.count("\n") == 1
+SWEEP = """
+import alula
+import fea, loads, reports, tests, geometry.mine
+
+case = alula.read_case("four-bar")
+print(alula.check(case, fidelity="beam").verdict, alula.check(case, fidelity="solid", accuracy="50 %").verdict)
+study = alula.study("four-bar", {"parts.bar.thickness": ["4 mm", "6 mm"]}, "out", fidelity="beam", threads=2)
+print(len(study.table()), fea.MINE + loads.MINE + reports.MINE + tests.MINE + geometry.mine.MINE)
+"""
+
+
+def test_a_script_stands_beside_files_with_the_names_of_alulas_packages(installed, tmp_path):
+    """A check, a solid and a study with two workers, whose children start in the same folder."""
+    for mine in ("fea.py", "loads.py", "geometry/mine.py", "reports.py", "tests/__init__.py"):
+        (tmp_path / mine).parent.mkdir(exist_ok=True)
+        (tmp_path / mine).write_text("MINE = 1", encoding="utf-8")
+    (tmp_path / "sweep.py").write_text(SWEEP, encoding="utf-8")
+    assert run(installed / "bin" / "python", "sweep.py", cwd=tmp_path).split() == ["undecided", "pass", "2", "5"]
 
 
 def test_the_command_line_and_the_face_import_late(installed, tmp_path):
     slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
-    script = f"import sys, alula, reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
+    script = f"import sys, alula, alula.reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
     assert run(installed / "bin" / "python", "-c", script, cwd=tmp_path).split() == []
 
 

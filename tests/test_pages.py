@@ -8,7 +8,7 @@ from pages import Reader, edited
 from programs import ROOT
 from prose import FENCE, without_code
 
-from loads.case.case_file import read_case
+from alula.loads.case.case_file import read_case
 
 DOCS = ROOT / "docs"
 TUTORIAL = DOCS / "tutorial.md"

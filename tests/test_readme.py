@@ -12,7 +12,7 @@ from typing import Any
 import programs
 import pytest
 
-from loads.case.case_file import read_case
+from alula.loads.case.case_file import read_case
 
 README = (programs.ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = [(kind, textwrap.dedent(text)) for kind, text in re.findall(r"^ *```(\w*)\n(.*?)^ *```$", README, re.S | re.M)]

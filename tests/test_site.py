@@ -14,15 +14,15 @@ import programs
 import pytest
 from pydantic import BaseModel
 
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.plans.plan import StudyPlan, plan_of
+from alula.loads.text.entries import file_schema
 from docs.extensions import case_file, gallery, python
 from docs.extensions.entries import tables
 from docs.extensions.examples import STARTER_PLAN, Text, of_text, stretches
 from docs.extensions.index import sections
 from docs.extensions.links import OUTSIDE, moved, remove_others
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.plans.plan import StudyPlan, plan_of
-from loads.text.entries import file_schema
 
 DOCS = programs.ROOT / "docs"
 INDEX = (DOCS / "index.md").read_text(encoding="utf-8")
@@ -88,11 +88,11 @@ def test_the_page_of_an_entry_says_all_of_it() -> None:
 def test_the_page_on_python_has_what_the_functions_return() -> None:
     found = python.returned()
     assert all(hasattr(import_module(module), name) for module, name in found)
-    assert ("reports.notebook.check_report", "CheckReport") in found
+    assert ("alula.reports.notebook.check_report", "CheckReport") in found
     page = python.page()
     assert "autofunction:: alula.check\n" in page
-    assert "autoclass:: reports.notebook.check_report.CheckReport\n" in page
-    assert "automethod:: loads.case.case.Case.with_values\n" in page
+    assert "autoclass:: alula.reports.notebook.check_report.CheckReport\n" in page
+    assert "automethod:: alula.loads.case.case.Case.with_values\n" in page
 
 
 @pytest.mark.parametrize(("base", "stretch"), list(stretches()), ids=lambda value: getattr(value, "source", value))
@@ -101,7 +101,7 @@ def test_stretches_are_read_with_their_case(base: str, stretch: Text) -> None:
     if base == STARTER_PLAN:
         plan_of(stretch.tables)
         return
-    case = validate(stretch.tables, str(files("loads.cases")))
+    case = validate(stretch.tables, str(files("alula.loads.cases")))
     assert case.solve_pose()
     for link in case.checked_links:
         assert case.body(link).part.section.area > 0.0

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 FOUR_BAR = """
 schema_version = 1

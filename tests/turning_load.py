@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.elements.quadrature import volume_quadrature
-from geometry.parts.part import Bar, Body, Pin, PlainEnd
-from loads.records.applied import BodyForce, LineLoad, PartMass
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.fea.elements.quadrature import volume_quadrature
+from alula.geometry.parts.part import Bar, Body, Pin, PlainEnd
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass
 
 L, RHO, POSES = 20.0, 1.2e-9, 24
 TURN = np.linspace(0.0, 2.0 * math.pi, POSES, endpoint=False)

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from fea.frame.linear import solve_frame
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from fea.nonlinear.corotational import subdivide
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import stiffness_parts
-from fea.vibration.linkage_modes import frame_modes
-from fea.vibration.mass_matrix import MassMatrix, beam_mass
-from fea.vibration.modes import frequency
-from geometry.bodies.section import Section
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.nonlinear.corotational import subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import stiffness_parts
+from alula.fea.vibration.linkage_modes import frame_modes
+from alula.fea.vibration.mass_matrix import MassMatrix, beam_mass
+from alula.fea.vibration.modes import frequency
+from alula.geometry.bodies.section import Section
 
 YOUNG, POISSON, DENSITY, LENGTH = 3000.0, 0.3, 1.2e-9, 100.0
 

@@ -6,17 +6,17 @@ from edited_cases import PLANAR
 from mesh_states import state
 from solid_meshes import bar
 
-from fea.beam.cut_free import link_loads
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.source import PIN_PRESSURE
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, overall
-from fea.outcomes.result import SectionComparison, SolidResult, VariantPeak
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from loads.case.case_file import read_case
-from loads.records.load_case import LoadCase
-from loads.states.actions import acting_loads
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.source import PIN_PRESSURE
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, overall
+from alula.fea.outcomes.result import SectionComparison, SolidResult, VariantPeak
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.loads.case.case_file import read_case
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.actions import acting_loads
 
 NAME = "owl-wing-static"
 SOLID_LINK = "GF"

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 
 from pydantic import BaseModel
 
+from alula.geometry.base.units import EXAMPLES, INTERNAL_UNITS
+from alula.loads.case.case import Case
+from alula.loads.plans.plan import StudyPlan
+from alula.loads.text.entries import file_schema
 from docs.extensions.entries import Entry, EntryTable, tables
 from docs.extensions.examples import Example, examples
-from geometry.base.units import EXAMPLES, INTERNAL_UNITS
-from loads.case.case import Case
-from loads.plans.plan import StudyPlan
-from loads.text.entries import file_schema
 
 _INTRODUCTION = """# The case file
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import typer
 
-from reports.commands.cli import app
+from alula.reports.commands.cli import app
 
 
 def page() -> str:

@@ -14,11 +14,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import built_in_cases, read_text
+from alula.loads.text.entries import file_schema
 from docs.extensions.entries import Schema, options
 from docs.extensions.links import DOCS
-from loads.case.case import Case
-from loads.case.case_file import built_in_cases, read_text
-from loads.text.entries import file_schema
 
 FOLDER = DOCS / "examples" / "entries"
 STARTER = "four-bar"
@@ -85,7 +85,7 @@ def starter(name: str) -> str:
         TOML.
     """
     if name == STARTER_PLAN:
-        return files("loads.plans").joinpath("starter-study.toml.txt").read_text(encoding="utf-8")
+        return files("alula.loads.plans").joinpath("starter-study.toml.txt").read_text(encoding="utf-8")
     return "" if name == NOTHING else read_text(name)[0]
 
 

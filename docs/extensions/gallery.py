@@ -5,8 +5,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+from alula.reports.notebook.shown import Picture
 from docs.extensions.links import DOCS, GENERATED
-from reports.notebook.shown import Picture
 
 FOLDER = DOCS / "gallery"
 SLOW = re.compile(r"^# slow: .+$", re.M)

@@ -5,9 +5,9 @@ import inspect
 from collections.abc import Iterator
 
 import alula
-from fea.common.band import Band
-from fea.common.verdict import Verdict
-from reports.notebook.shown import Picture, Table
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Verdict
+from alula.reports.notebook.shown import Picture, Table
 
 HELD = (Table, Picture, Band, Verdict)
 """What the reports hold."""
@@ -34,7 +34,7 @@ def page() -> str:
 
 
 def returned() -> list[tuple[str, str]]:
-    """Return the records that the functions return, as `alula.py` imports them for type checkers.
+    """Return the records that the functions return, as `alula/__init__.py` imports them for type checkers.
 
     Returns
     -------

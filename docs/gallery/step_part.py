@@ -13,7 +13,7 @@ import alula
 
 # %%
 # What the file holds. Its bores become the points of the link; the entries of a case file can be pasted.
-part = alula.inspect(str(files("loads.cases") / "bell-crank.step"), material="aluminium-6061-t6")
+part = alula.inspect(str(files("alula.loads.cases") / "bell-crank.step"), material="aluminium-6061-t6")
 print(part.table(), part.entries, sep="\n\n")
 part.plot_part()
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from fea.beam.critical_locations import LocationKind
-from geometry.bodies.body import Body, PartKind, clamped_end, patch_span
-from geometry.bodies.eyes import eye_reach
+from alula.fea.beam.critical_locations import LocationKind
+from alula.geometry.bodies.body import Body, PartKind, clamped_end, patch_span
+from alula.geometry.bodies.eyes import eye_reach
 
 Interval = tuple[float, float]
 _GAPS = {
@@ -157,7 +157,7 @@ def proportions(body: Body, nu: float) -> dict[str, float]:
 @cache
 def calibrations() -> Mapping[str, Calibration]:
     """Read the calibration of every shape ("tube", "bar")."""
-    data = tomllib.loads((files("fea") / "calibration.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.fea") / "calibration.toml").read_text(encoding="utf-8"))
     return {shape: _parsed(entry) for shape, entry in data.items()}
 
 

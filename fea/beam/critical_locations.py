@@ -2,8 +2,8 @@
 
 Section stresses of beam theory times the handbooks' concentration factors. The factors are for neighbouring shapes
 (a shoulder for the junction of an eye, a plate for the eye itself), so that these numbers are estimates, to be used
-with the factors that solid models of such links gave (``fea.beam.calibration``). Lengths in mm, forces in N, moments in
-N·mm, stresses in MPa.
+with the factors that solid models of such links gave (``alula.fea.beam.calibration``). Lengths in mm, forces in N,
+moments in N·mm, stresses in MPa.
 """
 
 import math
@@ -14,15 +14,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import deflection
-from fea.beam.holes import net_tension, tube_hole_factors
-from fea.beam.piecewise import Side
-from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
-from fea.beam.theory import BeamCheck
-from fea.common.link_loads import LinkLoads, PinLoad
-from geometry.bodies.body import extent, patch_span
-from geometry.bodies.eyes import eye_reach
-from geometry.parts.part import Body, HoleRow, Pin
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.holes import net_tension, tube_hole_factors
+from alula.fea.beam.piecewise import Side
+from alula.fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.geometry.bodies.body import extent, patch_span
+from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.parts.part import Body, HoleRow, Pin
 
 LocationKind = Literal["eye", "hole", "end", "section"]
 

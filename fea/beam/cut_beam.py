@@ -1,13 +1,13 @@
 """Beam theory on the sections of a solid: forces about their centroids, Mohr's bending stress, where beam theory holds.
 
-A part from a file is a beam of as many prismatic stretches as it has stations (``geometry.bodies.cut_section``). Forces
-are those on its link's x axis; about the centroid of a section beside that axis the moments are others. The normal
-stress σ = N/A + a y + b z, with y and z from the centroid, has the moments
+A part from a file is a beam of as many prismatic stretches as it has stations (``alula.geometry.bodies.cut_section``).
+Forces are those on its link's x axis; about the centroid of a section beside that axis the moments are others. The
+normal stress σ = N/A + a y + b z, with y and z from the centroid, has the moments
 
     M_z = -(a I_z + b I_yz),   M_y = a I_yz + b I_y
 
 (Timoshenko, Strength of Materials I, 3rd ed., section 49, in the axes of the link), and is largest at a corner of the
-hull of its outline. Rectangles, rods and tubes have Saint-Venant's exact stress (``fea.beam.section_stress``).
+hull of its outline. Rectangles, rods and tubes have Saint-Venant's exact stress (``alula.fea.beam.section_stress``).
 Of another section the shear stresses are means, V/A and T/√(A I_p), below the largest: T <= ∫τ r dA <= τ_max √(A I_p),
 I_p = ∫r² dA. That its shear centre is not its centroid is left out.
 Lengths in mm, forces in N, moments in N·mm, stresses in MPa.
@@ -20,10 +20,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.piecewise import Piecewise, divided
-from fea.beam.section_stress import SectionStress, section_stress
-from geometry.bodies.body import Body
-from geometry.bodies.cut_section import CutSection
+from alula.fea.beam.piecewise import Piecewise, divided
+from alula.fea.beam.section_stress import SectionStress, section_stress
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.cut_section import CutSection
 
 Floats = NDArray[np.float64]
 

@@ -8,15 +8,25 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam import loads as beam
-from fea.beam.cut_beam import changes
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from geometry.base.errors import CaseError
-from geometry.bodies.body import extent, hand_section, mouth
-from geometry.linkage.placement import Placement
-from geometry.parts.part import Body, Pin, PlainEnd
-from loads.records.applied import BodyForce, FrictionLoad, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
-from loads.statics.statics import Equilibrium
+from alula.fea.beam import loads as beam
+from alula.fea.beam.cut_beam import changes
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import extent, hand_section, mouth
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.parts.part import Body, Pin, PlainEnd
+from alula.loads.records.applied import (
+    BodyForce,
+    FrictionLoad,
+    LineLoad,
+    Load,
+    PointLoad,
+    in_axes,
+    rotated,
+    shifted,
+    turned,
+)
+from alula.loads.statics.statics import Equilibrium
 
 Real = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_beam import cells, cut_flexibility, nearest
-from fea.beam.flanks import Flanks
-from fea.beam.piecewise import Piecewise, divided, integral, values
-from geometry.bodies.cut_section import CutSection
-from geometry.parts.part import Section
+from alula.fea.beam.cut_beam import cells, cut_flexibility, nearest
+from alula.fea.beam.flanks import Flanks
+from alula.fea.beam.piecewise import Piecewise, divided, integral, values
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 _GAUSS = 6

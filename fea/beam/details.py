@@ -15,7 +15,7 @@ An arm is a straight bar built in at the eye from which it starts, under the for
 The cheeks of a fork are bars built in at the root of its gap. Each bears half of the pin's force and what a couple of
 the pin adds as a pressure linear along the walls, q = D z/I with D = ∫ z q dz; a thrust acts on one of them.
 
-A pin through the walls of a tube leaves the net section of ``fea.beam.holed_tube``.
+A pin through the walls of a tube leaves the net section of ``alula.fea.beam.holed_tube``.
 Lengths in mm, forces in N, moments in N·mm, stresses in MPa. The stress of a detail is given as that of its section:
 axial N/A of the net section, bending what comes on top at the worst fibre of a flank.
 """
@@ -27,15 +27,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_beam import cut_remark
-from fea.beam.flanks import flanks_of
-from fea.beam.holed_tube import holed_tube_stress
-from fea.beam.piecewise import Piecewise
-from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
-from fea.beam.theory import Floats
-from fea.common.link_loads import LinkLoads, PinLoad
-from geometry.bodies.body import extent
-from geometry.parts.part import Body, Pin, Section, rectangle
+from alula.fea.beam.cut_beam import cut_remark
+from alula.fea.beam.flanks import flanks_of
+from alula.fea.beam.holed_tube import holed_tube_stress
+from alula.fea.beam.piecewise import Piecewise
+from alula.fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
+from alula.fea.beam.theory import Floats
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.geometry.bodies.body import extent
+from alula.geometry.parts.part import Body, Pin, Section, rectangle
 
 _SAMPLES = 33
 SLENDER = 4.0

@@ -1,14 +1,15 @@
 """The stiffness of a bar along its slots: two flanks side by side, joined at the slot's ends, without diagonals.
 
 The flanks are beams of their own that share the turning of the sections at both ends (Vierendeel). The round ends give
-a little, so the flanks count a quarter of the slot's width longer at either end (``fea.beam.details`` measured their
-stress so). A section's moment over the slot splits into the flanks' own bending and one pair of forces along them, the
-same all along the slot, since nothing joins the flanks in between. Lengths in mm, areas in mm², second moments in mm⁴.
+a little, so the flanks count a quarter of the slot's width longer at either end (``alula.fea.beam.details`` measured
+their stress so). A section's moment over the slot splits into the flanks' own bending and one pair of forces along
+them, the same all along the slot, since nothing joins the flanks in between. Lengths in mm, areas in mm², second
+moments in mm⁴.
 """
 
 from dataclasses import dataclass
 
-from geometry.parts.part import Body, Pin, Section, rectangle
+from alula.geometry.parts.part import Body, Pin, Section, rectangle
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from fea.beam.section_stress import SectionStress, section_stress
-from fea.beam.theory import Floats
-from geometry.bodies.section import Section
+from alula.fea.beam.section_stress import SectionStress, section_stress
+from alula.fea.beam.theory import Floats
+from alula.geometry.bodies.section import Section
 
 _SLICES = 33
 

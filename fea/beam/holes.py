@@ -3,7 +3,7 @@
 Loads in N and N·mm, lengths in mm, stresses in MPa.
 """
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
 
 def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> float:

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.base.errors import CannotRunError
-from loads.records.applied import shifted
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.applied import shifted
 
 Floats = NDArray[np.float64]
 RECENT = 16

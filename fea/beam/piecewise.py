@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
-from geometry.base.ties import TIE, first_largest
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.ties import TIE, first_largest
 
 Floats = NDArray[np.float64]
 Side = Literal["before", "after"]

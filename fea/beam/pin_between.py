@@ -14,7 +14,7 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bodies.features import Ring
+from alula.geometry.bodies.features import Ring
 
 Real = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.parts.part import Section
+from alula.geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 

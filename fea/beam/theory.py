@@ -10,7 +10,7 @@ section 4.4, there with the opposite sign of V)
 
     dN/dx = -q_x,  dV_y/dx = -q_y,  dV_z/dx = -q_z,  dT/dx = 0,  dM_y/dx = V_z,  dM_z/dx = -V_y
 
-and M_z > 0 compresses the side y > 0 (``fea.beam.section_stress``).
+and M_z > 0 compresses the side y > 0 (``alula.fea.beam.section_stress``).
 Everything is a piecewise polynomial (N, V of degree 2, M of degree 3 under linearly varying line loads), kept as
 such and therefore exact at every station.
 """
@@ -22,14 +22,20 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_beam import about_centre, cut_stress, nearest
-from fea.beam.loads import RECENT, BeamLoads
-from fea.beam.piecewise import Piecewise, Side, divided, integral, values
-from fea.beam.section_stress import SectionStress, bending_stress, equivalent_bound, equivalent_stress, section_stress
-from geometry.base.errors import CannotRunError
-from geometry.base.ties import first_largest
-from geometry.bodies.cut_section import CutSection
-from geometry.parts.part import Section
+from alula.fea.beam.cut_beam import about_centre, cut_stress, nearest
+from alula.fea.beam.loads import RECENT, BeamLoads
+from alula.fea.beam.piecewise import Piecewise, Side, divided, integral, values
+from alula.fea.beam.section_stress import (
+    SectionStress,
+    bending_stress,
+    equivalent_bound,
+    equivalent_stress,
+    section_stress,
+)
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.ties import first_largest
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 

@@ -1,8 +1,8 @@
 """Buckling of links in compression, each by itself.
 
-Plates, discs and parts from files buckle as solids (``fea.outcomes.solid_buckling``), held alike. Any other link is
-a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks take the
-section's place (``fea.beam.flanks``). How its joints hold it is known but in part, so that its factor is a band:
+Plates, discs and parts from files buckle as solids (``alula.fea.outcomes.solid_buckling``), held alike. Any other link
+is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks take the
+section's place (``alula.fea.beam.flanks``). How its joints hold it is known but in part, so that its factor is a band:
 
 value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
        overhangs are free. A link on one pin is built in there, and the ground where its support holds it. A pin in
@@ -17,12 +17,12 @@ low    a third of the value, since nothing is relied on below 3 (see below), tim
        outermost pins, and free elsewhere.
 
 That joints stay where they are is taken for granted: sway of the whole linkage is the subject of
-``fea.buckling.linkage``.
+``alula.fea.buckling.linkage``.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
-(5.2.1(3)): below it stress and deflection are those of second-order theory (``fea.links.second_order``). For n >= 3 a
-factor may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
+(5.2.1(3)): below it stress and deflection are those of second-order theory (``alula.fea.links.second_order``). For n >=
+3 a factor may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
 """
 
 import itertools
@@ -33,16 +33,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.column_factor import AxialForce, column_factors
-from fea.beam.theory import BeamCheck
-from fea.buckling.holding import Plane, columns, holding, of_cuts
-from fea.common.band import Band
-from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
-from geometry.base.ties import first_largest
-from loads.case.case import Case
+from alula.fea.beam.column_factor import AxialForce, column_factors
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.buckling.holding import Plane, columns, holding, of_cuts
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import compliance_scatter, load_scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
+from alula.geometry.base.ties import first_largest
+from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
 

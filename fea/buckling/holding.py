@@ -1,14 +1,14 @@
-"""A link as a column: its planes of bending, and how its joints hold it (by the rules of ``fea.buckling.buckling``)."""
+"""A link as a column: its planes, and how its joints hold it, by the rules of ``alula.fea.buckling.buckling``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from fea.beam.column_factor import Stretch
-from fea.beam.cut_beam import cells
-from fea.beam.flanks import flanks_of
-from geometry.bodies.body import Body, hand_section, mouth
-from geometry.bodies.cut_section import CutSection
-from loads.case.case import Case
+from alula.fea.beam.column_factor import Stretch
+from alula.fea.beam.cut_beam import cells
+from alula.fea.beam.flanks import flanks_of
+from alula.geometry.bodies.body import Body, hand_section, mouth
+from alula.geometry.bodies.cut_section import CutSection
+from alula.loads.case.case import Case
 
 Plane = tuple[float, Sequence[Stretch]]
 

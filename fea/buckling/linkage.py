@@ -1,26 +1,26 @@
 """The linkage as a whole: equilibrium that was followed on the deformed shape, else buckling by linear theory.
 
 Sway of the whole linkage is the lowest factor on all loads at which its linear frame becomes unstable
-(``fea.nonlinear.stability.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
-through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on
-the deformed shape (``fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
+(``alula.fea.nonlinear.stability.buckling_factor``). It leaves out how the frame moves before that, by which a toggle
+snaps through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on the
+deformed shape (``alula.fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
 only outcome: the share of the load that is held, which is the limit-load factor up to 1, with its band. A link that is
-no beam is a strip in the frame, and may buckle by itself before it does
-(``fea.outcomes.solid_buckling``): then the lesser factor counts.
+no beam is a strip in the frame, and may buckle by itself before it does (``alula.fea.outcomes.solid_buckling``): then
+the lesser factor counts.
 """
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from fea.beam.theory import BeamCheck
-from fea.buckling.buckling import NAME as BUCKLING
-from fea.buckling.buckling import beyond_strength
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
-from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
-from fea.nonlinear.stability import SNAP, growth
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.buckling.buckling import NAME as BUCKLING
+from alula.fea.buckling.buckling import beyond_strength
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
+from alula.fea.nonlinear.stability import SNAP, growth
 
 NAME = "large displacement"
 NO_EQUILIBRIUM = "the linkage gives way, so there is no equilibrium to judge; numbers are those of the undeformed pose"

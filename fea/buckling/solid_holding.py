@@ -1,6 +1,6 @@
 """How joints hold a link that is no beam, for the buckling of its solid: conditions on the mean motions of its bores.
 
-As a column is held (``fea.buckling.buckling``), with bores in place of stations:
+As a column is held (``alula.fea.buckling.buckling``), with bores in place of stations:
 
 value  no more than its rigid motions are taken, by joints that stay where they are: one of the two bores that lie
        farthest apart does not move in the plane, the other not across the line through both; out of the plane neither
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.case.case import Case
+from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
 ALL = tuple(range(6))

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterator
 
-from geometry.parts.tube import Tube
-from loads.case.case import Case
-from loads.text.caveat import Caveat, Topic
+from alula.geometry.parts.tube import Tube
+from alula.loads.case.case import Case
+from alula.loads.text.caveat import Caveat, Topic
 
 
 def wall_stress(radius: float, thickness: float, modulus: float) -> float:

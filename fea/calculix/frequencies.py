@@ -1,19 +1,19 @@
 """Natural frequencies of a link by CalculiX, on the same mesh and held in the same way.
 
 Rigid bores are equations between their nodes and two nodes of their own, which have the displacement and the rotation
-of ``fea.vibration.rigid_regions`` as unknowns. CalculiX integrates the mass of quadratic tetrahedra at four points,
-which is not exact: on coarse meshes its frequencies are up to 0.1 % off those of the exact mass.
+of ``alula.fea.vibration.rigid_regions`` as unknowns. CalculiX integrates the mass of quadratic tetrahedra at four
+points, which is not exact: on coarse meshes its frequencies are up to 0.1 % off those of the exact mass.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.calculix import program as calculix
-from fea.elements.space import DisplacementSpace
-from fea.vibration.link_solid import LinkSolid, conditions, regions
-from fea.vibration.rigid_regions import reduced
-from geometry.base.errors import CannotRunError
-from geometry.base.tidying import scratch_folder
+from alula.fea.calculix import program as calculix
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.vibration.link_solid import LinkSolid, conditions, regions
+from alula.fea.vibration.rigid_regions import reduced
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.tidying import scratch_folder
 
 
 def calculix_frequencies(

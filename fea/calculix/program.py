@@ -15,9 +15,9 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.space import DisplacementSpace
-from geometry.base import child
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.space import DisplacementSpace
+from alula.geometry.base import child
+from alula.geometry.base.errors import CannotRunError
 
 PROGRAM = "ccx"
 _JOB = "model"

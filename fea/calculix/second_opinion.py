@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.calculix import program as calculix
-from fea.elements.elasticity import assemble_stiffness, reference_basis
-from fea.elements.space import DisplacementSpace
-from fea.elements.supports import isostatic_supports, rigid_motions
-from fea.outcomes.opinion import Answer, SecondOpinion
-from fea.outcomes.result import CheckResult, SolidResult
-from fea.solid.solution import SolidCase, SolidSolution
-from fea.solid.stress import StressField, von_mises
-from geometry.base.errors import CannotRunError
-from geometry.base.tidying import scratch_folder
+from alula.fea.calculix import program as calculix
+from alula.fea.elements.elasticity import assemble_stiffness, reference_basis
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.elements.supports import isostatic_supports, rigid_motions
+from alula.fea.outcomes.opinion import Answer, SecondOpinion
+from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.fea.solid.solution import SolidCase, SolidSolution
+from alula.fea.solid.stress import StressField, von_mises
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.tidying import scratch_folder
 
 TIME_LIMIT = 900.0
 """Seconds that CalculiX may take for one link."""

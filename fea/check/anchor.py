@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import LoadCaseResult
-from geometry.linkage.linkage import Linkage
-from loads.records.applied import Load, shifted
-from loads.states.springs import spring_loads
-from loads.statics.friction import friction_wrenches
-from loads.statics.joint_reaction import JointReaction
-from loads.statics.rounding import rounded, size_of
-from loads.statics.statics import Reactions
+from alula.fea.outcomes.result import LoadCaseResult
+from alula.geometry.linkage.linkage import Linkage
+from alula.loads.records.applied import Load, shifted
+from alula.loads.states.springs import spring_loads
+from alula.loads.statics.friction import friction_wrenches
+from alula.loads.statics.joint_reaction import JointReaction
+from alula.loads.statics.rounding import rounded, size_of
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 

@@ -2,27 +2,27 @@
 
 A link's solid has the work of its loads as twice its strain energy. Over that of its plain beam under the same loads it
 says how much softer the link is than the frame has it. The limit load goes with one over this, summed over the links by
-what each takes up of the work of all loads (``fea.nonlinear.large_displacement``). A solid knows its stiffness under
-these loads alone, which in a strut is not the bending in which it buckles: so the stiffer end, from which follows what
-a linkage holds at the most, stays where it was if that is farther. The other end has faults of shape besides. Links
-that are no beams buckle otherwise than the frame's strips do: the factor of their solids bounds the limit load.
+what each takes up of the work of all loads (``alula.fea.nonlinear.large_displacement``). A solid knows its stiffness
+under these loads alone, which in a strut is not the bending in which it buckles: so the stiffer end, from which follows
+what a linkage holds at the most, stays where it was if that is farther. The other end has faults of shape besides.
+Links that are no beams buckle otherwise than the frame's strips do: the factor of their solids bounds the limit load.
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.source import PIN_PRESSURE, distinct
-from fea.frame.displacement_band import softness, works_of_links
-from fea.frame.joint_forces import JointForces
-from fea.nonlinear.large_displacement import LargeDisplacement, blind_link
-from fea.outcomes.point_shares import MESHES, beam_work
-from fea.outcomes.result import LinkResult, SolidResult
-from geometry.bodies.body import no_beam
-from loads.case.case import Case
-from loads.records.bearing import WIDE
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.source import PIN_PRESSURE, distinct
+from alula.fea.frame.displacement_band import softness, works_of_links
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link
+from alula.fea.outcomes.point_shares import MESHES, beam_work
+from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.geometry.bodies.body import no_beam
+from alula.loads.case.case import Case
+from alula.loads.records.bearing import WIDE
 
 
 def with_known_stiffness(

@@ -6,21 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
-from fea.doubts.load_growth import Growths
-from fea.links.fidelity import DecidedLink, Decision, HandBands, left_out
-from fea.links.link_by_hand import LinkByHand
-from fea.links.solid_result import solid_result
-from fea.outcomes.layers import in_any_direction
-from fea.outcomes.result import HandResult, LinkResult, SolidResult
-from fea.outcomes.solid_buckling import solid_buckling, solid_growth
-from fea.refine.link_series import STRESS, PeakQuantity
-from fea.superposition.solid_shares import Shares
-from geometry.base.ties import first_largest
-from geometry.materials.material import Material
-from loads.case.case import Case
-from loads.case.forks import of_pair
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
+from alula.fea.doubts.load_growth import Growths
+from alula.fea.links.fidelity import DecidedLink, Decision, HandBands, left_out
+from alula.fea.links.link_by_hand import LinkByHand
+from alula.fea.links.solid_result import solid_result
+from alula.fea.outcomes.layers import in_any_direction
+from alula.fea.outcomes.result import HandResult, LinkResult, SolidResult
+from alula.fea.outcomes.solid_buckling import solid_buckling, solid_growth
+from alula.fea.refine.link_series import STRESS, PeakQuantity
+from alula.fea.superposition.solid_shares import Shares
+from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Material
+from alula.loads.case.case import Case
+from alula.loads.case.forks import of_pair
 
 BEAM_ALONE = "beam theory without stress concentration"
 NO_BEAM = "no beam stands for this link; run the solid model (--fidelity solid)"

@@ -5,16 +5,16 @@ from functools import partial
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
-from fea.frame.case_statics import CaseStatics
-from fea.frame.joint_forces import JointForces
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.point_displacement import PointDisplacement
-from fea.outcomes.result import LinkageNumbers, LinkResult
-from loads.case.case import Case
-from loads.records.check_spec import LimitLoadCheck
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.fea.frame.case_statics import CaseStatics
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.point_displacement import PointDisplacement
+from alula.fea.outcomes.result import LinkageNumbers, LinkResult
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import LimitLoadCheck
 
 NEARLY = 0.8
 """Share of the frame's largest displacement from which on a point may be the one that moves most."""

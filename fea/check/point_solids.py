@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from fea.links.fidelity import DecidedLink, Decision
-from fea.refine.link_task import LinkTask
-from fea.refine.refinement import Effort, Progress, refine_links
-from geometry.meshing.mesh import MeshSettings
+from alula.fea.links.fidelity import DecidedLink, Decision
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.refinement import Effort, Progress, refine_links
+from alula.geometry.meshing.mesh import MeshSettings
 
 
 def decide_point(

@@ -8,57 +8,57 @@ from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
-from fea.beam.theory import CantileverCheck, uniform_cantilever
-from fea.buckling.buckling import buckling_outcomes
-from fea.buckling.linkage import linkage_outcomes, unless_it_gives_way
-from fea.check.known_stiffness import with_known_stiffness
-from fea.check.link_result import by_hand_shares, link_result, worse_plate
-from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
-from fea.check.point_solids import decide_point
-from fea.check.solid_frame import with_solids
-from fea.common.at_temperature import as_known
-from fea.common.clock import Clock
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter
-from fea.common.source import distinct
-from fea.common.threads import bounded_run
-from fea.common.verdict import CheckOutcome, overall
-from fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
-from fea.doubts.load_growth import Growths, growths
-from fea.doubts.other_case import Doubt, Plates, widened
-from fea.doubts.play_doubt import play_doubt, play_warnings, shaken
-from fea.doubts.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
-from fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
-from fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
-from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
-from fea.links.fidelity import DecidedLink, by_hand, decide
-from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
-from fea.links.second_order import NEGLIGIBLE
-from fea.links.solid_result import link_task
-from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
-from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.judge import outcomes
-from fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
-from fea.outcomes.point_displacement import meshes_to_refine
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
-from fea.outcomes.solid_buckling import solid_buckling_outcomes
-from fea.outcomes.unchecked import unusual_materials
-from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
-from fea.refine.link_series import STRESS
-from fea.refine.refinement import START, Effort
-from fea.solid.solution import require_compressible
-from fea.superposition.solid_shares import Shares, solid_shares
-from fea.whole.layer_gaps import layer_gap_outcomes
-from fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
-from geometry.base.errors import CaseError
-from geometry.bodies.body import PartKind
-from geometry.linkage.pose import NEAR_DEAD_POINT
-from geometry.meshing.mesh import MeshSettings
-from geometry.meshing.tagged_mesh import TaggedMesh
-from loads.case.case import Case
-from loads.records.check_spec import BearingCheck, DisplacementCheck, PinCheck
-from loads.statics.statics import Reactions
-from loads.text.shares import parse_accuracy
+from alula.fea.beam.theory import CantileverCheck, uniform_cantilever
+from alula.fea.buckling.buckling import buckling_outcomes
+from alula.fea.buckling.linkage import linkage_outcomes, unless_it_gives_way
+from alula.fea.check.known_stiffness import with_known_stiffness
+from alula.fea.check.link_result import by_hand_shares, link_result, worse_plate
+from alula.fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
+from alula.fea.check.point_solids import decide_point
+from alula.fea.check.solid_frame import with_solids
+from alula.fea.common.at_temperature import as_known
+from alula.fea.common.clock import Clock
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import distinct
+from alula.fea.common.threads import bounded_run
+from alula.fea.common.verdict import CheckOutcome, overall
+from alula.fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
+from alula.fea.doubts.load_growth import Growths, growths
+from alula.fea.doubts.other_case import Doubt, Plates, widened
+from alula.fea.doubts.play_doubt import play_doubt, play_warnings, shaken
+from alula.fea.doubts.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
+from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
+from alula.fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
+from alula.fea.links.fidelity import DecidedLink, by_hand, decide
+from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
+from alula.fea.links.second_order import NEGLIGIBLE
+from alula.fea.links.solid_result import link_task
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
+from alula.fea.outcomes.bearing import bearing_outcome
+from alula.fea.outcomes.judge import outcomes
+from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
+from alula.fea.outcomes.point_displacement import meshes_to_refine
+from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from alula.fea.outcomes.solid_buckling import solid_buckling_outcomes
+from alula.fea.outcomes.unchecked import unusual_materials
+from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
+from alula.fea.refine.link_series import STRESS
+from alula.fea.refine.refinement import START, Effort
+from alula.fea.solid.solution import require_compressible
+from alula.fea.superposition.solid_shares import Shares, solid_shares
+from alula.fea.whole.layer_gaps import layer_gap_outcomes
+from alula.fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import PartKind
+from alula.geometry.linkage.pose import NEAR_DEAD_POINT
+from alula.geometry.meshing.mesh import MeshSettings
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, PinCheck
+from alula.loads.statics.statics import Reactions
+from alula.loads.text.shares import parse_accuracy
 
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
@@ -324,8 +324,8 @@ def check_case(
     name : str, optional
         Path or built-in name of the case, for companion files and the report.
     fidelity : {"auto", "beam", "frame", "solid"}
-        "auto" takes the cheapest model that decides each link (``fea.links.fidelity``). The others take one model for
-        all links. "beam" is hand calculation alone; a link without calibrated bands gets no verdict. "frame" means
+        "auto" takes the cheapest model that decides each link (``alula.fea.links.fidelity``). The others take one model
+        for all links. "beam" is hand calculation alone; a link without calibrated bands gets no verdict. "frame" means
         the same: a frame is solved wherever joint forces need one.
     threads : int, optional
     effort : Effort, optional

@@ -1,10 +1,10 @@
 """Joint forces that depend on the links' stiffness: from a frame whose links are their solids, condensed to the pins.
 
 Where a linkage is redundant, or bonded, or loaded out of its plane, its links share the load by their stiffness. A
-frame of centre lines has it within the bounds of ``fea.frame.displacement_band`` where links are like those that were
-measured, and may be far off elsewhere: in short plates, and in parts that are no beams. ``centre_lines_do`` tries
+frame of centre lines has it within the bounds of ``alula.fea.frame.displacement_band`` where links are like those that
+were measured, and may be far off elsewhere: in short plates, and in parts that are no beams. ``centre_lines_do`` tries
 these bounds. Where they matter, every link of the frame that can be meshed is the flexibility of its solid
-(``fea.solid.condensation``) on the first mesh. So it is where the bounds leave the displacement of a point open.
+(``alula.fea.solid.condensation``) on the first mesh. So it is where the bounds leave the displacement of a point open.
 
 What remains open is tried cause by cause, since a frame takes milliseconds: the mesh of each link, by the estimated
 error of its energy, and each pin under either pressure. The frame is linear; all causes count at their worst together.
@@ -17,34 +17,34 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.calibration import uncalibrated
-from fea.beam.cut_free import link_loads
-from fea.common.link_loads import LinkLoads
-from fea.common.plates import plates
-from fea.common.source import PIN_PRESSURE, Source, SourceKind
-from fea.common.verdict import Verdict
-from fea.elements.space import displacement_space
-from fea.frame.build import build_frame
-from fea.frame.case_statics import CaseStatics
-from fea.frame.condensed import LinkFlexibility
-from fea.frame.deviation import Deviation
-from fea.frame.displacement_band import flexibility_ranges
-from fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.point_displacement import point_outcome
-from fea.outcomes.point_shares import condensable
-from fea.refine.error_estimate import estimate_error
-from fea.solid.condensation import CondensedSolid, Give, condense
-from fea.solid.stress import stress_field
-from geometry.meshing.mesh import MeshSettings, mesh_bodies
-from geometry.meshing.tagged_mesh import TaggedMesh
-from loads.case.case import Case
-from loads.case.forks import apart
-from loads.records.applied import Load
-from loads.records.check_spec import DisplacementCheck
-from loads.statics.statics import Reactions
+from alula.fea.beam.calibration import uncalibrated
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.plates import plates
+from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
+from alula.fea.common.verdict import Verdict
+from alula.fea.elements.space import displacement_space
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.case_statics import CaseStatics
+from alula.fea.frame.condensed import LinkFlexibility
+from alula.fea.frame.deviation import Deviation
+from alula.fea.frame.displacement_band import flexibility_ranges
+from alula.fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.point_displacement import point_outcome
+from alula.fea.outcomes.point_shares import condensable
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.solid.condensation import CondensedSolid, Give, condense
+from alula.fea.solid.stress import stress_field
+from alula.geometry.meshing.mesh import MeshSettings, mesh_bodies
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.case.case import Case
+from alula.loads.case.forks import apart
+from alula.loads.records.applied import Load
+from alula.loads.records.check_spec import DisplacementCheck
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ SAME = 0.02
 UNMEASURED = (0.5, 2.0)
 """Flexibility, over that of its centre line, that is tried of a link for which hand calculation was not calibrated."""
 ESTIMATE = 1.0 / 0.41
-"""Largest true error over the estimated one, in the energy norm (``fea.refine.error_estimate``)."""
+"""Largest true error over the estimated one, in the energy norm (``alula.fea.refine.error_estimate``)."""
 ROUNDS = 8
 """In which the directions of pin forces, and with them how bores give, are found."""
 SETTLED = 1e-4

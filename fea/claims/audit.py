@@ -18,12 +18,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from fea.claims.data import look_up
-from geometry.base.errors import CaseError
-from loads.sources.claim import Claim, Printed, read_printed
-from loads.sources.expression import Path, evaluate
-from loads.sources.quantity import ANGLE, Value
-from loads.text.explain import printable
+from alula.fea.claims.data import look_up
+from alula.geometry.base.errors import CaseError
+from alula.loads.sources.claim import Claim, Printed, read_printed
+from alula.loads.sources.expression import Path, evaluate
+from alula.loads.sources.quantity import ANGLE, Value
+from alula.loads.text.explain import printable
 
 SOLID_LEFT_OUT = "the solid model, which runs with --fidelity solid"
 ZERO = 1e-9

@@ -21,29 +21,29 @@ from typing import Any
 
 import numpy as np
 
-from fea.check.run import check_case, effort_of
-from fea.frame.case_statics import CaseStatics, solve_case_statics
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.mechanisms.flapping import FlappingWing
-from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.grashof import Grashof
-from geometry.mechanisms.ornithopter import OrnithopterDimensions
-from geometry.mechanisms.synthesis import Synthesis, synthesise
-from geometry.mechanisms.wing_drive import WingDrive
-from loads.case.case import Case
-from loads.case.case_file import read_case, read_companion
-from loads.sources.claim import (
+from alula.fea.check.run import check_case, effort_of
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.mechanisms.flapping import FlappingWing
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.grashof import Grashof
+from alula.geometry.mechanisms.ornithopter import OrnithopterDimensions
+from alula.geometry.mechanisms.synthesis import Synthesis, synthesise
+from alula.geometry.mechanisms.wing_drive import WingDrive
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, read_companion
+from alula.loads.sources.claim import (
     CaseSystem,
     FlappingSystem,
     OrnithopterSystem,
     SynthesisSystem,
     System,
 )
-from loads.sources.expression import Path
-from loads.sources.published_statics import read_matrix
-from loads.sources.quantity import Value
-from loads.text.explain import printable
+from alula.loads.sources.expression import Path
+from alula.loads.sources.published_statics import read_matrix
+from alula.loads.sources.quantity import Value
+from alula.loads.text.explain import printable
 
 
 class Tree(Mapping[str, Any]):

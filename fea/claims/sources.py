@@ -7,13 +7,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from fea.claims.audit import ClaimResult, Finding, Names, check_claim
-from fea.claims.data import Tree, case_tree, flapping_tree, system_tree
-from fea.outcomes.result import CheckResult
-from geometry.base.errors import CaseError
-from geometry.mechanisms.flapping import FlappingWing
-from loads.case.case_file import built_in_cases, read_case, read_companion
-from loads.sources.claim import Claim, PublishedSource, System, TableSystem, read_source, sources
+from alula.fea.claims.audit import ClaimResult, Finding, Names, check_claim
+from alula.fea.claims.data import Tree, case_tree, flapping_tree, system_tree
+from alula.fea.outcomes.result import CheckResult
+from alula.geometry.base.errors import CaseError
+from alula.geometry.mechanisms.flapping import FlappingWing
+from alula.loads.case.case_file import built_in_cases, read_case, read_companion
+from alula.loads.sources.claim import Claim, PublishedSource, System, TableSystem, read_source, sources
 
 _CELLS = {
     "ground_d_mm": ("ground", "", "mm"),

@@ -3,14 +3,14 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity
-from geometry.base.errors import CaseError
-from geometry.materials.temperature import ROOM
-from loads.case.case import Case
-from loads.records.check_spec import PinCheck
-from loads.records.conditions import modulus_unknown, strength_unknown
-from loads.text.caveat import Caveat, Topic
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.temperature import ROOM
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import PinCheck
+from alula.loads.records.conditions import modulus_unknown, strength_unknown
+from alula.loads.text.caveat import Caveat, Topic
 
 STRENGTH = (
     Quantity.SAFETY_FACTOR,

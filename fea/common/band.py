@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fea.common.source import Source, distinct
+from alula.fea.common.source import Source, distinct
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from geometry.materials.material import Material
-from geometry.materials.plausible import is_plastic
-from geometry.materials.printable import is_printed
-from loads.case.case import Case
-from loads.records.check_spec import SustainedCheck
-from loads.text.caveat import Caveat, Topic
+from alula.geometry.materials.material import Material
+from alula.geometry.materials.plausible import is_plastic
+from alula.geometry.materials.printable import is_printed
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import SustainedCheck
+from alula.loads.text.caveat import Caveat, Topic
 
 
 def creep_caveats(case: Case) -> Iterator[Caveat]:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.records.applied import BodyForce, LineLoad, chosen, shifted
+from alula.loads.records.applied import BodyForce, LineLoad, chosen, shifted
 
 Real = NDArray[np.float64]
 ALONG = np.array([1.0, 0.0, 0.0])

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
 _PROC = Path("/proc")
 _CGROUP = Path("/sys/fs/cgroup")

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from loads.records.applied import PartMass
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.loads.records.applied import PartMass
 
 Real = NDArray[np.float64]
 

@@ -2,18 +2,18 @@
 
 Everything that a load case does in linear theory is in proportion to its loads, a safety factor to the strength, and a
 link's displacement to 1/E. So the ends of a band are multiplied by the ends of what scatters, and by what grows beyond
-proportion (``fea.doubts.load_growth``); independent sources are taken at their worst together. Conditions are in the
-material already (``loads.records.conditions``): a strength's range is as warm as the strength, and a creep modulus has
-none.
+proportion (``alula.fea.doubts.load_growth``); independent sources are taken at their worst together. Conditions are in
+the material already (``alula.loads.records.conditions``): a strength's range is as warm as the strength, and a creep
+modulus has none.
 """
 
 import math
 from dataclasses import dataclass, replace
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind, distinct
-from geometry.materials.material import Material
-from loads.case.case import Case
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.geometry.materials.material import Material
+from alula.loads.case.case import Case
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from loads.records.bearing import CONTACT_SHORTFALL
+from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 
 class SourceKind(StrEnum):

@@ -1,7 +1,7 @@
 """A bound on the threads of a run: numpy's and scipy's OpenBLAS, MKL, OpenMP, and how many children work at once.
 
 threadpoolctl sets libraries that are loaded; those that are loaded later read the environment. Children (the mesher,
-the renderer) use one thread each (``geometry.base.child``), so that bounding their number bounds them.
+the renderer) use one thread each (``alula.geometry.base.child``), so that bounding their number bounds them.
 """
 
 import functools
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import ParamSpec, TypeVar
 
-from geometry.base import child
+from alula.geometry.base import child
 
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import Enum, StrEnum
 from typing import Literal
 
-from fea.common.band import Band
+from alula.fea.common.band import Band
 
 
 class Verdict(StrEnum):

@@ -4,27 +4,27 @@ Each cause changes a joint force, and a link's stress by hand calculation, by so
 shares of stiffnesses add up, each upwards or downwards; all causes are taken at their worst together. How pins share
 the couples between layers is one cause, with several answers: the least and the greatest of them count. A link in
 compression on pins that tilt bends out of the plane from the first newton, by the couples of its layers, and more than
-in the frame, whose pins keep its angles: the answers of sharing hold that growth (``fea.links.second_order``).
+in the frame, whose pins keep its angles: the answers of sharing hold that growth (``alula.fea.links.second_order``).
 """
 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from fea.beam.cut_free import link_loads
-from fea.common.convex import outermost
-from fea.common.link_loads import LinkLoads
-from fea.common.plates import plates
-from fea.common.scatter import Scatter
-from fea.common.source import COUPLES, Source
-from fea.doubts.load_growth import LEAST, Growths
-from fea.frame.deviation import Deviation
-from fea.frame.joint_forces import JointForces
-from fea.links.link_by_hand import link_by_hand
-from fea.links.second_order import on_tilting_pins
-from loads.case.case import Case
-from loads.case.forks import apart
-from loads.records.applied import Load
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.convex import outermost
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.plates import plates
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import COUPLES, Source
+from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.frame.deviation import Deviation
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.links.second_order import on_tilting_pins
+from alula.loads.case.case import Case
+from alula.loads.case.forks import apart
+from alula.loads.records.applied import Load
 
 _Around = Callable[[float, Sequence[float]], Scatter]
 """From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""

@@ -5,8 +5,8 @@ calculated again with all moduli divided by the least and by the largest value o
 the load's scatter, are those under the scattered load.
 
 Where displacements are small, numbers are those of the undeformed pose, and what they become on the deformed shape is
-growth. There it goes with scattered loads no faster than a shallow toggle's (``fea.nonlinear.stability.growth``), which
-bounds it as well where no deformed shape was found.
+growth. There it goes with scattered loads no faster than a shallow toggle's (``alula.fea.nonlinear.stability.growth``),
+which bounds it as well where no deformed shape was found.
 """
 
 import math
@@ -15,17 +15,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind
-from fea.frame.joint_forces import joint_forces
-from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
-from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
-from fea.nonlinear.stability import growth
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.applied import Load
-from loads.statics.statics import Reactions
+from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.frame.joint_forces import joint_forces
+from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
+from alula.fea.nonlinear.stability import growth
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.applied import Load
+from alula.loads.statics.statics import Reactions
 
 SOURCES = (Source(kind=SourceKind.GROWTH, detail="of bending under compression and of joint forces"),)
 LEAST = 1e-3

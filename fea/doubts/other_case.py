@@ -5,18 +5,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from fea.buckling.buckling import least_factor
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter
-from fea.common.verdict import CheckOutcome, Quantity
-from fea.doubts.load_growth import LEAST, Growths
-from fea.frame.case_statics import CaseStatics
-from fea.links.fidelity import hand_bands
-from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
-from fea.links.solid_result import link_task
-from fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement, examine
-from loads.case.case import Case
-from loads.statics.statics import Reactions
+from alula.fea.buckling.buckling import least_factor
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.frame.case_statics import CaseStatics
+from alula.fea.links.fidelity import hand_bands
+from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
+from alula.fea.links.solid_result import link_task
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement, examine
+from alula.loads.case.case import Case
+from alula.loads.statics.statics import Reactions
 
 FAR = 2.0 * LEAST_FACTOR
 """Factor to buckling from which it is taken to fall as the largest joint force grows, and not computed again."""

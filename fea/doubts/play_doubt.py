@@ -8,20 +8,20 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_free import link_loads
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter
-from fea.common.source import Source, play_source
-from fea.doubts.force_doubt import measures
-from fea.doubts.load_growth import LEAST, Growths
-from fea.frame.joint_forces import JointForces, joint_forces
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.bodies.body import Body
-from loads.case.case import Case
-from loads.records.applied import Load
-from loads.states.play import Displaced, Play, Span
-from loads.statics.statics import Reactions
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, play_source
+from alula.fea.doubts.force_doubt import measures
+from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.frame.joint_forces import JointForces, joint_forces
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.bodies.body import Body
+from alula.loads.case.case import Case
+from alula.loads.records.applied import Load
+from alula.loads.states.play import Displaced, Play, Span
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 

@@ -4,25 +4,27 @@ Statics, frame and the hand calculation of every link are done again at the ends
 stated, these are shares by which bands of all models are widened.
 
 Forces without friction are affine in C_N. Hence stress, displacement and the inverse of a buckling factor are convex in
-it: their largest is at an end, and for the least the ends and the stated C_N give a bound (``fea.common.convex``).
+it: their largest is at an end, and for the least the ends and the stated C_N give a bound
+(``alula.fea.common.convex``).
 
 Two degrees before a linkage locks itself joint forces double where a coefficient grows by a quarter: no
-slope tells. The ends are the least friction that may be, and the largest (``fea.frame.rubbing``); the coefficients of
-all joints are at the same end together. Where the linkage locks itself, no band of joint forces has an end.
+slope tells. The ends are the least friction that may be, and the largest (``alula.fea.frame.rubbing``); the
+coefficients of all joints are at the same end together. Where the linkage locks itself, no band of joint forces has an
+end.
 """
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from fea.common.convex import least_of_convex
-from fea.common.scatter import Scatter
-from fea.common.source import air_source, friction_source
-from fea.doubts.other_case import Doubt, OtherCase, shape_of
-from fea.frame.case_statics import CaseStatics, alone, at_friction_ends, solve_case_statics
-from fea.nonlinear.large_displacement import LargeDisplacement
-from loads.case.joint_rules import friction_ranges
-from loads.states.flapping import in_air
+from alula.fea.common.convex import least_of_convex
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import air_source, friction_source
+from alula.fea.doubts.other_case import Doubt, OtherCase, shape_of
+from alula.fea.frame.case_statics import CaseStatics, alone, at_friction_ends, solve_case_statics
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.loads.case.joint_rules import friction_ranges
+from alula.loads.states.flapping import in_air
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.verdict import CheckOutcome, Quantity, Verdict
-from fea.doubts.force_doubt import sharing_doubt
-from fea.frame.joint_forces import JointForces
-from geometry.linkage.linkage import Linkage
-from loads.case.case import Case
-from loads.records.applied import Load
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
+from alula.fea.doubts.force_doubt import sharing_doubt
+from alula.fea.frame.joint_forces import JointForces
+from alula.geometry.linkage.linkage import Linkage
+from alula.loads.case.case import Case
+from alula.loads.records.applied import Load
 
 TELLING = 1.05
 """Growth of a link's stress by the sharing of couples above which it is told of, where a check is open."""
@@ -34,7 +34,7 @@ class SharedCouples:
     loads : sequence of Load
         That act on the links.
     grown : bool
-        As of ``fea.doubts.force_doubt.sharing_doubt``.
+        As of ``alula.fea.doubts.force_doubt.sharing_doubt``.
     by_hand : mapping of str to Scatter
         Link -> what the ways of sharing make of its stress by hand.
     told : mapping of str to Scatter

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import mkl
+from alula.fea.common import mkl
 
 Product = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 Vectors = NDArray[np.float64]

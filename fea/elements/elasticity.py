@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from fea.elements.space import DisplacementSpace
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.elements.space import DisplacementSpace
+from alula.geometry.base.errors import CannotRunError
 
 CURVED_DEGREE = 5  # 14 points with positive weights
 _LINEAR = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # gradients

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory
-from fea.elements.quadrature import Quadrature
+from alula.fea.common import memory
+from alula.fea.elements.quadrature import Quadrature
 
 _CHUNK = 4096  # elements at a time
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.quadrature import SurfaceQuadrature
-from geometry.bodies.body import clamped_end, mouth
-from geometry.parts.part import Body
+from alula.fea.elements.quadrature import SurfaceQuadrature
+from alula.geometry.bodies.body import clamped_end, mouth
+from alula.geometry.parts.part import Body
 
 Real = NDArray[np.float64]
 DEGREE = 4

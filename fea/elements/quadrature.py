@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.elasticity import jacobians, reference_basis
-from fea.elements.space import DisplacementSpace
+from alula.fea.elements.elasticity import jacobians, reference_basis
+from alula.fea.elements.space import DisplacementSpace
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

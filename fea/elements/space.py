@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
-from geometry.meshing.tagged_mesh import IMAGE_ORDER, REFLECTION, TaggedMesh
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.tagged_mesh import IMAGE_ORDER, REFLECTION, TaggedMesh
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 """Corner pairs of the mid-nodes 4 to 9 of a quadratic element."""

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.mouth import Mouth, mouth_motion
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import DisplacementSpace
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.mouth import Mouth, mouth_motion
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.geometry.base.errors import CannotRunError
 
 SMALLEST_SINGULAR_VALUE = 1e-6
 """Of the scaled rigid-body motions at the six supports; at length over diameter 1000 a well-spread set has 1e-3."""

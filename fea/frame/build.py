@@ -7,24 +7,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_beam import changes
-from fea.beam.flanks import Flanks, flanks_of
-from fea.frame.condensed import CondensedLink, LinkFlexibility
-from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
-from fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
-from fea.frame.spring import FrameSpring
-from geometry.base.errors import CaseError
-from geometry.bodies.body import patch_span
-from geometry.bodies.section import ring
-from geometry.linkage.placement import vector
-from geometry.linkage.pose import Pose
-from geometry.parts.part import Section
-from loads.case.case import Case
-from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
-from loads.records.conditions import at_temperature
-from loads.records.springs import Tendon, TurnSpring
-from loads.states.springs import spring_states
-from loads.statics.statics import Drive
+from alula.fea.beam.cut_beam import changes
+from alula.fea.beam.flanks import Flanks, flanks_of
+from alula.fea.frame.condensed import CondensedLink, LinkFlexibility
+from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
+from alula.fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
+from alula.fea.frame.spring import FrameSpring
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import patch_span
+from alula.geometry.bodies.section import ring
+from alula.geometry.linkage.placement import vector
+from alula.geometry.linkage.pose import Pose
+from alula.geometry.parts.part import Section
+from alula.loads.case.case import Case
+from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
+from alula.loads.records.conditions import at_temperature
+from alula.loads.records.springs import Tendon, TurnSpring
+from alula.loads.states.springs import spring_states
+from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
 TURNS: frozenset[Dof] = frozenset({"rx", "ry", "rz"})

@@ -6,25 +6,25 @@ from functools import lru_cache
 
 import numpy as np
 
-from fea.frame.joint_forces import JointForces, joint_forces
-from fea.frame.rubbing import ENDS, End, at_end, presses_of, with_friction
-from geometry.base.errors import CaseError
-from geometry.linkage.pose import Pose
-from geometry.linkage.slot_ends import refuse_slot_ends
-from loads.case.case import Case
-from loads.case.case_file import read_companion
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import Load, PartMass
-from loads.sources.published_statics import StaticsAudit, audit
-from loads.states.actions import acting_loads, needs_masses, placed
-from loads.states.case_motion import drive_angles
-from loads.states.drive_work import DriveWork, pose_work
-from loads.states.masses import part_masses
-from loads.states.play import play_of
-from loads.states.rubbing import each_direction
-from loads.states.standing import Standing, stand
-from loads.statics.friction import NOTHING_MORE
-from loads.statics.statics import Reactions
+from alula.fea.frame.joint_forces import JointForces, joint_forces
+from alula.fea.frame.rubbing import ENDS, End, at_end, presses_of, with_friction
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.geometry.linkage.slot_ends import refuse_slot_ends
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_companion
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import Load, PartMass
+from alula.loads.sources.published_statics import StaticsAudit, audit
+from alula.loads.states.actions import acting_loads, needs_masses, placed
+from alula.loads.states.case_motion import drive_angles
+from alula.loads.states.drive_work import DriveWork, pose_work
+from alula.loads.states.masses import part_masses
+from alula.loads.states.play import play_of
+from alula.loads.states.rubbing import each_direction
+from alula.loads.states.standing import Standing, stand
+from alula.loads.statics.friction import NOTHING_MORE
+from alula.loads.statics.statics import Reactions
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

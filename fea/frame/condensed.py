@@ -1,8 +1,8 @@
 """A link of a frame that is no beam but the flexibility of its solid between its pins (static condensation).
 
-The element has the natural form of the frame's beams (``fea.frame.system``): its natural forces are the wrenches at all
-places but the first, where what balances them acts; its deformations are the motions of these places beside the rigid
-motion of the first. So rigid motions strain nothing, exactly, and equilibrium does not depend on the flexibility.
+The element has the natural form of the frame's beams (``alula.fea.frame.system``): its natural forces are the wrenches
+at all places but the first, where what balances them acts; its deformations are the motions of these places beside the
+rigid motion of the first. So rigid motions strain nothing, exactly, and equilibrium does not depend on the flexibility.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.records.applied import shifted
+from alula.loads.records.applied import shifted
 
 Real = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.source import Source
-from loads.statics.statics import Reactions
+from alula.fea.common.source import Source
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 

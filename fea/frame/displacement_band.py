@@ -23,18 +23,18 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import flexibility
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import NodeLoad
-from fea.frame.system import to_ends
-from geometry.bodies.body import Body, hand_section
-from geometry.bodies.features import Pin
-from geometry.bodies.section import Section
-from loads.case.case import Case
+from alula.fea.beam.deflection import flexibility
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import NodeLoad
+from alula.fea.frame.system import to_ends
+from alula.geometry.bodies.body import Body, hand_section
+from alula.geometry.bodies.features import Pin
+from alula.geometry.bodies.section import Section
+from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
 Stretch = tuple[float, float, Real]

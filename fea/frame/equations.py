@@ -1,7 +1,7 @@
 """Factorised equations of frames: one factorisation for all frames that differ in their loads alone.
 
 So do a frame and those of unit loads, the ways in which pins tilt, a pose under several load cases and, as friction
-goes in turns with joint forces, the turns of a pose (``fea.frame.linear``).
+goes in turns with joint forces, the turns of a pose (``alula.fea.frame.linear``).
 """
 
 from functools import cached_property, lru_cache
@@ -9,8 +9,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.model import FrameModel
-from fea.frame.system import FrameSystem, natural_deformations, refuse_mechanism
+from alula.fea.frame.model import FrameModel
+from alula.fea.frame.system import FrameSystem, natural_deformations, refuse_mechanism
 
 Floats = NDArray[np.float64]
 

@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind, distinct
-from fea.frame.deviation import Deviation, Sharing
-from fea.frame.linkage_frame import out_of_plane
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.applied import Load
-from loads.states.play import Play, free_motion
-from loads.statics.statics import Drive, Reactions, assemble, refuse_dead_point, solve_statics
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.frame.deviation import Deviation, Sharing
+from alula.fea.frame.linkage_frame import out_of_plane
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.applied import Load
+from alula.loads.states.play import Play, free_motion
+from alula.loads.statics.statics import Drive, Reactions, assemble, refuse_dead_point, solve_statics
 
 if TYPE_CHECKING:
-    from fea.frame.condensed import LinkFlexibility
-    from fea.frame.linear import FrameSolution
-    from fea.frame.linkage_frame import LinkageFrame
+    from alula.fea.frame.condensed import LinkFlexibility
+    from alula.fea.frame.linear import FrameSolution
+    from alula.fea.frame.linkage_frame import LinkageFrame
 
 Real = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ class JointForces:
 
         Empty without layers. Solved where they are asked for, since they are dozens.
         """
-        from fea.frame.sharing import sharings
+        from alula.fea.frame.sharing import sharings
 
         return () if self.frame is None else sharings(self.frame)
 
@@ -225,8 +225,8 @@ def solved_frame(
     -------
     tuple of LinkageFrame and FrameSolution
     """
-    from fea.frame.build import build_frame
-    from fea.frame.linear import solve_frame
+    from alula.fea.frame.build import build_frame
+    from alula.fea.frame.linear import solve_frame
 
     frame = build_frame(case, pose, loads, held=held, bonded=bonded, solids=solids)
     return frame, solve_frame(frame.model)

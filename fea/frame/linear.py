@@ -1,7 +1,7 @@
 """Spatial frames of Timoshenko beams, in small displacements.
 
-Units and axes are those of ``fea.frame.model``: mm, N, N·mm, rad; x, y the linkage's plane, z along the pins. The
-unknowns are the natural forces q of the elements (``fea.frame.system``) together with the displacements u:
+Units and axes are those of ``alula.fea.frame.model``: mm, N, N·mm, rad; x, y the linkage's plane, z along the pins. The
+unknowns are the natural forces q of the elements (``alula.fea.frame.system``) together with the displacements u:
 
     [-F  B] [q]   [v0    ]        F  natural flexibility of the elements, B  compatibility (v = B u),
     [ Bᵀ 0] [u] = [p - p0]        v0, p0  effect of line loads on the elements, p  nodal loads
@@ -21,14 +21,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, LineLoad, PointLoad
-from fea.beam.piecewise import Piecewise
-from fea.beam.theory import internal_forces
-from fea.frame.equations import equations_of
-from fea.frame.model import DOFS, FrameModel
-from fea.frame.system import FrameSystem, line_load_effect
-from geometry.base.errors import CannotRunError
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, LineLoad, PointLoad
+from alula.fea.beam.piecewise import Piecewise
+from alula.fea.beam.theory import internal_forces
+from alula.fea.frame.equations import equations_of
+from alula.fea.frame.model import DOFS, FrameModel
+from alula.fea.frame.system import FrameSystem, line_load_effect
+from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ class FrameSolution:
         Returns
         -------
         Piecewise
-            Signs and axes as in ``fea.beam.theory``.
+            Signs and axes as in ``alula.fea.beam.theory``.
         """
         if i not in self._internal:
             self._internal[i] = internal_forces(self.beam_loads(i))

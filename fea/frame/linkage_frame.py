@@ -2,10 +2,10 @@
 
 Every link with a part is a beam of its section along the x axis of its frame, at the height of its layer; a pin off
 the axis sits on a rigid arm, or where the link states an arm to it, on a beam of the same section. Along a slot the two
-flanks are beams of their own (``fea.beam.flanks``), of which the pin pushes one. Links without a part are rigid. The
-link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the drive
-torque; at a slider it keeps its place, and the force along the guide is the drive force. A bonded joint carries all six
-components. Between layers a pin is a beam from the one mid-plane to the other.
+flanks are beams of their own (``alula.fea.beam.flanks``), of which the pin pushes one. Links without a part are rigid.
+The link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the
+drive torque; at a slider it keeps its place, and the force along the guide is the drive force. A bonded joint carries
+all six components. Between layers a pin is a beam from the one mid-plane to the other.
 
 A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
 normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
@@ -21,13 +21,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.model import FrameModel
-from geometry.base.errors import CaseError
-from geometry.linkage.pose import Pose
-from loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
-from loads.statics.joint_reaction import JointReaction, travelled
-from loads.statics.statics import Drive, Reactions, assemble
-from loads.statics.system import System
+from alula.fea.frame.model import FrameModel
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
+from alula.loads.statics.joint_reaction import JointReaction, travelled
+from alula.loads.statics.statics import Drive, Reactions, assemble
+from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
 

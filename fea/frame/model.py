@@ -13,10 +13,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fea.frame.condensed import CondensedLink
-from fea.frame.spring import FrameSpring
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Section
+from alula.fea.frame.condensed import CondensedLink
+from alula.fea.frame.spring import FrameSpring
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]

@@ -12,17 +12,17 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.joint_forces import JointForces, joint_forces
-from geometry.base.errors import CaseError
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.forks import eyes
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import Load, chosen, shifted
-from loads.states.kinetostatics import is_determinate
-from loads.states.rubbing import WAYS, at_one_pose, pose_friction
-from loads.statics.friction import NOTHING_MORE, Presses, friction_under, friction_wrenches
-from loads.statics.pressing import pressing
+from alula.fea.frame.joint_forces import JointForces, joint_forces
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.forks import eyes
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import Load, chosen, shifted
+from alula.loads.states.kinetostatics import is_determinate
+from alula.loads.states.rubbing import WAYS, at_one_pose, pose_friction
+from alula.loads.statics.friction import NOTHING_MORE, Presses, friction_under, friction_wrenches
+from alula.loads.statics.pressing import pressing
 
 Real = NDArray[np.float64]
 

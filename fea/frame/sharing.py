@@ -25,11 +25,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.source import COUPLES
-from fea.frame.deviation import Sharing
-from fea.frame.linear import FactorisedFrame
-from fea.frame.linkage_frame import LinkageFrame
-from geometry.linkage.linkage import Linkage
+from alula.fea.common.source import COUPLES
+from alula.fea.frame.deviation import Sharing
+from alula.fea.frame.linear import FactorisedFrame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.geometry.linkage.linkage import Linkage
 
 SOFT = 1e5
 """Flexibility of a hinge, over the greatest of the frame in hinges' angles."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 

@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import flexibility
-from fea.frame.model import DOFS, FrameModel, NodeLoad
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Section
+from alula.fea.beam.deflection import flexibility
+from alula.fea.frame.model import DOFS, FrameModel, NodeLoad
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 

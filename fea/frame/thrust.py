@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.source import COUPLES, distinct
-from fea.frame.joint_forces import JointForces
-from loads.statics.statics import Reactions
+from alula.fea.common.band import Band
+from alula.fea.common.source import COUPLES, distinct
+from alula.fea.frame.joint_forces import JointForces
+from alula.loads.statics.statics import Reactions
 
 _ROUNDING = 1e-6
 """Share of the largest joint force below which thrust is rounding; hinges of pins that tilt are soft, and not free."""

@@ -11,13 +11,13 @@ Peterson & Wahl, Fatigue of shafts at fitted members, with a related photoelasti
 A1-A11; in Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., section 5.5.
 """
 
-from fea.beam.critical_locations import forces_at
-from fea.beam.section_stress import equivalent_stress
-from fea.beam.theory import BeamCheck
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from geometry.bodies.body import clamped_end, mouth
-from geometry.parts.part import Body
+from alula.fea.beam.critical_locations import forces_at
+from alula.fea.beam.section_stress import equivalent_stress
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.geometry.bodies.body import clamped_end, mouth
+from alula.geometry.parts.part import Body
 
 EDGE = 1.95
 """Most that the edge of a clamp makes of the nominal stress at its mouth."""

@@ -1,7 +1,7 @@
 """The cheapest model that decides a link: hand calculation, else a solid model.
 
-The bands of hand calculation are calibrated against solid models (``fea.beam.calibration``). It decides a link only
-where no limit on the link, with its stated scatter, lies in them.
+The bands of hand calculation are calibrated against solid models (``alula.fea.beam.calibration``). It decides a link
+only where no limit on the link, with its stated scatter, lies in them.
 """
 
 import math
@@ -9,22 +9,22 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
-from fea.beam.critical_locations import CriticalLocation, critical_locations, displacement_estimate
-from fea.beam.theory import BeamCheck
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.source import CONTACT, Source, SourceKind
-from fea.refine.link_task import LinkTask
-from fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
-from fea.solid.layers import in_worst_direction
-from geometry.base.errors import CannotRunError
-from geometry.bodies.body import extent, reference_line
-from geometry.bodies.eyes import eye_reach
-from geometry.meshing.mesh import MeshSettings
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.part import Body
-from loads.records.bearing import CONTACT_SHORTFALL
+from alula.fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
+from alula.fea.beam.critical_locations import CriticalLocation, critical_locations, displacement_estimate
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.source import CONTACT, Source, SourceKind
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
+from alula.fea.solid.layers import in_worst_direction
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.bodies.body import extent, reference_line
+from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.meshing.mesh import MeshSettings
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.part import Body
+from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 Model = Literal["beam", "solid"]
 

@@ -5,25 +5,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.beam.cut_free import link_loads
-from fea.beam.deflection import deflection
-from fea.beam.details import Detail, details, remarks
-from fea.beam.flanks import flanks_of
-from fea.beam.loads import BeamLoads, PointLoad
-from fea.beam.section_stress import SectionStress
-from fea.beam.theory import BeamCheck, check_beam
-from fea.buckling.buckling import least_factor
-from fea.common.link_loads import LinkLoads
-from fea.common.plates import plates
-from fea.links.on_axis import on_axis
-from fea.links.second_order import second_order_loads
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.unloaded import load_size, without_rounding
-from geometry.bodies.body import hand_section, no_beam, reference_line
-from loads.case.case import Case
-from loads.case.forks import apart
-from loads.records.applied import Load
-from loads.statics.statics import Reactions
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.details import Detail, details, remarks
+from alula.fea.beam.flanks import flanks_of
+from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.section_stress import SectionStress
+from alula.fea.beam.theory import BeamCheck, check_beam
+from alula.fea.buckling.buckling import least_factor
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.plates import plates
+from alula.fea.links.on_axis import on_axis
+from alula.fea.links.second_order import second_order_loads
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.unloaded import load_size, without_rounding
+from alula.geometry.bodies.body import hand_section, no_beam, reference_line
+from alula.loads.case.case import Case
+from alula.loads.case.forks import apart
+from alula.loads.records.applied import Load
+from alula.loads.statics.statics import Reactions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +82,7 @@ def cut_link(
     Returns
     -------
     tuple of LinkLoads
-        One; of a pair whose plates bear differently, that of each plate (``fea.common.plates``).
+        One; of a pair whose plates bear differently, that of each plate (``alula.fea.common.plates``).
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
     found = deformed or link_loads(load_case, link, case.body(link), moved.reactions or reactions, loads)

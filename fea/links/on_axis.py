@@ -2,10 +2,10 @@
 
 from functools import lru_cache
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.loads import RECENT, BeamLoads
-from fea.common.link_loads import LinkLoads
-from geometry.parts.part import Body
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.loads import RECENT, BeamLoads
+from alula.fea.common.link_loads import LinkLoads
+from alula.geometry.parts.part import Body
 
 
 @lru_cache(maxsize=RECENT)

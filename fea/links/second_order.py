@@ -2,9 +2,9 @@
 
 On a link that bends by v, a compression P has a moment as well. It equals that of a transverse load -(P v')' on the
 straight link. The deflection v is that under all loads, this one included: E I v'''' + (P v')' = q. It is solved with
-cubic elements, as the buckling factor is (``fea.beam.column_factor``). With that load added, hand calculation, frame
-and solid bear the second-order moments, each with its own stress concentrations. Tension straightens a link and is
-left out; so is compression that adds less than ``NEGLIGIBLE``.
+cubic elements, as the buckling factor is (``alula.fea.beam.column_factor``). With that load added, hand calculation,
+frame and solid bear the second-order moments, each with its own stress concentrations. Tension straightens a link and
+is left out; so is compression that adds less than ``NEGLIGIBLE``.
 
 References
 ----------
@@ -19,16 +19,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.column_factor import GAUSS, MERGED, Stretch, slopes, stiffness_matrices
-from fea.beam.cut_beam import curving_forces
-from fea.beam.piecewise import Piecewise, Side
-from fea.beam.theory import internal_forces
-from fea.buckling.holding import columns, holding
-from fea.common.link_loads import LinkLoads
-from fea.links.on_axis import on_axis
-from geometry.bodies.body import no_beam
-from loads.case.case import Case
-from loads.records.applied import LineLoad
+from alula.fea.beam.column_factor import GAUSS, MERGED, Stretch, slopes, stiffness_matrices
+from alula.fea.beam.cut_beam import curving_forces
+from alula.fea.beam.piecewise import Piecewise, Side
+from alula.fea.beam.theory import internal_forces
+from alula.fea.buckling.holding import columns, holding
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.links.on_axis import on_axis
+from alula.geometry.bodies.body import no_beam
+from alula.loads.case.case import Case
+from alula.loads.records.applied import LineLoad
 
 Real = NDArray[np.float64]
 

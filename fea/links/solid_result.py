@@ -6,28 +6,28 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.beam.theory import BeamCheck
-from fea.buckling.solid_holding import solid_holding
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from fea.elements.mouth import reference_surfaces
-from fea.links.clamp_edge import CLAMP, EDGE, edge_stress
-from fea.outcomes.compare import compare_sections
-from fea.outcomes.layer_stress import LayerStress
-from fea.outcomes.limits import displacement_limits, layer_limits, layers_of, stress_limits
-from fea.outcomes.result import SolidResult, VariantPeak
-from fea.refine.convergence import GridConvergence
-from fea.refine.discretisation import Discretisation, discretisation_source, judged
-from fea.refine.link_series import STRESS, CasePrecision, Measure, PeakQuantity
-from fea.refine.link_task import LinkTask
-from fea.refine.refinement import RefinedSolid
-from fea.refine.singular import LOADED
-from fea.solid.layers import Layers, best_directions, on_plane
-from fea.solid.solution import SolidCase
-from fea.solid.stress import stress_field
-from geometry.bodies.body import clamped_end
-from loads.case.case import Case
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.buckling.solid_holding import solid_holding
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
+from alula.fea.elements.mouth import reference_surfaces
+from alula.fea.links.clamp_edge import CLAMP, EDGE, edge_stress
+from alula.fea.outcomes.compare import compare_sections
+from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.limits import displacement_limits, layer_limits, layers_of, stress_limits
+from alula.fea.outcomes.result import SolidResult, VariantPeak
+from alula.fea.refine.convergence import GridConvergence
+from alula.fea.refine.discretisation import Discretisation, discretisation_source, judged
+from alula.fea.refine.link_series import STRESS, CasePrecision, Measure, PeakQuantity
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.refinement import RefinedSolid
+from alula.fea.refine.singular import LOADED
+from alula.fea.solid.layers import Layers, best_directions, on_plane
+from alula.fea.solid.solution import SolidCase
+from alula.fea.solid.stress import stress_field
+from alula.geometry.bodies.body import clamped_end
+from alula.loads.case.case import Case
 
 NO_NUMBER = "no mesh tells what it is"
 

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.motion.envelope_result import StressAlong, VariantCurve
-from fea.solid.stress import extreme_principal, von_mises
-from fea.superposition.unit_solutions import UnitSolutions
-from geometry.base.ties import first_largest
+from alula.fea.motion.envelope_result import StressAlong, VariantCurve
+from alula.fea.solid.stress import extreme_principal, von_mises
+from alula.fea.superposition.unit_solutions import UnitSolutions
+from alula.geometry.base.ties import first_largest
 
 Real = NDArray[np.float64]
 

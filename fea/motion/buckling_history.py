@@ -1,4 +1,4 @@
-"""Buckling factor of a link at every pose of a motion, by the rules of ``fea.buckling.buckling``."""
+"""Buckling factor of a link at every pose of a motion, by the rules of ``alula.fea.buckling.buckling``."""
 
 import itertools
 from dataclasses import replace
@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.column_factor import AxialForce
-from fea.beam.cut_free import beam_loads
-from fea.buckling.buckling import NO_COMPRESSION, ColumnFactors, link_factors
-from fea.common.link_loads import LinkLoads
-from fea.links.second_order import second_order_loads
-from fea.nonlinear.large_displacement import LEAST_FACTOR
-from fea.superposition.unit_loads import unit_forces
-from geometry.bodies.body import no_beam
-from loads.case.case import Case
-from loads.records.applied import LineLoad
+from alula.fea.beam.column_factor import AxialForce
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.buckling.buckling import NO_COMPRESSION, ColumnFactors, link_factors
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.links.second_order import second_order_loads
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR
+from alula.fea.superposition.unit_loads import unit_forces
+from alula.geometry.bodies.body import no_beam
+from alula.loads.case.case import Case
+from alula.loads.records.applied import LineLoad
 
 Real = NDArray[np.float64]
 
@@ -49,8 +49,8 @@ def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFact
 def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDArray[np.bool_]) -> LinkLoads:
     """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
 
-    As ``fea.links.second_order.second_order_loads`` does for one pose with ``stays=False``. What it adds at poses
-    further from buckling is in the bands (``fea.motion.loosened.motion_growth``).
+    As ``alula.fea.links.second_order.second_order_loads`` does for one pose with ``stays=False``. What it adds at poses
+    further from buckling is in the bands (``alula.fea.motion.loosened.motion_growth``).
 
     Parameters
     ----------

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.motion.fatigue import equivalent_peak, signed_stress
-from fea.superposition.peaks import ModeMeasures, signed_bounds
-from geometry.base.ties import first_largest
-from geometry.materials.material import Material
+from alula.fea.motion.fatigue import equivalent_peak, signed_stress
+from alula.fea.superposition.peaks import ModeMeasures, signed_bounds
+from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Material
 
 Real = NDArray[np.float64]
 

@@ -12,41 +12,41 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.buckling.linkage import unless_it_gives_way
-from fea.check.run import effort_of
-from fea.common.at_temperature import as_known
-from fea.common.clock import Clock
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter, load_scatter
-from fea.common.threads import bounded, bounded_run
-from fea.common.verdict import CheckOutcome, overall
-from fea.elements.space import DisplacementSpace, displacement_space
-from fea.links.clamp_edge import CLAMP_SCATTER
-from fea.links.solid_result import link_task
-from fea.motion.buckling_history import with_second_order
-from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
-from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
-from fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
-from fea.motion.layered import with_couples
-from fea.motion.link_envelope import LinkMotion, link_motion
-from fea.motion.link_history import link_histories
-from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
-from fea.motion.loosened import MotionGrowth, loosened, motion_growth, otherwise
-from fea.outcomes.limits import layers_of
-from fea.outcomes.unchecked import unusual_materials
-from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
-from fea.refine.link_series import STRESS, Measure
-from fea.refine.refinement import START, Effort, refine_links
-from fea.solid.solution import require_compressible
-from fea.superposition.solid_shares import solid_shares
-from fea.whole.outcomes import unloaded_outcomes, whole_numbers
-from fea.whole.rubbed_motion import rubbed_motion
-from geometry.base.errors import AlulaError, CannotRunError, CaseError
-from geometry.bodies.body import clamped_end
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from loads.case.case import Case
-from loads.case.forks import of_pair
-from loads.states.case_motion import CaseMotion
+from alula.fea.buckling.linkage import unless_it_gives_way
+from alula.fea.check.run import effort_of
+from alula.fea.common.at_temperature import as_known
+from alula.fea.common.clock import Clock
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter, load_scatter
+from alula.fea.common.threads import bounded, bounded_run
+from alula.fea.common.verdict import CheckOutcome, overall
+from alula.fea.elements.space import DisplacementSpace, displacement_space
+from alula.fea.links.clamp_edge import CLAMP_SCATTER
+from alula.fea.links.solid_result import link_task
+from alula.fea.motion.buckling_history import with_second_order
+from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
+from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
+from alula.fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
+from alula.fea.motion.layered import with_couples
+from alula.fea.motion.link_envelope import LinkMotion, link_motion
+from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
+from alula.fea.motion.loosened import MotionGrowth, loosened, motion_growth, otherwise
+from alula.fea.outcomes.limits import layers_of
+from alula.fea.outcomes.unchecked import unusual_materials
+from alula.fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
+from alula.fea.refine.link_series import STRESS, Measure
+from alula.fea.refine.refinement import START, Effort, refine_links
+from alula.fea.solid.solution import require_compressible
+from alula.fea.superposition.solid_shares import solid_shares
+from alula.fea.whole.outcomes import unloaded_outcomes, whole_numbers
+from alula.fea.whole.rubbed_motion import rubbed_motion
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.bodies.body import clamped_end
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.loads.case.case import Case
+from alula.loads.case.forks import of_pair
+from alula.loads.states.case_motion import CaseMotion
 
 Real = NDArray[np.float64]
 Progress = Callable[[str], None]

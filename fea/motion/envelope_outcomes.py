@@ -7,26 +7,26 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.buckling.buckling import column_outcome, worst_column
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.doubts.other_case import widened
-from fea.motion.buckling_history import axial_compression, factors_over_motion
-from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
-from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from fea.motion.layered import forces_at
-from fea.motion.loosened import MotionGrowth, column_growth, joint_growth
-from fea.outcomes.bearing import bearing_outcome, pressing
-from fea.outcomes.judge import safety_factor_outcome
-from fea.outcomes.layers import CHECK as LAYERS
-from fea.outcomes.layers import no_strength, without_shear
-from fea.outcomes.limits import layer_limit
-from fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
-from fea.outcomes.solid_buckling import undecided_buckling
-from geometry.base.ties import first_largest
-from geometry.materials.material import Fatigue, Material
-from loads.records.check_spec import (
+from alula.fea.buckling.buckling import column_outcome, worst_column
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.doubts.other_case import widened
+from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
+from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
+from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from alula.fea.motion.layered import forces_at
+from alula.fea.motion.loosened import MotionGrowth, column_growth, joint_growth
+from alula.fea.outcomes.bearing import bearing_outcome, pressing
+from alula.fea.outcomes.judge import safety_factor_outcome
+from alula.fea.outcomes.layers import CHECK as LAYERS
+from alula.fea.outcomes.layers import no_strength, without_shear
+from alula.fea.outcomes.limits import layer_limit
+from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
+from alula.fea.outcomes.solid_buckling import undecided_buckling
+from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Fatigue, Material
+from alula.loads.records.check_spec import (
     BearingCheck,
     ClearanceCheck,
     FrequencyCheck,
@@ -36,8 +36,8 @@ from loads.records.check_spec import (
     SafetyFactorCheck,
     SizeCheck,
 )
-from loads.states.case_motion import CaseMotion
-from loads.statics.joint_reaction import JointReaction
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.statics.joint_reaction import JointReaction
 
 BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
 LEFT_OUT = "poses near a dead point of the driven link were left out, where its torque grows without bound"

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Verdict
-from fea.motion.fatigue import FatigueLife
-from fea.motion.linkage_history import LinkageOverMotion
-from fea.refine.discretisation import Discretisation
-from fea.solid.stress import StressField
-from fea.tractions.traction import Transfer
-from loads.case.case import Case
-from loads.records.bearing import Span
-from loads.states.case_motion import CaseMotion
-from loads.states.clearance import Clearance
-from loads.statics.statics import Drive
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.motion.fatigue import FatigueLife
+from alula.fea.motion.linkage_history import LinkageOverMotion
+from alula.fea.refine.discretisation import Discretisation
+from alula.fea.solid.stress import StressField
+from alula.fea.tractions.traction import Transfer
+from alula.loads.case.case import Case
+from alula.loads.records.bearing import Span
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.clearance import Clearance
+from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
 

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.stress import extreme_principal, von_mises
-from geometry.base.ties import first_largest
-from geometry.materials.material import Fatigue, Material
+from alula.fea.solid.stress import extreme_principal, von_mises
+from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Fatigue, Material
 
 Real = NDArray[np.float64]
 

@@ -6,19 +6,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.scatter import Scatter, layer_scatter
-from fea.common.source import Source, SourceKind, distinct, pin_sources
-from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
-from fea.motion.fatigue import closed_history, not_closed, strength_at
-from fea.motion.layer_fatigue import LayerCycle, critical_layer
-from fea.motion.link_envelope import LinkMotion
-from fea.outcomes.layers import in_any_direction, may_lie_in_any_direction
-from fea.solid.layers import Layers
-from fea.superposition.peaks import ModeMeasures, largest_stress
-from geometry.base.ties import first_largest
-from loads.case.case import Case
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, layer_scatter
+from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
+from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
+from alula.fea.motion.fatigue import closed_history, not_closed, strength_at
+from alula.fea.motion.layer_fatigue import LayerCycle, critical_layer
+from alula.fea.motion.link_envelope import LinkMotion
+from alula.fea.outcomes.layers import in_any_direction, may_lie_in_any_direction
+from alula.fea.solid.layers import Layers
+from alula.fea.superposition.peaks import ModeMeasures, largest_stress
+from alula.geometry.base.ties import first_largest
+from alula.loads.case.case import Case
+from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 Real = NDArray[np.float64]
 ESTIMATED = Source(

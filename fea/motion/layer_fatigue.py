@@ -21,10 +21,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.motion.fatigue import NEGLIGIBLE, cycles_to_failure, equivalent_peak, repeated_cycles
-from fea.solid.layers import Layers
-from fea.superposition.peaks import mode_sizes
-from geometry.materials.material import Fatigue
+from alula.fea.motion.fatigue import NEGLIGIBLE, cycles_to_failure, equivalent_peak, repeated_cycles
+from alula.fea.solid.layers import Layers
+from alula.fea.superposition.peaks import mode_sizes
+from alula.geometry.materials.material import Fatigue
 
 Real = NDArray[np.float64]
 

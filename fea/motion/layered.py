@@ -1,8 +1,9 @@
 """Links in layers over a motion: the couples between layers at every pose, and how pins may share them.
 
 Equilibrium in the plane gives the joint forces of all poses at once. What acts out of it, F_z, M_x and M_y of every
-joint, is that of the spatial frame of each pose. The ways in which pins may share the couples (``fea.frame.sharing``)
-are tried where a link bears most, and widen its bands by what they make of its solid there.
+joint, is that of the spatial frame of each pose. The ways in which pins may share the couples
+(``alula.fea.frame.sharing``) are tried where a link bears most, and widen its bands by what they make of its solid
+there.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,16 +13,16 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_free import link_loads
-from fea.common.link_loads import LinkLoads
-from fea.doubts.force_doubt import ways_borne
-from fea.frame.joint_forces import JointForces, joint_forces, solved_frame
-from geometry.base.ties import first_largest
-from loads.records.applied import Load, chosen
-from loads.states.case_motion import CaseMotion
-from loads.states.dead_point_reach import pose_at
-from loads.states.kinetostatics import Kinetostatics
-from loads.statics.statics import Equilibrium
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.doubts.force_doubt import ways_borne
+from alula.fea.frame.joint_forces import JointForces, joint_forces, solved_frame
+from alula.geometry.base.ties import first_largest
+from alula.loads.records.applied import Load, chosen
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.dead_point_reach import pose_at
+from alula.loads.states.kinetostatics import Kinetostatics
+from alula.loads.statics.statics import Equilibrium
 
 
 @dataclass(frozen=True, kw_only=True)

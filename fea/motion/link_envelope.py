@@ -6,32 +6,32 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter, strength_scatter
-from fea.common.source import Source, SourceKind, distinct, pin_sources
-from fea.elements.mouth import reference_surfaces
-from fea.elements.space import DisplacementSpace
-from fea.elements.supports import LineReference
-from fea.motion.along import stress_along
-from fea.motion.critical import critical_nodes
-from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
-from fea.motion.fatigue import closed_history, fatigue_life, missing_data, not_closed, strength_at
-from fea.motion.mesh_factors import MeshFactors
-from fea.refine.convergence import ALONE
-from fea.refine.error_estimate import estimate_error
-from fea.refine.refinement import RefinedSolid
-from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
-from fea.solid.stress import stress_field
-from fea.superposition.peaks import Peaks, largest_stress
-from fea.superposition.unit_loads import unit_loads
-from fea.superposition.unit_solutions import UnitSolutions, solve_units
-from fea.tractions.traction import Transfer
-from geometry.base.errors import CannotRunError
-from geometry.base.ties import first_largest
-from geometry.materials.material import Material, stress_measure
-from geometry.parts.part import Body
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter, strength_scatter
+from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
+from alula.fea.elements.mouth import reference_surfaces
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.elements.supports import LineReference
+from alula.fea.motion.along import stress_along
+from alula.fea.motion.critical import critical_nodes
+from alula.fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
+from alula.fea.motion.fatigue import closed_history, fatigue_life, missing_data, not_closed, strength_at
+from alula.fea.motion.mesh_factors import MeshFactors
+from alula.fea.refine.convergence import ALONE
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.refine.refinement import RefinedSolid
+from alula.fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
+from alula.fea.solid.stress import stress_field
+from alula.fea.superposition.peaks import Peaks, largest_stress
+from alula.fea.superposition.unit_loads import unit_loads
+from alula.fea.superposition.unit_solutions import UnitSolutions, solve_units
+from alula.fea.tractions.traction import Transfer
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Material, stress_measure
+from alula.geometry.parts.part import Body
+from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 

@@ -1,12 +1,12 @@
 """What acts on one link over a whole motion, in the link's own frame."""
 
-from fea.beam.cut_free import link_loads
-from fea.common.link_loads import LinkLoads
-from fea.common.plates import plates
-from fea.frame.linkage_frame import out_of_plane
-from geometry.base.errors import CannotRunError, CaseError
-from loads.case.forks import apart
-from loads.states.case_motion import CaseMotion
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.plates import plates
+from alula.fea.frame.linkage_frame import out_of_plane
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.case.forks import apart
+from alula.loads.states.case_motion import CaseMotion
 
 
 def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:

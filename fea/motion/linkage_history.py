@@ -7,24 +7,24 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.buckling.linkage import by_linear_theory
-from fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.source import distinct
-from fea.common.verdict import CheckOutcome, Verdict
-from fea.frame.build import build_frame
-from fea.frame.displacement_band import compliance_range
-from fea.frame.linear import solve_frame
-from fea.motion.layered import forces_at
-from fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
-from fea.nonlinear.stability import dead_point_factor, linkage_factor
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.ties import first_largest, first_least
-from loads.records.applied import chosen
-from loads.records.check_spec import LimitLoadCheck
-from loads.states.case_motion import CaseMotion
-from loads.states.dead_point_reach import pose_at
+from alula.fea.buckling.linkage import by_linear_theory
+from alula.fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import distinct
+from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.displacement_band import compliance_range
+from alula.fea.frame.linear import solve_frame
+from alula.fea.motion.layered import forces_at
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
+from alula.fea.nonlinear.stability import dead_point_factor, linkage_factor
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.ties import first_largest, first_least
+from alula.loads.records.applied import chosen
+from alula.loads.records.check_spec import LimitLoadCheck
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.dead_point_reach import pose_at
 
 SPREAD = 5
 """Poses over the range, both ends included, at which the numbers of the linkage are computed besides the worst two."""
@@ -62,7 +62,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
     They are the pose next to a dead point of the driven link and that of the largest drive torque. The rule is that of
-    single poses (``fea.buckling.linkage``).
+    single poses (``alula.fea.buckling.linkage``).
 
     Parameters
     ----------

@@ -2,18 +2,19 @@
 
 With play each link is looked at in two poses: that in which most acts on it, and that in which most may act with play,
 by the first-order ends of its joint forces at all poses. There it is calculated by hand as a check of one pose does
-(``fea.doubts.play_doubt``), and the larger stress of both, over that without play, widens its bands.
+(``alula.fea.doubts.play_doubt``), and the larger stress of both, over that without play, widens its bands.
 
 So does the range of C_N of wings that flap: a link is calculated by hand at its worst poses with the stated C_N and
 with either end of the range, and its largest stress of each is compared, as in a check
-(``fea.doubts.range_doubt``). And so does friction, at either end of what it may be.
+(``alula.fea.doubts.range_doubt``). And so does friction, at either end of what it may be.
 
-Growth on the deformed shape is sought at some poses, by hand, as a check of each has it (``fea.doubts.load_growth``),
-without a threshold: where the linkage as a whole is looked at (``fea.motion.linkage_history``), next to a dead point,
-at the largest torque and at poses spread over the range; and, where it does not bear nearly as much at one of these,
-where a link or joint bears most, a link under compression with the growth of a column, or is nearest to buckling as
-one. The largest of these numbers on the deformed shape, over the largest of them in the undeformed pose, widens the
-bands of the whole motion. Growth that makes a number largest at a pose between these is in no band.
+Growth on the deformed shape is sought at some poses, by hand, as a check of each has it
+(``alula.fea.doubts.load_growth``), without a threshold: where the linkage as a whole is looked at
+(``alula.fea.motion.linkage_history``), next to a dead point, at the largest torque and at poses spread over the range;
+and, where it does not bear nearly as much at one of these, where a link or joint bears most, a link under compression
+with the growth of a column, or is nearest to buckling as one. The largest of these numbers on the deformed shape, over
+the largest of them in the undeformed pose, widens the bands of the whole motion. Growth that makes a number largest at
+a pose between these is in no band.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -22,30 +23,30 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_free import link_loads
-from fea.buckling.buckling import least_factor
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter
-from fea.common.source import distinct, play_source
-from fea.doubts.force_doubt import measures
-from fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
-from fea.doubts.play_doubt import play_doubt
-from fea.doubts.range_doubt import air_scatter, friction_scatter
-from fea.links.link_by_hand import plates_by_hand
-from fea.motion.buckling_history import factors_over_motion
-from fea.motion.layered import forces_at
-from fea.motion.link_history import link_histories
-from fea.motion.linkage_history import looked_at, shape_at
-from fea.nonlinear.large_displacement import LEAST_FACTOR, with_growth
-from fea.whole.air_range import air_range
-from fea.whole.rubbed_motion import friction_range
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.ties import first_largest
-from loads.case.joint_rules import friction_ranges
-from loads.records.applied import chosen
-from loads.states.case_motion import CaseMotion
-from loads.states.dead_point_reach import pose_at
-from loads.states.loose_motion import LooseMotion, loose_motion
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.buckling.buckling import least_factor
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import distinct, play_source
+from alula.fea.doubts.force_doubt import measures
+from alula.fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
+from alula.fea.doubts.play_doubt import play_doubt
+from alula.fea.doubts.range_doubt import air_scatter, friction_scatter
+from alula.fea.links.link_by_hand import plates_by_hand
+from alula.fea.motion.buckling_history import factors_over_motion
+from alula.fea.motion.layered import forces_at
+from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.linkage_history import looked_at, shape_at
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, with_growth
+from alula.fea.whole.air_range import air_range
+from alula.fea.whole.rubbed_motion import friction_range
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.ties import first_largest
+from alula.loads.case.joint_rules import friction_ranges
+from alula.loads.records.applied import chosen
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.dead_point_reach import pose_at
+from alula.loads.states.loose_motion import LooseMotion, loose_motion
 
 NEARLY = 0.98
 """Share of the most that a link or joint bears at one of the poses at which growth is sought, at least."""

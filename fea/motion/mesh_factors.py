@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.source import Source
-from fea.motion.envelope_result import VariantCurve
-from fea.refine.discretisation import Discretisation, discretisation_source, judged
-from fea.refine.link_series import STRESS
-from fea.refine.refinement import RefinedSolid
-from fea.tractions.traction import Transfer
-from geometry.base.ties import first_largest
-from geometry.materials.material import Material
-from loads.records.bearing import Span
+from alula.fea.common.source import Source
+from alula.fea.motion.envelope_result import VariantCurve
+from alula.fea.refine.discretisation import Discretisation, discretisation_source, judged
+from alula.fea.refine.link_series import STRESS
+from alula.fea.refine.refinement import RefinedSolid
+from alula.fea.tractions.traction import Transfer
+from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Material
+from alula.loads.records.bearing import Span
 
 Real = NDArray[np.float64]
 

@@ -1,9 +1,9 @@
 """Frames in large displacement: co-rotational beams in space, Newton's method, load stepping.
 
-The model is that of ``fea.frame.model``, every beam divided into several co-rotational elements
-(``fea.nonlinear.corotational_element``); strains are small, displacements and rotations are not. Forces keep their
-direction, and so do moments (a moment that keeps its axis in space does no path-independent work unless it turns about
-that axis: the tangent is then unsymmetric, and exact all the same). Pins turn with the links that carry them.
+The model is that of ``alula.fea.frame.model``, every beam divided into several co-rotational elements
+(``alula.fea.nonlinear.corotational_element``); strains are small, displacements and rotations are not. Forces keep
+their direction, and so do moments (a moment that keeps its axis in space does no path-independent work unless it turns
+about that axis: the tangent is then unsymmetric, and exact all the same). Pins turn with the links that carry them.
 
 A guide holds its pin at d · n = 0, d from the carrier's node to the pin's, n the normal that turns with the carrier's
 section there: the slot is a straight line on the deformed link, and the force of a pin that has slid along it has its
@@ -18,9 +18,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.model import FrameModel
-from fea.frame.system import FrameSystem, refuse_mechanism
-from fea.nonlinear.equilibrium_path import CorotationalSolution, EquilibriumPath
+from alula.fea.frame.model import FrameModel
+from alula.fea.frame.system import FrameSystem, refuse_mechanism
+from alula.fea.nonlinear.equilibrium_path import CorotationalSolution, EquilibriumPath
 
 Floats = NDArray[np.float64]
 

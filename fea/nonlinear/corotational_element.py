@@ -4,7 +4,7 @@ Kinematics after Crisfield, Non-linear Finite Element Analysis of Solids and Str
 (in the plane) and vol. 2, 1997, chapter 17 (in space), with the element axes of Nour-Omid & Rankin, Comput. Methods
 Appl. Mech. Engrg. 93 (1991) 353-384: x along the chord, y by the mean of the two ends' y axes. The natural
 deformations are the lengthening and the rotation vectors of both ends relative to these axes; they meet the natural
-stiffness of the linear element (``fea.frame.system``), so that small displacements give the linear frame. The
+stiffness of the linear element (``alula.fea.frame.system``), so that small displacements give the linear frame. The
 lengthening counts how the axis bows between its ends, L (2 a² - a b + 2 b²)/30 in either plane for a cubic (the
 shallow-arch strain, Crisfield, vol. 1, section 7.3; Oran, J. Struct. Div. ASCE 99 (1973) 987-1001): without it a
 divided column buckles some 1.3 % late at eight elements.
@@ -22,11 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import flexibility
-from fea.frame.model import FrameModel, Guide
-from fea.frame.system import line_load_effect, natural_flexibility
-from fea.nonlinear.jet import EPSILON, Bilinear, Jet, cross, dot, stack, unit
-from geometry.base.errors import CannotRunError
+from alula.fea.beam.deflection import flexibility
+from alula.fea.frame.model import FrameModel, Guide
+from alula.fea.frame.system import line_load_effect, natural_flexibility
+from alula.fea.nonlinear.jet import EPSILON, Bilinear, Jet, cross, dot, stack, unit
+from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 

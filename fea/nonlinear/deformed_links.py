@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_free import in_slot, link_loads
-from fea.common.link_loads import EndLoad, LinkLoads
-from fea.frame.linkage_frame import LinkageFrame
-from fea.nonlinear.equilibrium_path import CorotationalSolution
-from geometry.base.errors import CannotRunError
-from geometry.bodies.body import mouth
-from geometry.parts.part import Body, PlainEnd
-from loads.records.applied import Load, shifted
-from loads.statics.statics import Reactions
+from alula.fea.beam.cut_free import in_slot, link_loads
+from alula.fea.common.link_loads import EndLoad, LinkLoads
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.nonlinear.equilibrium_path import CorotationalSolution
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.bodies.body import mouth
+from alula.geometry.parts.part import Body, PlainEnd
+from alula.loads.records.applied import Load, shifted
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 NOTHING = 1e-7

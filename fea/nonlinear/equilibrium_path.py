@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.model import FrameModel, Guide
-from fea.frame.spring import FrameSpring
-from fea.nonlinear.corotational_element import CorotationalElements, ElementResponse, guide_gap
-from fea.nonlinear.kinematic_chain import KinematicChain, Places
-from fea.nonlinear.springs import SpringForces
-from geometry.base.errors import CannotRunError
+from alula.fea.frame.model import FrameModel, Guide
+from alula.fea.frame.spring import FrameSpring
+from alula.fea.nonlinear.corotational_element import CorotationalElements, ElementResponse, guide_gap
+from alula.fea.nonlinear.kinematic_chain import KinematicChain, Places
+from alula.fea.nonlinear.springs import SpringForces
+from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 

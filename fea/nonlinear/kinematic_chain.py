@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.model import DOFS, FrameModel
-from fea.frame.system import FrameSystem
-from geometry.base.errors import CannotRunError
+from alula.fea.frame.model import DOFS, FrameModel
+from alula.fea.frame.system import FrameSystem
+from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 

@@ -1,11 +1,11 @@
 """Large displacement of a linkage: whether the pose as it stands is good enough, and what holds on the deformed shape.
 
 Where the linear frame moves by more than 5 % of the linkage's span, equilibrium on the undeformed pose is no longer a
-good answer: joint forces then come from the co-rotational frame (``fea.nonlinear.corotational``), and each link is
-loaded by what acts on it on the deformed shape, along the chord through its first and last station. So it is where the
-frame is within ten times its load of buckling by linear theory, below which EN 1993-1-1:2005, 5.2.1(3), asks for
+good answer: joint forces then come from the co-rotational frame (``alula.fea.nonlinear.corotational``), and each link
+is loaded by what acts on it on the deformed shape, along the chord through its first and last station. So it is where
+the frame is within ten times its load of buckling by linear theory, below which EN 1993-1-1:2005, 5.2.1(3), asks for
 second-order analysis, or of a dead point by its linear displacements: a shallow toggle snaps through at 5.2 of either
-(``fea.nonlinear.stability``). Stated scatter of load and modulus counts at its worst.
+(``alula.fea.nonlinear.stability``). Stated scatter of load and modulus counts at its worst.
 
 The limit-load factor says by what all loads may grow until the linkage gives way. The path of stable equilibrium is
 followed to ``MOST`` times the load. It ends at a limit point, from where the linkage snaps through, or where the
@@ -15,8 +15,8 @@ breaks is no part of the factor. Its band covers the steps of the path; stated s
 beams do not know of eyes, bores and holes (all links are then softer by what these add to the work of the loads: for
 the owl wing with springs of its own beside every pin this meets the limit load within 4 %); and faults of shape, by a
 third of the linear buckling factor: a frame without them stands straight up to its buckling load. Solids of links that
-are known take the place of what plain beams do not know (``fea.check.known_stiffness``). The share of the load that is
-held is the same number, up to 1.
+are known take the place of what plain beams do not know (``alula.fea.check.known_stiffness``). The share of the load
+that is held is the same number, up to 1.
 """
 
 import math
@@ -28,25 +28,25 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.convex import least_of_convex
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind, distinct
-from fea.frame.build import build_frame
-from fea.frame.displacement_band import compliance_range
-from fea.frame.joint_forces import JointForces
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame
-from fea.nonlinear.deformed_links import balanced, on_deformed_shape
-from fea.nonlinear.equilibrium_path import NoEquilibriumError
-from fea.nonlinear.softened import followed
-from fea.nonlinear.stability import SNAP, dead_point_factor, linkage_factor
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.applied import Load, PointLoad
-from loads.statics.statics import Reactions
+from alula.fea.common.band import Band
+from alula.fea.common.convex import least_of_convex
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.displacement_band import compliance_range
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
+from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.fea.nonlinear.softened import followed
+from alula.fea.nonlinear.stability import SNAP, dead_point_factor, linkage_factor
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.applied import Load, PointLoad
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 

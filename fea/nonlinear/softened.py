@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.frame.linkage_frame import LinkageFrame
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.equilibrium_path import CorotationalSolution, NoEquilibriumError
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.equilibrium_path import CorotationalSolution, NoEquilibriumError
 
 PATH_SUBDIVISIONS = 2
 LEAST_STEP = 1.0 / 512.0

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.spring import FrameSpring, turn_about_z
-from fea.nonlinear.kinematic_chain import KinematicChain
+from alula.fea.frame.spring import FrameSpring, turn_about_z
+from alula.fea.nonlinear.kinematic_chain import KinematicChain
 
 Floats = NDArray[np.float64]
 ABOUT_Z = np.array([0.0, 0.0, 1.0])

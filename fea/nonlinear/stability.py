@@ -19,13 +19,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame, slot_normal
-from fea.frame.model import FrameModel
-from fea.nonlinear.corotational import SUBDIVISIONS, subdivide
-from fea.nonlinear.corotational_element import ElementResponse
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from geometry.linkage.pose import Pose, constraint_jacobian, held_motion
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame, slot_normal
+from alula.fea.frame.model import FrameModel
+from alula.fea.nonlinear.corotational import SUBDIVISIONS, subdivide
+from alula.fea.nonlinear.corotational_element import ElementResponse
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
 Floats = NDArray[np.float64]
 

@@ -11,14 +11,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.scatter import Scatter, load_scatter, strength_scatter
-from fea.common.verdict import CheckOutcome, Quantity, Subject
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.forks import apart, eye_of
-from loads.records.bearing import bearing_stress
-from loads.records.check_spec import BearingCheck
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.forks import apart, eye_of
+from alula.loads.records.bearing import bearing_stress
+from alula.loads.records.check_spec import BearingCheck
 
 Real = NDArray[np.float64]
 
@@ -120,7 +120,7 @@ def bearing_outcome(
     wrenches : sequence of ndarray, shape (6,)
         As of ``weakest_eye``.
     growth : Scatter, optional
-        By which that force grows beside scattered loads (``fea.doubts.load_growth``).
+        By which that force grows beside scattered loads (``alula.fea.doubts.load_growth``).
 
     Returns
     -------

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from fea.beam.cut_beam import beam_sections
-from fea.beam.theory import BeamCheck
-from fea.outcomes.result import SectionComparison
-from fea.solid.stress import StressField
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Body
+from alula.fea.beam.cut_beam import beam_sections
+from alula.fea.beam.theory import BeamCheck
+from alula.fea.outcomes.result import SectionComparison
+from alula.fea.solid.stress import StressField
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Body
 
 BENDS = 0.1
 """A link counts as bending where its largest bending stress is above this share of its axial stress."""

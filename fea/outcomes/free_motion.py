@@ -18,14 +18,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import NodeLoad
-from geometry.linkage.play import Reach
-from loads.case.case import Case
-from loads.case.forks import eye_of
-from loads.case.heights import thickness
-from loads.records.applied import shifted
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import NodeLoad
+from alula.geometry.linkage.play import Reach
+from alula.loads.case.case import Case
+from alula.loads.case.forks import eye_of
+from alula.loads.case.heights import thickness
+from alula.loads.records.applied import shifted
 
 Real = NDArray[np.float64]
 

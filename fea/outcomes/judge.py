@@ -2,22 +2,22 @@
 
 from collections.abc import Mapping
 
-from fea.buckling.linkage import linkage_outcomes
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.frame.joint_forces import JointForces
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.layers import layer_outcomes, unless_built_otherwise
-from fea.outcomes.limits import least_safety_factor
-from fea.outcomes.pins import PinStress, pin_outcome
-from fea.outcomes.point_displacement import point_outcome
-from fea.outcomes.result import LinkResult, SolidResult
-from fea.outcomes.solid_buckling import solid_buckling
-from fea.refine.discretisation import Discretisation
-from loads.case.case import Case
-from loads.records.check_spec import (
+from alula.fea.buckling.linkage import linkage_outcomes
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.layers import layer_outcomes, unless_built_otherwise
+from alula.fea.outcomes.limits import least_safety_factor
+from alula.fea.outcomes.pins import PinStress, pin_outcome
+from alula.fea.outcomes.point_displacement import point_outcome
+from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.outcomes.solid_buckling import solid_buckling
+from alula.fea.refine.discretisation import Discretisation
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import (
     DisplacementCheck,
     PinCheck,
     SafetyFactorCheck,
@@ -37,8 +37,8 @@ def outcomes(
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of links, pins and points, and of the linkage's equilibrium, of a load case.
 
-    Bearing is in ``fea.outcomes.bearing``, limit load in ``fea.check.linkage_numbers``, buckling of links in
-    ``fea.buckling.buckling``, and what is checked of the linkage as a whole in ``fea.whole``.
+    Bearing is in ``alula.fea.outcomes.bearing``, limit load in ``alula.fea.check.linkage_numbers``, buckling of links
+    in ``alula.fea.buckling.buckling``, and what is checked of the linkage as a whole in ``alula.fea.whole``.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def outcomes(
     free : mapping of str to LinkLoads
         Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
     uneven : mapping of str to Scatter, optional
-        Joint -> how its force grows beside scattered loads (``fea.doubts.load_growth``).
+        Joint -> how its force grows beside scattered loads (``alula.fea.doubts.load_growth``).
     forces : JointForces, optional
         Where these come from a frame of solids, which tells how far points move as well.
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.refine.discretisation import Discretisation
-from fea.solid.layers import Layers
+from alula.fea.common.band import Band
+from alula.fea.refine.discretisation import Discretisation
+from alula.fea.solid.layers import Layers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,8 +29,8 @@ class LayerStress:
     discretisation : Discretisation
         The error that the meshes leave.
     scan : ndarray or None
-        Safety factor (POLAR, AZIMUTH) for the directions of building of ``fea.solid.layers.build_directions``, by the
-        same solution; None without a shear strength or without a safety factor.
+        Safety factor (POLAR, AZIMUTH) for the directions of building of ``alula.fea.solid.layers.build_directions``, by
+        the same solution; None without a shear strength or without a safety factor.
     """
 
     layers: Layers

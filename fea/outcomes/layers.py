@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.scatter import layer_scatter
-from fea.common.source import Source, SourceKind, distinct
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.outcomes.layer_stress import LayerStress
-from fea.outcomes.limits import layer_limit
-from fea.outcomes.result import LinkResult
-from fea.solid.layers import in_worst_direction
-from geometry.materials.material import Material
-from loads.case.case import Case
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import layer_scatter
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.limits import layer_limit
+from alula.fea.outcomes.result import LinkResult
+from alula.fea.solid.layers import in_worst_direction
+from alula.geometry.materials.material import Material
+from alula.loads.case.case import Case
 
 CHECK = "layers"
 """Name of the check, beside that of the safety factor."""

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
-from fea.solid.layers import Layers
-from geometry.base.errors import CaseError
-from geometry.materials.material import Material
-from geometry.materials.plausible import is_plastic
-from geometry.materials.printable import is_printed, is_solid_stock
-from loads.case.case import Case
-from loads.records.check_spec import (
+from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
+from alula.fea.solid.layers import Layers
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.material import Material
+from alula.geometry.materials.plausible import is_plastic
+from alula.geometry.materials.printable import is_printed, is_solid_stock
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import (
     BearingCheck,
     DisplacementCheck,
     FrequencyCheck,
@@ -18,7 +18,7 @@ from loads.records.check_spec import (
     SafetyFactorCheck,
     SustainedCheck,
 )
-from loads.text.caveat import Caveat, Heading, Topic
+from alula.loads.text.caveat import Caveat, Heading, Topic
 
 Ends = tuple[float, float]
 

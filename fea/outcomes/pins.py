@@ -20,11 +20,11 @@ cheek, or plate, takes F/2.
 * largest: all bear evenly along the pin, as on a stiff one. The bending moment is that of F/2 from the middle of a
   cheek to the middle of half the eye, M = F/2 (t1/2 + g + h/4), with g free on either side (Melcon & Hoblit, Product
   Engineering 24, June 1953, 160-170). A moment that the joint carries besides is linear along the walls
-  (``fea.beam.pin_between``).
+  (``alula.fea.beam.pin_between``).
 * least: F/2 or more crosses one of the two gaps, where M changes by F g/2, so that |M| is F g/4 or more.
 
-Between layers the couple of each eye is known (``fea.beam.pin_between``), and which eye takes it is open only as
-far as ``fea.frame.sharing`` says.
+Between layers the couple of each eye is known (``alula.fea.beam.pin_between``), and which eye takes it is open only as
+far as ``alula.fea.frame.sharing`` says.
 
 Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
 may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
@@ -45,22 +45,22 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from fea.beam.pin_between import largest_between
-from fea.common.band import Band
-from fea.common.scatter import Scatter, load_scatter, strength_scatter
-from fea.common.source import COUPLES, Source, SourceKind
-from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.frame.joint_forces import JointForces
-from fea.outcomes.limits import least_safety_factor
-from geometry.base.errors import CaseError
-from geometry.bodies.features import Ring
-from loads.case.case import Case
-from loads.case.eyes import other_link
-from loads.case.forks import eye_of, eyes, outer_link
-from loads.records.applied import shifted
-from loads.records.check_spec import PinCheck
-from loads.statics.joint_reaction import JointReaction
-from loads.text.caveat import Caveat, Topic
+from alula.fea.beam.pin_between import largest_between
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.source import COUPLES, Source, SourceKind
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.outcomes.limits import least_safety_factor
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import Ring
+from alula.loads.case.case import Case
+from alula.loads.case.eyes import other_link
+from alula.loads.case.forks import eye_of, eyes, outer_link
+from alula.loads.records.applied import shifted
+from alula.loads.records.check_spec import PinCheck
+from alula.loads.statics.joint_reaction import JointReaction
+from alula.loads.text.caveat import Caveat, Topic
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 NO_TORSION = Band.exact(0.0)
@@ -447,7 +447,7 @@ def pin_outcome(
     stress : PinStress
         Of its pin.
     growth : Scatter, optional
-        By which the joint's force grows beside scattered loads (``fea.doubts.load_growth``).
+        By which the joint's force grows beside scattered loads (``alula.fea.doubts.load_growth``).
 
     Returns
     -------

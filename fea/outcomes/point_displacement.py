@@ -11,23 +11,23 @@ from functools import cached_property
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter
-from fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.frame.case_statics import locks_on_tight_pins
-from fea.frame.displacement_band import point_bounds
-from fea.frame.joint_forces import JointForces
-from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
-from fea.nonlinear.softened import displaced
-from fea.nonlinear.stability import SNAP, growth
-from fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
-from fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
-from fea.outcomes.result import LinkResult, SolidResult
-from loads.case.case import Case
-from loads.records.check_spec import DisplacementCheck
-from loads.states.play import Play
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.frame.case_statics import locks_on_tight_pins
+from alula.fea.frame.displacement_band import point_bounds
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.nonlinear.large_displacement import LARGE, LargeDisplacement
+from alula.fea.nonlinear.softened import displaced
+from alula.fea.nonlinear.stability import SNAP, growth
+from alula.fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
+from alula.fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
+from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import DisplacementCheck
+from alula.loads.states.play import Play
 
 ROOM = 0.8
 """Share of the way to a limit that meshes may leave open, since a finer mesh moves the number as well."""
@@ -228,9 +228,9 @@ class PointDisplacement:
     def elastic(self, *, meshes: float = 1.0, sunk: bool = False, tilted: bool = True) -> Band:
         """Return the band without play: what solids or beams leave open, the moduli, and the load.
 
-        The linear answer may grow as a toggle does (``fea.nonlinear.stability``); on the deformed shape equilibrium is
-        sought again with the ends of load over stiffness, and with solids for the value: in a frame that is softer by
-        the solids' linear displacement over the frame's own.
+        The linear answer may grow as a toggle does (``alula.fea.nonlinear.stability``); on the deformed shape
+        equilibrium is sought again with the ends of load over stiffness, and with solids for the value: in a frame that
+        is softer by the solids' linear displacement over the frame's own.
 
         Parameters
         ----------

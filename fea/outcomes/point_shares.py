@@ -5,22 +5,22 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fea.beam.cut_free import beam_loads, link_loads
-from fea.beam.deflection import virtual_work as plain_work
-from fea.beam.theory import internal_forces
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from fea.frame.joint_forces import JointForces, solved_frame
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.result import LinkResult, SolidResult
-from fea.solid.solution import LARGEST_POISSON_RATIO
-from fea.solid.virtual_work import Work, virtual_work
-from geometry.bodies.body import clamped_end
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.applied import PointLoad
-from loads.statics.statics import Drive, Reactions, solve_statics
+from alula.fea.beam.cut_free import beam_loads, link_loads
+from alula.fea.beam.deflection import virtual_work as plain_work
+from alula.fea.beam.theory import internal_forces
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
+from alula.fea.frame.joint_forces import JointForces, solved_frame
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.solid.solution import LARGEST_POISSON_RATIO
+from alula.fea.solid.virtual_work import Work, virtual_work
+from alula.geometry.bodies.body import clamped_end
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.applied import PointLoad
+from alula.loads.statics.statics import Drive, Reactions, solve_statics
 
 NOTHING = 1e-9
 """Share of the unit load that is rounding: in what a link bears of it, and in what is left over of its balance."""

@@ -9,33 +9,33 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.theory import BeamCheck, CantileverCheck
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Verdict
-from fea.frame.joint_forces import JointForces, WayToHold
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.outcomes.layer_stress import LayerStress
-from fea.outcomes.opinion import SecondOpinion
-from fea.outcomes.pins import PinStress
-from fea.outcomes.unchecked import caveats
-from fea.refine.discretisation import Discretisation
-from fea.refine.link_buckling import SolidBuckling
-from fea.solid.solution import SolidCase, SolidSolution
-from fea.solid.stress import StressField
-from fea.vibration.harmonics import nearest_harmonic
-from fea.vibration.over_motion import CaseFrequencies
-from geometry.linkage.pose import Pose
-from geometry.materials.material import stress_measure
-from loads.case.case import Case
-from loads.records.applied import Load
-from loads.sources.published_statics import StaticsAudit
-from loads.states.clearance import Clearance
-from loads.states.drive_work import DriveWork
-from loads.states.extent import Extent
-from loads.states.standing import Standing
-from loads.states.weighed import Weighed
-from loads.statics.statics import Reactions
-from loads.text.caveat import Caveat
+from alula.fea.beam.theory import BeamCheck, CantileverCheck
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.frame.joint_forces import JointForces, WayToHold
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.opinion import SecondOpinion
+from alula.fea.outcomes.pins import PinStress
+from alula.fea.outcomes.unchecked import caveats
+from alula.fea.refine.discretisation import Discretisation
+from alula.fea.refine.link_buckling import SolidBuckling
+from alula.fea.solid.solution import SolidCase, SolidSolution
+from alula.fea.solid.stress import StressField
+from alula.fea.vibration.harmonics import nearest_harmonic
+from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.geometry.linkage.pose import Pose
+from alula.geometry.materials.material import stress_measure
+from alula.loads.case.case import Case
+from alula.loads.records.applied import Load
+from alula.loads.sources.published_statics import StaticsAudit
+from alula.loads.states.clearance import Clearance
+from alula.loads.states.drive_work import DriveWork
+from alula.loads.states.extent import Extent
+from alula.loads.states.standing import Standing
+from alula.loads.states.weighed import Weighed
+from alula.loads.statics.statics import Reactions
+from alula.loads.text.caveat import Caveat
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,15 +3,15 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from fea.buckling.buckling import NAME, factor_band, judgement
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.outcomes.result import LinkResult, SolidResult
-from fea.refine.link_buckling import SolidBuckling
-from fea.solid.buckling_factor import MOST
-from loads.case.case import Case
+from alula.fea.buckling.buckling import NAME, factor_band, judgement
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.refine.link_buckling import SolidBuckling
+from alula.fea.solid.buckling_factor import MOST
+from alula.loads.case.case import Case
 
 NO_BEAM = "no beam stands for its buckling, and its solid was not solved; run the solid model (--fidelity solid)"
 
@@ -93,7 +93,7 @@ def solid_growth(found: SolidBuckling | None) -> Scatter:
     Parameters
     ----------
     found : SolidBuckling or None
-        Its buckling factors n; the growth is 1/(1 - 1/n) at most (``fea.buckling.buckling``).
+        Its buckling factors n; the growth is 1/(1 - 1/n) at most (``alula.fea.buckling.buckling``).
 
     Returns
     -------

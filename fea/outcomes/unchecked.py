@@ -5,23 +5,23 @@ Every feature tells its own, in its own file; here they are gathered.
 
 from collections.abc import Iterator
 
-from fea.buckling.wall import wall_caveats
-from fea.common.at_temperature import as_if_cold, temperature_caveats
-from fea.common.lasting import creep_caveats, fatigue_caveats
-from fea.outcomes.limits import layer_caveats, limit_caveats
-from fea.outcomes.pins import shaft_caveats
-from geometry.materials.plausible import untold, unusual
-from loads.case.case import Case
-from loads.case.joint_rules import joint_caveats
-from loads.case.load_rules import load_caveats
-from loads.case.toleranced import tolerance_caveats
-from loads.records.check_spec import FrequencyCheck, PinCheck, SafetyFactorCheck, SustainedCheck
-from loads.states.case_motion import inertia_caveats, step_caveats
-from loads.states.clearance import collision_caveats
-from loads.states.extent import size_caveats
-from loads.states.standing import drive_caveats
-from loads.states.weighed import mass_caveats
-from loads.text.caveat import Caveat, Heading, Topic
+from alula.fea.buckling.wall import wall_caveats
+from alula.fea.common.at_temperature import as_if_cold, temperature_caveats
+from alula.fea.common.lasting import creep_caveats, fatigue_caveats
+from alula.fea.outcomes.limits import layer_caveats, limit_caveats
+from alula.fea.outcomes.pins import shaft_caveats
+from alula.geometry.materials.plausible import untold, unusual
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import joint_caveats
+from alula.loads.case.load_rules import load_caveats
+from alula.loads.case.toleranced import tolerance_caveats
+from alula.loads.records.check_spec import FrequencyCheck, PinCheck, SafetyFactorCheck, SustainedCheck
+from alula.loads.states.case_motion import inertia_caveats, step_caveats
+from alula.loads.states.clearance import collision_caveats
+from alula.loads.states.extent import size_caveats
+from alula.loads.states.standing import drive_caveats
+from alula.loads.states.weighed import mass_caveats
+from alula.loads.text.caveat import Caveat, Heading, Topic
 
 
 def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tuple[Caveat, ...]:

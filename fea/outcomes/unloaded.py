@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.link_loads import LinkLoads
-from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
-from fea.outcomes.limits import least_safety_factor
-from loads.case.case import Case
-from loads.records.applied import BodyForce, LineLoad, Load, PointLoad
-from loads.records.check_spec import SafetyFactorCheck
-from loads.states.actions import stated_loads
-from loads.states.springs import spring_loads
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
+from alula.fea.outcomes.limits import least_safety_factor
+from alula.loads.case.case import Case
+from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
+from alula.loads.records.check_spec import SafetyFactorCheck
+from alula.loads.states.actions import stated_loads
+from alula.loads.states.springs import spring_loads
 
 Real = NDArray[np.float64]
 

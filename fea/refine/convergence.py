@@ -1,8 +1,8 @@
 """What a series of ever finer meshes says about a number: its error band, its order, or that it has no limit.
 
 Two things tell of the error, and the larger one is the band. The recovery-based estimate at the place of the number
-(``fea.refine.error_estimate``) sees a field that the finest mesh does not resolve. The grid convergence index (P. J.
-Roache, Verification and Validation in Computational Science and Engineering, 1998, sec. 5.6 to 5.9) sees a number
+(``alula.fea.refine.error_estimate``) sees a field that the finest mesh does not resolve. The grid convergence index (P.
+J. Roache, Verification and Validation in Computational Science and Engineering, 1998, sec. 5.6 to 5.9) sees a number
 that moves from mesh to mesh, 1.25 times its extrapolated error
 
     δ = |f2 − f1|/((h2/h1)^p − 1)
@@ -20,7 +20,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
 FORMAL_ORDER = 2.0
 """Of the stress of quadratic elements. Displacements have up to 3, but 2.1 was observed in Lamé's cylinder."""

@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.common.source import Source, SourceKind
-from fea.refine.convergence import SERIES, GridConvergence
-from fea.refine.link_series import NOT_RESOLVED, Measure
-from fea.refine.refinement import MeshRecord, RefinedSolid
-from fea.refine.singular import LOADED, SharpPeak
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.refine.convergence import SERIES, GridConvergence
+from alula.fea.refine.link_series import NOT_RESOLVED, Measure
+from alula.fea.refine.refinement import MeshRecord, RefinedSolid
+from alula.fea.refine.singular import LOADED, SharpPeak
 
 MeshStatus = Literal["converged", "decided", "far", "not reached", "unresolved", "edge", "singular", "growing"]
 UNKNOWN: tuple[MeshStatus, ...] = ("unresolved", "edge", "singular", "growing")

@@ -6,7 +6,7 @@ closer to the truth than the elements' own σ_h, so their difference stands for 
 
     ‖e‖² = ∫ (σ* − σ_h) : C⁻¹ : (σ* − σ_h) dV    (their eq. 15, for C the elasticity tensor)
 
-σ* is the averaged nodal stress of ``fea.solid.stress``, interpolated with the displacements' own functions.
+σ* is the averaged nodal stress of ``alula.fea.solid.stress``, interpolated with the displacements' own functions.
 Measured as the estimate over the true error in the energy norm: 0.76 to 0.82 for quadratic elements,
 straight and curved, and 0.93 to 0.97 for linear ones, under a smooth field on distorted meshes; 0.85 in
 thick-walled cylinders. A least-squares fit over the whole body in place of averages gave 0.68 to 0.77.
@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.elasticity import reference_basis
-from fea.solid.stress import StressField, carry_to_nodes, element_stress, von_mises
+from alula.fea.elements.elasticity import reference_basis
+from alula.fea.solid.stress import StressField, carry_to_nodes, element_stress, von_mises
 
 DEGREE = 5
 """Of the integration rule: its points are not those at which σ_h is best, where the estimate would be too small."""

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.space import UpperHalf, upper_half
-from fea.refine.error_estimate import ErrorEstimate, estimate_error
-from fea.solid.layers import Layers
-from fea.solid.solution import SolidCase, SolidSolution
-from fea.solid.stress import COMPONENTS, extreme_principal, stress_field
-from loads.records.bearing import Span
+from alula.fea.elements.space import UpperHalf, upper_half
+from alula.fea.refine.error_estimate import ErrorEstimate, estimate_error
+from alula.fea.solid.layers import Layers
+from alula.fea.solid.solution import SolidCase, SolidSolution
+from alula.fea.solid.stress import COMPONENTS, extreme_principal, stress_field
+from alula.loads.records.bearing import Span
 
 _EDGE = (6.0 * np.sqrt(2.0)) ** (1.0 / 3.0)  # edge of a regular tetrahedron over the cube root of its volume
 _NEIGHBOURS = 8

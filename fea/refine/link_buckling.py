@@ -3,15 +3,15 @@
 import math
 from dataclasses import dataclass
 
-from fea.nonlinear.large_displacement import LEAST_LINEAR
-from fea.refine.error_estimate import estimate_error
-from fea.refine.link_series import CHORD
-from fea.refine.link_task import LinkTask
-from fea.solid.buckling_factor import BucklingProblem
-from fea.solid.solution import SolidCase, SolidSolution
-from fea.solid.stress import stress_field
-from geometry.base.errors import CannotRunError
-from loads.records.bearing import WIDE
+from alula.fea.nonlinear.large_displacement import LEAST_LINEAR
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.refine.link_series import CHORD
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.solid.buckling_factor import BucklingProblem
+from alula.fea.solid.solution import SolidCase, SolidSolution
+from alula.fea.solid.stress import stress_field
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.bearing import WIDE
 
 LARGEST_ERROR = 0.5
 """Share of a factor that a mesh may miss before the factor counts as unknown."""
@@ -66,7 +66,7 @@ def link_buckling(solution: SolidSolution, task: LinkTask, chord: float) -> dict
     They are those under the pressure over 180°, with the first way in which the torque enters: the resultants decide,
     and not the stress beside the pins. The factor exceeds the true one by the square of the mode's error in the energy
     norm (Strang & Fix, An Analysis of the Finite Element Method, 1973, section 6.3), and the stress adds that of its
-    own; the larger of both counts twice, as for displacements (``fea.refine.link_series``).
+    own; the larger of both counts twice, as for displacements (``alula.fea.refine.link_series``).
 
     Parameters
     ----------

@@ -8,13 +8,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.refine.convergence import LEAST_RATIO, GridConvergence, grid_convergence
-from fea.refine.error_estimate import energy_factor, relative_error
-from fea.refine.level import Level
-from fea.refine.singular import ON_EDGE, SharpPeak, edge_distance, loaded_edge, sharp_peak
-from fea.refine.target_sizes import LocalGoal
-from geometry.meshing.mesh import ReentrantEdge
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW
+from alula.fea.refine.convergence import LEAST_RATIO, GridConvergence, grid_convergence
+from alula.fea.refine.error_estimate import energy_factor, relative_error
+from alula.fea.refine.level import Level
+from alula.fea.refine.singular import ON_EDGE, SharpPeak, edge_distance, loaded_edge, sharp_peak
+from alula.fea.refine.target_sizes import LocalGoal
+from alula.geometry.meshing.mesh import ReentrantEdge
+from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 CHORD = 2.0
 """Relative error of a bending stiffness over that of the volume, on a mesh whose straight sides cut corners."""

@@ -4,12 +4,12 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from fea.buckling.solid_holding import SolidHolding
-from fea.common.link_loads import LinkLoads
-from fea.elements.mouth import Mouth
-from fea.refine.link_series import STRESS, Measure
-from fea.solid.layers import Layers
-from geometry.parts.part import Body
+from alula.fea.buckling.solid_holding import SolidHolding
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.elements.mouth import Mouth
+from alula.fea.refine.link_series import STRESS, Measure
+from alula.fea.solid.layers import Layers
+from alula.geometry.parts.part import Body
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 A link whose stress is far from every limit, with its estimated error taken fourfold and a factor of two
 on top, needs one coarse mesh. Any other gets at least three, refined where the peaks are and where the
-estimate asks (``fea.refine.target_sizes``), until every limit lies outside the band or the band is as narrow as
+estimate asks (``alula.fea.refine.target_sizes``), until every limit lies outside the band or the band is as narrow as
 asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
 """
 
@@ -14,11 +14,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fea.common.threads import bounded
-from fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
-from fea.refine.level import Level, level_of
-from fea.refine.link_buckling import SolidBuckling, link_buckling
-from fea.refine.link_series import (
+from alula.fea.common.threads import bounded
+from alula.fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
+from alula.fea.refine.level import Level, level_of
+from alula.fea.refine.link_buckling import SolidBuckling, link_buckling
+from alula.fea.refine.link_series import (
     CasePrecision,
     Eye,
     Measure,
@@ -27,14 +27,14 @@ from fea.refine.link_series import (
     goals,
     precision,
 )
-from fea.refine.link_task import LinkTask
-from fea.refine.singular import NEARLY, element_exponents, loaded_edge
-from fea.refine.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction, series_ratio
-from fea.solid.solution import SolidSolution, solve_solid
-from geometry.base import child
-from geometry.base.errors import AlulaError, CannotRunError, CaseError
-from geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
-from geometry.meshing.tagged_mesh import TaggedMesh
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.singular import NEARLY, element_exponents, loaded_edge
+from alula.fea.refine.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction, series_ratio
+from alula.fea.solid.solution import SolidSolution, solve_solid
+from alula.geometry.base import child
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
 FAR = 2.0
 """Factor that a link with one mesh keeps from every limit, beyond its band."""

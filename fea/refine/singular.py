@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.refine.convergence import williams_exponent
-from geometry.meshing.mesh import ReentrantEdge
+from alula.fea.refine.convergence import williams_exponent
+from alula.geometry.meshing.mesh import ReentrantEdge
 
 ELEMENT_ORDER = 2.0
 AT_EDGE = 1.0

@@ -1,6 +1,6 @@
 """Element sizes of the next mesh from the estimated error of the last one.
 
-Strategy of Zienkiewicz and Zhu 1987 (see ``fea.refine.error_estimate``): every element may hold the same share of
+Strategy of Zienkiewicz and Zhu 1987 (see ``alula.fea.refine.error_estimate``): every element may hold the same share of
 the error allowed, ē = η √((‖u_h‖² + ‖e‖²)/m) over m elements, and the one with ‖e‖ = ξ ē gets the size
 h/ξ^(1/p), p the order of the elements, or h/ξ^(1/λ) at a re-entrant edge of exponent λ.
 
@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.space import EDGES, DisplacementSpace
-from fea.refine.convergence import FORMAL_ORDER, SERIES, GridConvergence
+from alula.fea.elements.space import EDGES, DisplacementSpace
+from alula.fea.refine.convergence import FORMAL_ORDER, SERIES, GridConvergence
 
 SERIES_RATIO = 1.5
 """Least size of the last mesh over that of the next one at a peak; at least 1.3 (Celik et al. 2008)."""

@@ -9,11 +9,11 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from fea.common.verdict import Verdict
-from fea.sizing.search import Search
-from fea.study.margin import margin
-from fea.study.numbers import VariantNumber, VariantResult
-from loads.plans.axis import Axis
+from alula.fea.common.verdict import Verdict
+from alula.fea.sizing.search import Search
+from alula.fea.study.margin import margin
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.loads.plans.axis import Axis
 
 Place = tuple[int, ...]
 """Which value of each entry."""

@@ -16,10 +16,10 @@ modulus that does the same. That is told where it follows:
 * where a band holds what grows faster than the load (``SourceKind.GROWTH``) a load smaller by that factor suffices, and
   a load that may grow may do so by less.
 
-What follows so is tried before it is told (``fea.sizing.tried``), as it is rounded: the check, and all that passes
-under its load case, must pass with it. Where it does not, the margin that is left gives the next value, ``TRIES`` in
-all. No strength is told that no material of the family has, no modulus that none has at all, and no range of a size
-in which none was found that passes (``fea.sizing.size_range``).
+What follows so is tried before it is told (``alula.fea.sizing.tried``), as it is rounded: the check, and all that
+passes under its load case, must pass with it. Where it does not, the margin that is left gives the next value,
+``TRIES`` in all. No strength is told that no material of the family has, no modulus that none has at all, and no range
+of a size in which none was found that passes (``alula.fea.sizing.size_range``).
 """
 
 import math
@@ -27,8 +27,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from fea.common.source import Source, SourceKind, widest
-from fea.common.verdict import (
+from alula.fea.common.source import Source, SourceKind, widest
+from alula.fea.common.verdict import (
     LINKAGE,
     MOTOR_QUANTITIES,
     UNLOADED_QUANTITIES,
@@ -37,15 +37,15 @@ from fea.common.verdict import (
     Verdict,
     deciding,
 )
-from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
-from fea.nonlinear.stability import SNAP
-from fea.outcomes.result import CheckResult, LoadCaseResult
-from fea.sizing.size_range import SizeRange, size_range
-from fea.sizing.tried import Scaled, Trials, goes_with_load
-from geometry.materials.family import most_of_family
-from geometry.materials.material import Material
-from loads.case.case import Case
-from loads.records.check_spec import PinCheck
+from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
+from alula.fea.nonlinear.stability import SNAP
+from alula.fea.outcomes.result import CheckResult, LoadCaseResult
+from alula.fea.sizing.size_range import SizeRange, size_range
+from alula.fea.sizing.tried import Scaled, Trials, goes_with_load
+from alula.geometry.materials.family import most_of_family
+from alula.geometry.materials.material import Material
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import PinCheck
 
 TRIES = 3
 """Of each load, strength or modulus."""

@@ -11,12 +11,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from fea.common.verdict import Verdict
-from fea.sizing.search import Search
-from fea.study.margin import counterpart, margin, nearest
-from fea.study.numbers import VariantNumber, VariantResult
-from geometry.base.errors import CaseError
-from loads.text.caveat import Caveat
+from alula.fea.common.verdict import Verdict
+from alula.fea.sizing.search import Search
+from alula.fea.study.margin import counterpart, margin, nearest
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.geometry.base.errors import CaseError
+from alula.loads.text.caveat import Caveat
 
 SCANNED = 33
 """Steps at most that are calculated by hand before any solid."""

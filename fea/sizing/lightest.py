@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import Verdict
-from fea.sizing.candidates import Candidates, Objective, Place
-from fea.sizing.search import Search
-from fea.study.margin import counterpart, margin, nearest
-from fea.study.numbers import VariantNumber, VariantResult
-from geometry.base.errors import CaseError
-from loads.plans.axis import Axis
-from loads.text.caveat import Caveat
+from alula.fea.common.verdict import Verdict
+from alula.fea.sizing.candidates import Candidates, Objective, Place
+from alula.fea.sizing.search import Search
+from alula.fea.study.margin import counterpart, margin, nearest
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.geometry.base.errors import CaseError
+from alula.loads.plans.axis import Axis
+from alula.loads.text.caveat import Caveat
 
 ENUMERATED = 200
 """Combinations up to which all are calculated by hand."""

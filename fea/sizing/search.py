@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
-from fea.study.engine import IN_FLIGHT, Engine
-from fea.study.numbers import VariantResult, Weighs
-from fea.study.store import Store
-from fea.study.study import Progress, Study
-from loads.plans.plan import StudyPlan
-from loads.plans.variants import Variants
+from alula.fea.study.engine import IN_FLIGHT, Engine
+from alula.fea.study.numbers import VariantResult, Weighs
+from alula.fea.study.store import Store
+from alula.fea.study.study import Progress, Study
+from alula.loads.plans.plan import StudyPlan
+from alula.loads.plans.variants import Variants
 
 Point = Mapping[str, object]
 _Asked = tuple[str, Weighs, tuple[tuple[str, object], ...]]

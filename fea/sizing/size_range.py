@@ -8,12 +8,12 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from fea.common.verdict import MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
-from fea.frame.displacement_band import shares_of_work
-from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.sizing.tried import Resized, Trials
-from geometry.base.errors import CaseError
-from loads.case.case import Case
+from alula.fea.common.verdict import MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
+from alula.fea.frame.displacement_band import shares_of_work
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.sizing.tried import Resized, Trials
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
 
 REACHES = ((2.0, 1.8, 1.6, 1.4, 1.2), (4.0, 3.5, 3.0, 2.5))
 """Ratios of the ends of the range of a size: of each step the widest that the case's own rules take."""

@@ -9,13 +9,21 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from fea.check.run import check_case
-from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject, Verdict
-from fea.outcomes.result import CheckResult, HandResult, LoadCaseResult
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.materials.material import Material
-from loads.case.case import Case
-from loads.records.check_spec import BearingCheck, DisplacementCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import (
+    LINKAGE,
+    MOTOR_QUANTITIES,
+    UNLOADED_QUANTITIES,
+    CheckOutcome,
+    Quantity,
+    Subject,
+    Verdict,
+)
+from alula.fea.outcomes.result import CheckResult, HandResult, LoadCaseResult
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.materials.material import Material
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
 
 MODULI = ("youngs_modulus", "sustained_modulus")
 STRENGTHS = (

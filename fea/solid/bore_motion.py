@@ -1,8 +1,8 @@
 """The motion of a pin as its bore has it, and the flexibility of a link between its pins.
 
 A bore does not stay round, so its motion is the rigid one that is nearest to its displacements, in the mean square over
-its area. The tractions dual to it, a + b × r with unit resultants (``fea.tractions.traction.wrench_density``), do the
-work wrench · motion on any displacement. A flexibility that is made of both is therefore symmetric.
+its area. The tractions dual to it, a + b × r with unit resultants (``alula.fea.tractions.traction.wrench_density``), do
+the work wrench · motion on any displacement. A flexibility that is made of both is therefore symmetric.
 """
 
 from collections.abc import Mapping
@@ -10,11 +10,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
-from fea.elements.space import DisplacementSpace
-from fea.elements.supports import rigid_motions
-from fea.solid.solution import solve_free
-from fea.tractions.traction import wrench_density
+from alula.fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.solid.solution import solve_free
+from alula.fea.tractions.traction import wrench_density
 
 Real = NDArray[np.float64]
 

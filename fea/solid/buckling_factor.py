@@ -6,8 +6,8 @@ With the stress σ that linear theory gives for the load, the body stays as well
     K u + λ G u = 0,   v·G u = ∫ ∇v : (∇u σ) dV
 
 (Zienkiewicz & Taylor, The Finite Element Method, 6th ed., vol. 2, section 7.8). Forces keep their directions. The body
-is held by conditions on the mean motions of bores and patches (``fea.solid.bore_motion``), which take its rigid motions
-and whatever else its joints prevent.
+is held by conditions on the mean motions of bores and patches (``alula.fea.solid.bore_motion``), which take its rigid
+motions and whatever else its joints prevent.
 
 A pin's pressure acts on the wall of its bore. If it stayed on the same points of the wall while the body turned about
 the pin, it would turn the body back: tractions t at arms r from the pin's axis do the work -½ ω·D ω in a small
@@ -15,7 +15,7 @@ rotation ω, with D = tr(V) 1 - (V + Vᵀ)/2 and V = ∫ t rᵀ dA, which is pos
 turns goes through the pin's axis instead. So D is taken off, on the mean rotation of the bore.
 
 Where body and stress are symmetric about z = 0, u is symmetric or antisymmetric, and each kind is sought on half the
-body (``fea.solid.solution``).
+body (``alula.fea.solid.solution``).
 """
 
 import itertools
@@ -27,18 +27,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from fea.elements.elasticity import assemble_stiffness, jacobians, reference_basis
-from fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
-from fea.elements.space import DisplacementSpace, UpperHalf, upper_half
-from fea.elements.supports import IN_PLANE, OUT_OF_PLANE, half_supports, isostatic_supports, rigid_motions
-from fea.solid.stress import PAIRS, element_stress
-from fea.solvers.solve import factorise
-from fea.tractions.slot_traction import slot_traction
-from fea.tractions.traction import pin_traction, wrench_density
-from geometry.base.errors import CannotRunError
-from loads.records.bearing import WIDE
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.elements.elasticity import assemble_stiffness, jacobians, reference_basis
+from alula.fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
+from alula.fea.elements.space import DisplacementSpace, UpperHalf, upper_half
+from alula.fea.elements.supports import IN_PLANE, OUT_OF_PLANE, half_supports, isostatic_supports, rigid_motions
+from alula.fea.solid.stress import PAIRS, element_stress
+from alula.fea.solvers.solve import factorise
+from alula.fea.tractions.slot_traction import slot_traction
+from alula.fea.tractions.traction import pin_traction, wrench_density
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.bearing import WIDE
 
 Real = NDArray[np.float64]
 DEGREE = 5

@@ -2,8 +2,8 @@
 
 Static condensation (Guyan, AIAA Journal 3 (1965) 380): the displacements within the link follow from the forces at its
 places, which are its bores and the patches of its load points. Kept is the flexibility between them
-(``fea.solid.bore_motion``), which a frame of natural forces takes as it is; a stiffness would be its pseudo-inverse.
-Weight and other spread loads move the places too, by their work on the unit displacements.
+(``alula.fea.solid.bore_motion``), which a frame of natural forces takes as it is; a stiffness would be its
+pseudo-inverse. Weight and other spread loads move the places too, by their work on the unit displacements.
 
 A pin presses on one side of its bore, while the wrenches of the flexibility act all round. What this adds to the motion
 of a pin along its force, and how far the pin sinks beyond the bore's mean motion, goes with the size of the force and
@@ -17,15 +17,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import DisplacementSpace
-from fea.solid.bore_motion import condensed
-from fea.tractions.load_vectors import LoadVectors
-from fea.tractions.traction import pin_traction
-from geometry.parts.part import Body
-from loads.records.applied import shifted
-from loads.records.bearing import NARROW, WIDE
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.solid.bore_motion import condensed
+from alula.fea.tractions.load_vectors import LoadVectors
+from alula.fea.tractions.traction import pin_traction
+from alula.geometry.parts.part import Body
+from alula.loads.records.applied import shifted
+from alula.loads.records.bearing import NARROW, WIDE
 
 Real = NDArray[np.float64]
 DIRECTIONS = 12

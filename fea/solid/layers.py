@@ -48,7 +48,7 @@ class Layers:
         Parameters
         ----------
         sigma : ndarray, shape (..., 6)
-            Components in the order of ``fea.solid.stress.COMPONENTS`` [MPa].
+            Components in the order of ``alula.fea.solid.stress.COMPONENTS`` [MPa].
 
         Returns
         -------

@@ -12,19 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.mouth import Mouth
-from fea.elements.space import DisplacementSpace, displacement_space, upper_half
-from fea.elements.supports import LineReference, half_supports, isostatic_supports, rigid_motions
-from fea.solvers.solve import Method, factorise
-from fea.solvers.two_level import linear_level
-from fea.tractions.load_vectors import LoadVectors, Variant
-from fea.tractions.traction import Transfer
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.meshing.tagged_mesh import TaggedMesh
-from loads.records.bearing import NARROW, WIDE, PressureLaw, Span
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.mouth import Mouth
+from alula.fea.elements.space import DisplacementSpace, displacement_space, upper_half
+from alula.fea.elements.supports import LineReference, half_supports, isostatic_supports, rigid_motions
+from alula.fea.solvers.solve import Method, factorise
+from alula.fea.solvers.two_level import linear_level
+from alula.fea.tractions.load_vectors import LoadVectors, Variant
+from alula.fea.tractions.traction import Transfer
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw, Span
 
 Real = NDArray[np.float64]
 
@@ -101,7 +101,7 @@ class SolidSolution:
     solver_reason : str
         Why it was chosen.
     solver_error : float
-        Largest relative error that it left in a case, in the energy norm (``fea.solvers.solved``).
+        Largest relative error that it left in a case, in the energy norm (``alula.fea.solvers.solved``).
     notes : tuple of str
         What the report has to say about this solution.
     """

@@ -22,10 +22,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.elasticity import jacobians, lame_constants, reference_basis
-from fea.elements.quadrature import SurfaceQuadrature, face_quadrature
-from fea.elements.space import DisplacementSpace
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.elasticity import jacobians, lame_constants, reference_basis
+from alula.fea.elements.quadrature import SurfaceQuadrature, face_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.geometry.base.errors import CannotRunError
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))

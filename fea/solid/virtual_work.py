@@ -3,8 +3,8 @@
 Where equilibrium gives the joint forces, a point of a linkage moves along a unit load there by the sum, over all links,
 of the work that the unit load's forces do on the links' own deformation (the unit-load method; Budynas & Nisbett,
 Shigley's Mechanical Engineering Design, 10th ed., section 4-8). They enter a link at its pins, whose motions are those
-of their bores (``fea.solid.bore_motion``) in the solution under the real loads, whatever these are. They balance on
-each link, so that rigid motions of the solution do no work.
+of their bores (``alula.fea.solid.bore_motion``) in the solution under the real loads, whatever these are. They balance
+on each link, so that rigid motions of the solution do no work.
 
 The motion of a pin is the mean motion of its bore. A stiff pin follows the side on which it presses, and so sinks into
 the bore beyond that: along its force F by s, with F s + F · (mean motion) the work of its own pressure. What this could
@@ -19,16 +19,16 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.link_loads import EndLoad, LinkLoads
-from fea.elements.mouth import mouth_motion
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import DisplacementSpace
-from fea.solid.bore_motion import mean_motion, work
-from fea.solid.solution import SolidSolution
-from fea.tractions.slot_traction import DEGREE, slot_traction
-from fea.tractions.traction import Transfer, couple_traction, pin_traction
-from loads.records.bearing import NARROW, WIDE, PressureLaw, Span
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import EndLoad, LinkLoads
+from alula.fea.elements.mouth import mouth_motion
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.solid.bore_motion import mean_motion, work
+from alula.fea.solid.solution import SolidSolution
+from alula.fea.tractions.slot_traction import DEGREE, slot_traction
+from alula.fea.tractions.traction import Transfer, couple_traction, pin_traction
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw, Span
 
 Real = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.block_matrix import Product, SymmetricBlockMatrix, Vectors, block_diagonal
-from fea.solvers.direct import DirectFactor
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.block_matrix import Product, SymmetricBlockMatrix, Vectors, block_diagonal
+from alula.fea.solvers.direct import DirectFactor
+from alula.geometry.base.errors import CannotRunError
 
 _LANCZOS_STEPS = 10
 _MARGIN = 1.1  # Lanczos finds the largest eigenvalue from below

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory, mkl
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from fea.solvers.solved import Solved, accept, refined
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory, mkl
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.solvers.solved import Solved, accept, refined
+from alula.geometry.base.errors import CannotRunError
 
 
 class DirectFactor(ABC):

@@ -1,9 +1,9 @@
 """The choice among solvers of symmetric positive definite systems, by unknowns, right-hand sides and memory.
 
-Conjugate gradients over linear elements (``fea.solvers.two_level``) take little to set up and much for each right-hand
-side; a factorisation the reverse, and its work grows faster than the unknowns. So a factorisation takes less work up
-to a number of unknowns that rises with the right-hand sides (``WORTH_FACTORISING``). Measured on quadratic tetrahedra,
-on one core of an AMD EPYC server (cubes have the fullest factors: memory is estimated by them):
+Conjugate gradients over linear elements (``alula.fea.solvers.two_level``) take little to set up and much for each
+right-hand side; a factorisation the reverse, and its work grows faster than the unknowns. So a factorisation takes less
+work up to a number of unknowns that rises with the right-hand sides (``WORTH_FACTORISING``). Measured on quadratic
+tetrahedra, on one core of an AMD EPYC server (cubes have the fullest factors: memory is estimated by them):
 
     MKL PARDISO    cubes of 47,000 unknowns: 2.3 s and 0.26 GB; 152,000: 1.35 GB; 499,000: 7.2 GB
                    bar of 160,000: 9.8 s and 1.07 GB, 0.1 s for each right-hand side
@@ -22,13 +22,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory, mkl
-from fea.common.threads import bounded
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from fea.solvers.direct import DirectFactor, PardisoFactor, SuperLUFactor
-from fea.solvers.solved import Solved
-from fea.solvers.two_level import TOLERANCE, LinearLevel, TwoLevelFactor
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory, mkl
+from alula.fea.common.threads import bounded
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.solvers.direct import DirectFactor, PardisoFactor, SuperLUFactor
+from alula.fea.solvers.solved import Solved
+from alula.fea.solvers.two_level import TOLERANCE, LinearLevel, TwoLevelFactor
+from alula.geometry.base.errors import CannotRunError
 
 Method = Literal["pardiso", "superlu", "two-level"]
 DirectMethod = Literal["pardiso", "superlu"]

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.geometry.base.errors import CannotRunError
 
 ENERGY_TARGET = 1e-8
 """Relative error in the energy norm above which a solution is refined."""

@@ -5,10 +5,10 @@ of the unknowns and is factorised; what they cannot hold is short-waved and left
 with the 3×3 diagonal blocks, or those of whole flat elements (Adams, Brezina, Hu and Tuminaro, J. Comput. Phys. 188
 (2003) 593-610). How well the two divide the work depends on the shape of the elements and on Poisson's ratio, not on
 their number nor on the body's slenderness. Where the linear level is large, smoothed aggregation
-(``fea.solvers.cycle``) takes the place of its factor. On curved elements the linear level is that of straight ones on
-the same corners, and a mid-node takes what their linear displacement is where it stands: functions that are linear in
-the reference element alone would lack rigid rotations, and a tube took 40 iterations in place of 21. The cycle
-remains positive definite, since the linear level enters between two equal smoothing steps.
+(``alula.fea.solvers.cycle``) takes the place of its factor. On curved elements the linear level is that of straight
+ones on the same corners, and a mid-node takes what their linear displacement is where it stands: functions that are
+linear in the reference element alone would lack rigid rotations, and a tube took 40 iterations in place of 21. The
+cycle remains positive definite, since the linear level enters between two equal smoothing steps.
 
 Measured iterations to an energy error of 1e-9, bars cut into cubes of six: 20 at 33,000 and 19 at 160,000 unknowns
 (ν = 0.38). Links from the mesher, ν = 0.36 to 0.38, at 30,000 to 107,000 unknowns: 17 to 22. Linear elements lock as ν
@@ -25,14 +25,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.elements.block_matrix import SymmetricBlockMatrix, Vectors
-from fea.elements.elasticity import assemble_stiffness, linear_gradients
-from fea.elements.space import EDGES, DisplacementSpace
-from fea.elements.supports import rigid_motions
-from fea.solvers.cycle import ChebyshevSmoother, SmoothedAggregation, rows
-from fea.solvers.direct import DirectFactor
-from fea.solvers.solved import ENERGY_LIMIT, REFINEMENTS, Solved, accept, energy_error
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix, Vectors
+from alula.fea.elements.elasticity import assemble_stiffness, linear_gradients
+from alula.fea.elements.space import EDGES, DisplacementSpace
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.solvers.cycle import ChebyshevSmoother, SmoothedAggregation, rows
+from alula.fea.solvers.direct import DirectFactor
+from alula.fea.solvers.solved import ENERGY_LIMIT, REFINEMENTS, Solved, accept, energy_error
+from alula.geometry.base.errors import CannotRunError
 
 TOLERANCE = 1e-9
 """Energy norm of the error, by the preconditioner, relative to that of the solution, at which iterations end."""

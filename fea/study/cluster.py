@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import Any
 from urllib.parse import urlsplit
 
-from fea.study.engine import IN_FLIGHT, Engine
-from fea.study.evaluate import evaluate, versions
-from geometry.base.errors import CannotRunError, CaseError
+from alula.fea.study.engine import IN_FLIGHT, Engine
+from alula.fea.study.evaluate import evaluate, versions
+from alula.geometry.base.errors import CannotRunError, CaseError
 
 CONNECTING = 5.0
 """Seconds within which the scheduler must answer."""

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from fea.study.engine import Engine, local_engine, usable_cores
-from fea.study.store import Store
-from fea.study.study import Progress, Study
-from loads.plans.variants import Variants
+from alula.fea.study.engine import Engine, local_engine, usable_cores
+from alula.fea.study.store import Store
+from alula.fea.study.study import Progress, Study
+from alula.loads.plans.variants import Variants
 
 
 def compute_study(
@@ -49,7 +49,7 @@ def compute_study(
         Where the disk refuses or the workers are gone; what was finished stands.
     """
     if scheduler:
-        from fea.study.cluster import require_address
+        from alula.fea.study.cluster import require_address
 
         require_address(scheduler)
     with Store.writing(output) as store:
@@ -78,7 +78,7 @@ def engine_for(
     """
     contents = {name: path.read_bytes() for name, path in variants.files.items()}
     if scheduler:
-        from fea.study.cluster import cluster_engine
+        from alula.fea.study.cluster import cluster_engine
 
         return cluster_engine(scheduler, contents)
     return local_engine(workers or usable_cores(), contents, folder=output)

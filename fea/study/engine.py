@@ -11,12 +11,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from fea.study.evaluate import Task
-from fea.study.numbers import VariantResult
-from geometry.base import child
-from geometry.base.child_server import ChildEndedError, ChildServer
-from geometry.base.errors import CannotRunError
-from geometry.base.tidying import scratch_folder
+from alula.fea.study.evaluate import Task
+from alula.fea.study.numbers import VariantResult
+from alula.geometry.base import child
+from alula.geometry.base.child_server import ChildEndedError, ChildServer
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.tidying import scratch_folder
 
 IN_FLIGHT = 3
 """Tasks a worker that are handed out at once: one computed, two waiting."""
@@ -68,7 +68,7 @@ def local_engine(
     """
     for left in folder.glob(f"{_WORK}*"):  # of a study that was killed
         shutil.rmtree(left, ignore_errors=True)
-    command = child.module_command("fea.study.worker")
+    command = child.module_command("alula.fea.study.worker")
     environment = child.environment(OMP_NUM_THREADS="1", MKL_NUM_THREADS="1")
     idle: queue.SimpleQueue[ChildServer] = queue.SimpleQueue()
 

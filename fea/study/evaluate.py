@@ -12,10 +12,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
-from fea.study.numbers import VariantResult, Weighs
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.tidying import owed
-from geometry.base.version import alula_version
+from alula.fea.study.numbers import VariantResult, Weighs
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.tidying import owed
+from alula.geometry.base.version import alula_version
 
 Analysis = Literal["check", "motion", "envelope"]
 
@@ -96,21 +96,21 @@ def evaluate(task: Task, contents: Mapping[str, bytes]) -> VariantResult:
 
 
 def _numbers(task: Task, contents: Mapping[str, bytes]) -> Any:
-    from fea.common.threads import bounded
-    from fea.study import numbers
-    from loads.case.case_file import validate
+    from alula.fea.common.threads import bounded
+    from alula.fea.study import numbers
+    from alula.loads.case.case_file import validate
 
     case = validate(dict(task.tables), _folder(tuple(contents.items())))
     if task.analysis == "motion":
-        from fea.whole.rubbed_motion import rubbed_motion
+        from alula.fea.whole.rubbed_motion import rubbed_motion
 
         with bounded(1):
             return numbers.of_motion(rubbed_motion(case), weighs=task.weighs)
-    from fea.check.run import check_case, effort_of
+    from alula.fea.check.run import check_case, effort_of
 
     effort = effort_of(case, task.accuracy)
     if task.analysis == "envelope":
-        from fea.motion.envelope import envelope_case
+        from alula.fea.motion.envelope import envelope_case
 
         return numbers.of_envelope(envelope_case(case, threads=1, effort=effort), weighs=task.weighs)
     result = check_case(case, fidelity=task.fidelity, threads=1, effort=effort)

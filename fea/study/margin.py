@@ -2,8 +2,8 @@
 
 import math
 
-from fea.common.verdict import Quantity, Sense
-from fea.study.numbers import VariantNumber, VariantResult
+from alula.fea.common.verdict import Quantity, Sense
+from alula.fea.study.numbers import VariantNumber, VariantResult
 
 
 def sense_of(number: VariantNumber) -> Sense:

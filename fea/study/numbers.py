@@ -7,18 +7,18 @@ from typing import Literal
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, overall
-from fea.motion.envelope_result import EnvelopeResult
-from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
-from fea.outcomes.result import CheckResult, LinkageNumbers
-from fea.whole.outcomes import whole_numbers, whole_outcomes
-from loads.case.case import Case
-from loads.case.layers import pin_masses
-from loads.states.case_motion import CaseMotion
-from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
-from loads.states.masses import part_masses, rough_masses
-from loads.statics.rounding import without_rounding
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, overall
+from alula.fea.motion.envelope_result import EnvelopeResult
+from alula.fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
+from alula.fea.outcomes.result import CheckResult, LinkageNumbers
+from alula.fea.whole.outcomes import whole_numbers, whole_outcomes
+from alula.loads.case.case import Case
+from alula.loads.case.layers import pin_masses
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
+from alula.loads.states.masses import part_masses, rough_masses
+from alula.loads.statics.rounding import without_rounding
 
 State = Literal["done", "refused", "crashed"]
 Weighs = bool | Literal["rough"]

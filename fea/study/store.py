@@ -22,10 +22,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fea.common.verdict import Verdict
-from fea.study.numbers import State, VariantNumber, VariantResult
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.locks import locked
+from alula.fea.common.verdict import Verdict
+from alula.fea.study.numbers import State, VariantNumber, VariantResult
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.locks import locked
 
 NAME = "study.sqlite"
 VERSION = 1

@@ -5,14 +5,14 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 
-from fea.study.engine import CrashError, Engine
-from fea.study.evaluate import Task, versions
-from fea.study.numbers import VariantResult
-from fea.study.store import ATTEMPTS, Store
-from geometry.base.errors import CannotRunError, CaseError
-from loads.plans.plan import StudyPlan
-from loads.plans.points import Point
-from loads.plans.variants import Variants
+from alula.fea.study.engine import CrashError, Engine
+from alula.fea.study.evaluate import Task, versions
+from alula.fea.study.numbers import VariantResult
+from alula.fea.study.store import ATTEMPTS, Store
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.plans.plan import StudyPlan
+from alula.loads.plans.points import Point
+from alula.loads.plans.variants import Variants
 
 AT_ONCE = 500
 """Points that are assigned in one transaction where their results stand."""
@@ -140,7 +140,7 @@ class Study:
         self.store.place(standing)
 
     def _parameters(self, point: Point, tables: Mapping[str, object]) -> Point:
-        from loads.plans.derived import entry
+        from alula.loads.plans.derived import entry
 
         return point | {path: entry(tables, tuple(path.split("."))) for path in self.variants.plan.link}
 

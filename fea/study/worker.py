@@ -1,4 +1,4 @@
-"""The process that computes variants one after another: ``python -m fea.study.worker``.
+"""The process that computes variants one after another: ``python -m alula.fea.study.worker``.
 
 The first request is pickled: the files of the case's parts. Each later one is a pickled ``Task``; its answer is the
 pickled ``VariantResult``.
@@ -7,8 +7,8 @@ pickled ``VariantResult``.
 import pickle
 from collections.abc import Mapping
 
-from fea.study.evaluate import Task, evaluate
-from geometry.base.child_server import ChildService
+from alula.fea.study.evaluate import Task, evaluate
+from alula.geometry.base.child_server import ChildService
 
 
 def main() -> None:

@@ -1,9 +1,9 @@
 """Unit loads of a pin that bears a couple beside its force, as between layers: pressure fields at several heights.
 
-Force and couple are one pressure (``fea.tractions.traction.pin_traction``), p0(z) law(θ − α(z)), whose resultant per
-length q(z) varies linearly along the pin, so that its direction may turn over. At a height it is a Fourier series as in
-``pin_units``; between heights it is interpolated linearly. The fields are cos nθ and sin nθ times a hat about each
-height, without their resultants; six tractions of the rigid-body fields deliver the wrench, exactly.
+Force and couple are one pressure (``alula.fea.tractions.traction.pin_traction``), p0(z) law(θ − α(z)), whose resultant
+per length q(z) varies linearly along the pin, so that its direction may turn over. At a height it is a Fourier series
+as in ``pin_units``; between heights it is interpolated linearly. The fields are cos nθ and sin nθ times a hat about
+each height, without their resultants; six tractions of the rigid-body fields deliver the wrench, exactly.
 """
 
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.superposition.pin_units import HIGHEST_ORDER, fourier_coefficients
-from fea.tractions.traction import first_opening, into_opening
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Pin
-from loads.records.bearing import PressureLaw
+from alula.fea.superposition.pin_units import HIGHEST_ORDER, fourier_coefficients
+from alula.fea.tractions.traction import first_opening, into_opening
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Pin
+from alula.loads.records.bearing import PressureLaw
 
 Real = NDArray[np.float64]
 

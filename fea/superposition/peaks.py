@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.layers import Layers
-from fea.solid.stress import principal, von_mises
+from alula.fea.solid.layers import Layers
+from alula.fea.solid.stress import principal, von_mises
 
 Real = NDArray[np.float64]
 
@@ -247,7 +247,7 @@ def signed_bounds(modes: ModeMeasures, combination: Real, *, brittle: bool) -> t
     combination : ndarray, shape (m, N)
         Of the modes under N loads.
     brittle : bool
-        As for ``fea.motion.fatigue.signed_stress``.
+        As for ``alula.fea.motion.fatigue.signed_stress``.
 
     Returns
     -------

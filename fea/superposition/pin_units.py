@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.tractions.traction import LARGEST_CORRECTION, first_opening, into_opening
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Pin
-from loads.records.bearing import PressureLaw
+from alula.fea.tractions.traction import LARGEST_CORRECTION, first_opening, into_opening
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Pin
+from alula.loads.records.bearing import PressureLaw
 
 Real = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ class PinUnits:
         """Return the coefficients of the pressure fields and of the tractions.
 
         The pressure is turned and scaled until it delivers the force on the meshed hole, as
-        ``fea.tractions.traction.pin_traction`` does.
+        ``alula.fea.tractions.traction.pin_traction`` does.
 
         Parameters
         ----------

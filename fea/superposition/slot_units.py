@@ -14,12 +14,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import PinLoad
-from fea.elements.quadrature import SurfaceQuadrature
-from fea.tractions.slot_traction import slot_traction
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Pin
-from loads.records.bearing import PressureLaw, Span
+from alula.fea.common.link_loads import PinLoad
+from alula.fea.elements.quadrature import SurfaceQuadrature
+from alula.fea.tractions.slot_traction import slot_traction
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Pin
+from alula.loads.records.bearing import PressureLaw, Span
 
 Real = NDArray[np.float64]
 

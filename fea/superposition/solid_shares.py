@@ -14,23 +14,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory
-from fea.common.link_loads import LinkLoads
-from fea.common.scatter import Scatter
-from fea.common.source import COUPLES
-from fea.elements.supports import LineReference
-from fea.refine.convergence import ALONE
-from fea.refine.error_estimate import estimate_error
-from fea.refine.link_series import STRESS, PeakQuantity
-from fea.refine.link_task import LinkTask
-from fea.refine.refinement import RefinedSolid
-from fea.solid.solution import solve_free
-from fea.solid.stress import stress_field
-from fea.superposition.peaks import ModeMeasures, largest_stress
-from fea.superposition.unit_solutions import nodal_stress
-from fea.tractions.load_vectors import LoadVectors
-from geometry.base.errors import CannotRunError
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, Span
+from alula.fea.common import memory
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import COUPLES
+from alula.fea.elements.supports import LineReference
+from alula.fea.refine.convergence import ALONE
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.refine.link_series import STRESS, PeakQuantity
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.refinement import RefinedSolid
+from alula.fea.solid.solution import solve_free
+from alula.fea.solid.stress import stress_field
+from alula.fea.superposition.peaks import ModeMeasures, largest_stress
+from alula.fea.superposition.unit_solutions import nodal_stress
+from alula.fea.tractions.load_vectors import LoadVectors
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, Span
 
 Real = NDArray[np.float64]
 Shares = Mapping[PeakQuantity, Scatter]

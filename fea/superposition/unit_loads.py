@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
-from fea.elements.space import DisplacementSpace
-from fea.elements.supports import rigid_motions
-from fea.superposition.couple_units import HEIGHTS, CoupleUnits, hats
-from fea.superposition.pin_units import HIGHEST_ORDER, PinUnits
-from fea.superposition.slot_units import SlotUnits, places_for, unit_pushes
-from fea.tractions.slot_traction import DEGREE
-from fea.tractions.traction import (
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.superposition.couple_units import HEIGHTS, CoupleUnits, hats
+from alula.fea.superposition.pin_units import HIGHEST_ORDER, PinUnits
+from alula.fea.superposition.slot_units import SlotUnits, places_for, unit_pushes
+from alula.fea.tractions.slot_traction import DEGREE
+from alula.fea.tractions.traction import (
     Transfer,
     body_density,
     bore_middle,
@@ -30,10 +30,10 @@ from fea.tractions.traction import (
     line_density_between,
     wrench_density,
 )
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import Body, Pin
-from loads.records.applied import BodyForce, LineLoad, PartMass, shifted
-from loads.records.bearing import NARROW, WIDE, PressureLaw
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import Body, Pin
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass, shifted
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 

@@ -12,14 +12,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory
-from fea.elements.elasticity import jacobians, lame_constants, reference_basis
-from fea.elements.space import DisplacementSpace, upper_half
-from fea.solid.solution import FreeSolution, solve_free
-from fea.solid.stress import PAIRS, carry_to_nodes
-from fea.solvers.solve import Method
-from fea.superposition.peaks import ModeMeasures
-from fea.superposition.unit_loads import UnitLoads
+from alula.fea.common import memory
+from alula.fea.elements.elasticity import jacobians, lame_constants, reference_basis
+from alula.fea.elements.space import DisplacementSpace, upper_half
+from alula.fea.solid.solution import FreeSolution, solve_free
+from alula.fea.solid.stress import PAIRS, carry_to_nodes
+from alula.fea.solvers.solve import Method
+from alula.fea.superposition.peaks import ModeMeasures
+from alula.fea.superposition.unit_loads import UnitLoads
 
 Real = NDArray[np.float64]
 

@@ -6,24 +6,24 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.run import check_case
-from fea.common.clock import Clock
-from fea.common.threads import bounded_run
-from fea.common.verdict import CheckOutcome
-from fea.frame.case_statics import CaseStatics, solve_case_statics
-from fea.frame.rubbing import presses_of
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
-from fea.outcomes.result import CheckResult
-from fea.refine.refinement import Effort
-from fea.tolerance.numbers import Numbers, SampledCheck, covered
-from fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult, WorstCorner
-from fea.tolerance.sizes import size_ends
-from fea.tolerance.states import Sampler
-from geometry.base.errors import CannotRunError, CaseError
-from loads.case.case import Case
-from loads.case.toleranced import Variable, toleranced
-from loads.states.actions import needs_masses
-from loads.states.masses import part_masses
+from alula.fea.check.run import check_case
+from alula.fea.common.clock import Clock
+from alula.fea.common.threads import bounded_run
+from alula.fea.common.verdict import CheckOutcome
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.frame.rubbing import presses_of
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.refine.refinement import Effort
+from alula.fea.tolerance.numbers import Numbers, SampledCheck, covered
+from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult, WorstCorner
+from alula.fea.tolerance.sizes import size_ends
+from alula.fea.tolerance.states import Sampler
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.toleranced import Variable, toleranced
+from alula.loads.states.actions import needs_masses
+from alula.loads.states.masses import part_masses
 
 Real = NDArray[np.float64]
 

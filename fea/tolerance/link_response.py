@@ -1,9 +1,9 @@
 """What samples of loads do to one link on its nominal solid: peaks by unit solutions, as shares of the nominal ones.
 
-Loads are sums of unit loads (``fea.superposition.unit_loads``), so stress and displacement of every sample are sums of
-a few modes. A pin's pressure follows from its direction by a spline through the modes' combinations at some directions.
-The peak is sought among nodes that come near to it in one of the pilots: some samples, among them corners, that are
-evaluated at all nodes.
+Loads are sums of unit loads (``alula.fea.superposition.unit_loads``), so stress and displacement of every sample are
+sums of a few modes. A pin's pressure follows from its direction by a spline through the modes' combinations at some
+directions. The peak is sought among nodes that come near to it in one of the pilots: some samples, among them corners,
+that are evaluated at all nodes.
 """
 
 import math
@@ -15,20 +15,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads
-from fea.elements.mouth import reference_surfaces
-from fea.elements.supports import LineReference
-from fea.solid.layers import Layers
-from fea.solid.solution import SolidSolution
-from fea.solid.stress import extreme_principal
-from fea.superposition.peaks import deviator
-from fea.superposition.pin_units import PinUnits
-from fea.superposition.unit_loads import UnitLoads, unit_loads
-from fea.superposition.unit_solutions import UnitSolutions, solve_units
-from fea.tractions.traction import Transfer
-from geometry.bodies.body import Body
-from geometry.materials.material import Material
-from loads.records.bearing import NARROW, WIDE, PressureLaw
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.elements.mouth import reference_surfaces
+from alula.fea.elements.supports import LineReference
+from alula.fea.solid.layers import Layers
+from alula.fea.solid.solution import SolidSolution
+from alula.fea.solid.stress import extreme_principal
+from alula.fea.superposition.peaks import deviator
+from alula.fea.superposition.pin_units import PinUnits
+from alula.fea.superposition.unit_loads import UnitLoads, unit_loads
+from alula.fea.superposition.unit_solutions import UnitSolutions, solve_units
+from alula.fea.tractions.traction import Transfer
+from alula.geometry.bodies.body import Body
+from alula.geometry.materials.material import Material
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 Variant = tuple[PressureLaw, Transfer | None]

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import CheckOutcome, Quantity
-from fea.outcomes.result import CheckResult
-from fea.refine.refinement import Effort
-from fea.tolerance.sizes import SizedCheck, SizeEnds, resized, sized_check
-from fea.tolerance.states import Sampler, States
-from fea.tolerance.told import STRESS, SolvedCheck, Told
-from loads.case.case import Case
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.refine.refinement import Effort
+from alula.fea.tolerance.sizes import SizedCheck, SizeEnds, resized, sized_check
+from alula.fea.tolerance.states import Sampler, States
+from alula.fea.tolerance.told import STRESS, SolvedCheck, Told
+from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
 

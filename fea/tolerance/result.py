@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import CheckResult
-from fea.outcomes.unchecked import caveats
-from loads.text.caveat import Caveat, Topic
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.outcomes.unchecked import caveats
+from alula.loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 

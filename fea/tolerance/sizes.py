@@ -12,18 +12,18 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.run import check_case
-from fea.common.verdict import CheckOutcome, Quantity
-from fea.frame.case_statics import solve_case_statics
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
-from fea.refine.refinement import Effort
-from fea.tolerance.states import Reach, States
-from fea.tolerance.told import SolvedCheck, Told
-from geometry.base.errors import AlulaError, CannotRunError
-from loads.case.case import Case
-from loads.case.toleranced import Variable
-from loads.records.applied import PartMass
-from loads.text.explain import printable
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
+from alula.fea.refine.refinement import Effort
+from alula.fea.tolerance.states import Reach, States
+from alula.fea.tolerance.told import SolvedCheck, Told
+from alula.geometry.base.errors import AlulaError, CannotRunError
+from alula.loads.case.case import Case
+from alula.loads.case.toleranced import Variable
+from alula.loads.records.applied import PartMass
+from alula.loads.text.explain import printable
 
 Real = NDArray[np.float64]
 

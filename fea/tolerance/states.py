@@ -7,24 +7,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_free import link_loads
-from fea.common.link_loads import LinkLoads
-from fea.common.plates import plates
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose import Pose
-from geometry.linkage.sampled import SampledPlacement, assemble_samples
-from loads.case.case import Case
-from loads.case.forks import apart
-from loads.case.joint_rules import rubbing_joints
-from loads.case.toleranced import Variable
-from loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
-from loads.records.load_case import LoadCase
-from loads.states.actions import acting_loads
-from loads.states.rubbing import WAYS, is_of
-from loads.states.springs import spring_loads
-from loads.statics.friction import Presses, solve_friction
-from loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.plates import plates
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose import Pose
+from alula.geometry.linkage.sampled import SampledPlacement, assemble_samples
+from alula.loads.case.case import Case
+from alula.loads.case.forks import apart
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.case.toleranced import Variable
+from alula.loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.rubbing import WAYS, is_of
+from alula.loads.states.springs import spring_loads
+from alula.loads.statics.friction import Presses, solve_friction
+from alula.loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
 
 Real = NDArray[np.float64]
 

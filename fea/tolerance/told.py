@@ -1,8 +1,8 @@
 """What samples say of a check whose solids are solved: its bands, times what each sample changes.
 
-A sample changes the stress of a link by the share that its unit solutions give (``fea.tolerance.link_response``), the
-force on a pin and the compression of a link by statics, strength and modulus by their factors. So the bands keep their
-relative width.
+A sample changes the stress of a link by the share that its unit solutions give (``alula.fea.tolerance.link_response``),
+the force on a pin and the compression of a link by statics, strength and modulus by their factors. So the bands keep
+their relative width.
 """
 
 from collections.abc import Collection, Mapping
@@ -12,19 +12,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.buckling.buckling import link_factors
-from fea.common.link_loads import LinkLoads
-from fea.common.verdict import CheckOutcome, Quantity
-from fea.motion.buckling_history import axial_compression
-from fea.outcomes.limits import layers_of
-from fea.outcomes.result import CheckResult, SolidResult
-from fea.tolerance.link_response import LinkResponse, PeakShares, link_response
-from fea.tolerance.states import SampledForces, Sampler, States
-from geometry.base.errors import CannotRunError
-from geometry.materials.material import Material
-from loads.records.applied import PointLoad, at_poses
-from loads.records.check_spec import BearingCheck, DisplacementCheck
-from loads.statics.statics import assemble, joint_reactions
+from alula.fea.buckling.buckling import link_factors
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.motion.buckling_history import axial_compression
+from alula.fea.outcomes.limits import layers_of
+from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.fea.tolerance.link_response import LinkResponse, PeakShares, link_response
+from alula.fea.tolerance.states import SampledForces, Sampler, States
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.materials.material import Material
+from alula.loads.records.applied import PointLoad, at_poses
+from alula.loads.records.check_spec import BearingCheck, DisplacementCheck
+from alula.loads.statics.statics import assemble, joint_reactions
 
 Real = NDArray[np.float64]
 

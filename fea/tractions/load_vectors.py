@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
-from fea.elements.space import DisplacementSpace
-from fea.tractions.slot_traction import DEGREE, slot_traction
-from fea.tractions.traction import (
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.tractions.slot_traction import DEGREE, slot_traction
+from alula.fea.tractions.traction import (
     Transfer,
     body_density,
     couple_traction,
@@ -20,9 +20,9 @@ from fea.tractions.traction import (
     thrust_traction,
     wrench_density,
 )
-from geometry.base.errors import CannotRunError
-from loads.records.applied import LineLoad
-from loads.records.bearing import PressureLaw, Span
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.applied import LineLoad
+from alula.loads.records.bearing import PressureLaw, Span
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,12 +11,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import PinLoad
-from fea.elements.quadrature import SurfaceQuadrature
-from fea.tractions.traction import LARGEST_CORRECTION, bore_middle, wrench_density
-from geometry.base.errors import CannotRunError
-from loads.records.applied import shifted
-from loads.records.bearing import PressureLaw
+from alula.fea.common.link_loads import PinLoad
+from alula.fea.elements.quadrature import SurfaceQuadrature
+from alula.fea.tractions.traction import LARGEST_CORRECTION, bore_middle, wrench_density
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.applied import shifted
+from alula.loads.records.bearing import PressureLaw
 
 Density = NDArray[np.float64]
 

@@ -9,12 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import ALONG, PinLoad
-from fea.elements.quadrature import Quadrature, SurfaceQuadrature
-from geometry.base.errors import CannotRunError
-from geometry.bodies.features import OFF_PLANE
-from loads.records.applied import BodyForce, LineLoad, shifted
-from loads.records.bearing import PressureLaw
+from alula.fea.common.link_loads import ALONG, PinLoad
+from alula.fea.elements.quadrature import Quadrature, SurfaceQuadrature
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.bodies.features import OFF_PLANE
+from alula.loads.records.applied import BodyForce, LineLoad, shifted
+from alula.loads.records.bearing import PressureLaw
 
 Transfer = Literal["eye-faces", "bore-shear"]
 Density = NDArray[np.float64]

@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import FrameModel
-from geometry.bodies.body import Body
-from geometry.bodies.features import Pin
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import FrameModel
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.features import Pin
 
 Floats = NDArray[np.float64]
 _XI, _WEIGHTS = np.array([0.5 - math.sqrt(1.0 / 12.0), 0.5 + math.sqrt(1.0 / 12.0)]), np.array([0.5, 0.5])

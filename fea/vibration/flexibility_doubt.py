@@ -2,9 +2,9 @@
 
 Material and shape leave the flexibility F of every beam between two ends: the modulus by the range that its material
 states, and what the frame of plain beams does not know of eyes, bores and holes by the bounds of
-``fea.frame.displacement_band``. With all of them at one end together no frequency is beyond that of this end (Rayleigh:
-Courant & Hilbert, Methods of Mathematical Physics, vol. 1, 1953, section VI.2: a system that gives more has no
-frequency higher).
+``alula.fea.frame.displacement_band``. With all of them at one end together no frequency is beyond that of this end
+(Rayleigh: Courant & Hilbert, Methods of Mathematical Physics, vol. 1, 1953, section VI.2: a system that gives more has
+no frequency higher).
 
 The compliance of the linkage in its own modes is 1/λ; a further flexibility dF adds qᵢ dF qⱼ/(λᵢ λⱼ) with the forces q
 of the modes (virtual work). The eigenvalues of that small matrix are the new 1/λ: exactly where equilibrium alone gives
@@ -20,17 +20,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import flexibility
-from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter
-from fea.common.source import Source, SourceKind, distinct
-from fea.frame.displacement_band import STIFFEST, Zone, give_of_links
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import FrameModel
-from fea.frame.system import natural_deformations, natural_flexibility, to_ends
-from fea.nonlinear.large_displacement import blind_link
-from fea.vibration.modes import NaturalModes, frequency
-from loads.case.case import Case
+from alula.fea.beam.deflection import flexibility
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, compliance_scatter
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.frame.displacement_band import STIFFEST, Zone, give_of_links
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import FrameModel
+from alula.fea.frame.system import natural_deformations, natural_flexibility, to_ends
+from alula.fea.nonlinear.large_displacement import blind_link
+from alula.fea.vibration.modes import NaturalModes, frequency
+from alula.loads.case.case import Case
 
 Floats = NDArray[np.float64]
 _PLAIN = np.ones(6)

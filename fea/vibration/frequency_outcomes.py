@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
-from fea.vibration.harmonics import HIGHEST, Meeting, banded, hertz, in_words, meetings, ordinal, stated
-from fea.vibration.link_modes import LinkModes, link_modes
-from fea.vibration.linkage_modes import LinkageModes
-from fea.vibration.modes import Mode
-from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies, lowest_pose
-from fea.vibration.running_holes import running_holes
-from geometry.base.ties import first_least
-from loads.case.case import Case
-from loads.records.check_spec import FrequencyCheck
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.vibration.harmonics import HIGHEST, Meeting, banded, hertz, in_words, meetings, ordinal, stated
+from alula.fea.vibration.link_modes import LinkModes, link_modes
+from alula.fea.vibration.linkage_modes import LinkageModes
+from alula.fea.vibration.modes import Mode
+from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies, lowest_pose
+from alula.fea.vibration.running_holes import running_holes
+from alula.geometry.base.ties import first_least
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import FrequencyCheck
 
 POSES = 13
 """Over the motion, of which the least frequency is sought in between: every 30 degrees of a turn."""

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.vibration.over_motion import FrequencyHistory, pose_frequencies
-from geometry.base.errors import CannotRunError, CaseError
-from loads.case.case import Case
-from loads.records.check_spec import FrequencyCheck
+from alula.fea.common.band import Band
+from alula.fea.vibration.over_motion import FrequencyHistory, pose_frequencies
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import FrequencyCheck
 
 Real = NDArray[np.float64]
 HIGHEST = 10

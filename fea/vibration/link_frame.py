@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.build import build_frame
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import Dof, FrameModel, Guide, Support
-from fea.vibration.link_holding import HeldPlace, LinkHolding
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import Dof, FrameModel, Guide, Support
+from alula.fea.vibration.link_holding import HeldPlace, LinkHolding
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
 ACROSS: frozenset[Dof] = frozenset({"rx", "ry"})

@@ -1,7 +1,8 @@
 """How joints hold a link for its own vibration: as if its neighbours, and all pins, did not yield.
 
 A link rings by itself at the frequencies that it has between neighbours that stand still. So what each joint keeps from
-moving in the frame of the linkage (``fea.frame.build``) is held here, at the place where its pin stands in the pose:
+moving in the frame of the linkage (``alula.fea.frame.build``) is held here, at the place where its pin stands in the
+pose:
 
 pin            the pin's place does not move, and the bore keeps the direction of the pin; it is free to turn about it
 drive          at its joint the link does not turn about the pin either, nor slide along the guide
@@ -22,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
 _SAME = 1e-6

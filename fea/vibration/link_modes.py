@@ -13,26 +13,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter
-from fea.common.source import Source, SourceKind, distinct
-from fea.common.threads import bounded_run
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import stiffness_parts
-from fea.vibration.flexibility_doubt import FlexibilityDoubt, stiffest
-from fea.vibration.link_frame import link_frame
-from fea.vibration.link_holding import LinkHolding, link_holding
-from fea.vibration.link_solid import LinkSolid, first_mesh, refined_modes
-from fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motions
-from fea.vibration.mass_matrix import mass_matrix
-from fea.vibration.modes import Mode, frequency
-from fea.vibration.running_holes import running_holes, with_low_ends
-from geometry.base.errors import CaseError
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.states.actions import needs_masses
-from loads.states.masses import all_carried, part_mass, part_masses
-from loads.states.standing import stand
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, compliance_scatter
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.common.threads import bounded_run
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import stiffness_parts
+from alula.fea.vibration.flexibility_doubt import FlexibilityDoubt, stiffest
+from alula.fea.vibration.link_frame import link_frame
+from alula.fea.vibration.link_holding import LinkHolding, link_holding
+from alula.fea.vibration.link_solid import LinkSolid, first_mesh, refined_modes
+from alula.fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motions
+from alula.fea.vibration.mass_matrix import mass_matrix
+from alula.fea.vibration.modes import Mode, frequency
+from alula.fea.vibration.running_holes import running_holes, with_low_ends
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.states.actions import needs_masses
+from alula.loads.states.masses import all_carried, part_mass, part_masses
+from alula.loads.states.standing import stand
 
 Real = NDArray[np.float64]
 NO_BEAM = "the frame takes the ground for rigid, so that beams do not tell its frequencies; its solid does"

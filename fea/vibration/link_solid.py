@@ -4,8 +4,9 @@ The wall of a bore moves as a rigid cylinder, which the pin holds: pins are stif
 that vibrates under a load keeps in touch with its wall. A body that a link carries moves with the bore through which
 its weight enters, or with the mean motion of a patch or face; this is dual to how loads enter there, and stiffens
 nothing. A pin in a slot bears on one flank, that at y > 0, as in the frame of the linkage. It holds it on average,
-weighted as its pressure is (``fea.tractions.slot_traction``): the mean displacement across the slot is zero, and so is
-the mean tilt. What is spread along the link is mass without stiffness in its volume. Of a pair each plate bears half.
+weighted as its pressure is (``alula.fea.tractions.slot_traction``): the mean displacement across the slot is zero, and
+so is the mean tilt. What is spread along the link is mass without stiffness in its volume. Of a pair each plate bears
+half.
 
 The stress of loads, which stiffens what it pulls, is left out.
 """
@@ -16,31 +17,31 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind
-from fea.elements.mass import consistent_mass
-from fea.elements.quadrature import Quadrature, surface_quadrature, volume_quadrature
-from fea.elements.space import DisplacementSpace, displacement_space
-from fea.refine.convergence import ALONE, SAFETY
-from fea.refine.error_estimate import estimate_error
-from fea.refine.link_series import CHORD
-from fea.refine.refinement import START
-from fea.solid.solution import require_compressible
-from fea.solid.stress import stress_field
-from fea.tractions.slot_traction import DEGREE, flank_pressure
-from fea.tractions.traction import line_density, wrench_density
-from fea.vibration.link_holding import LinkHolding
-from fea.vibration.mass_matrix import body_mass
-from fea.vibration.rigid_regions import RigidRegion
-from fea.vibration.solid_modes import CarriedOn, SolidModes, solid_modes
-from geometry.base.errors import CannotRunError
-from geometry.materials.material import Material
-from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
-from geometry.parts.part import Body
-from loads.case.case import Case
-from loads.records.applied import LineLoad
-from loads.records.bearing import WIDE
-from loads.records.carried import Carried, CarriedSpread, mass_of
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.elements.mass import consistent_mass
+from alula.fea.elements.quadrature import Quadrature, surface_quadrature, volume_quadrature
+from alula.fea.elements.space import DisplacementSpace, displacement_space
+from alula.fea.refine.convergence import ALONE, SAFETY
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.refine.link_series import CHORD
+from alula.fea.refine.refinement import START
+from alula.fea.solid.solution import require_compressible
+from alula.fea.solid.stress import stress_field
+from alula.fea.tractions.slot_traction import DEGREE, flank_pressure
+from alula.fea.tractions.traction import line_density, wrench_density
+from alula.fea.vibration.link_holding import LinkHolding
+from alula.fea.vibration.mass_matrix import body_mass
+from alula.fea.vibration.rigid_regions import RigidRegion
+from alula.fea.vibration.solid_modes import CarriedOn, SolidModes, solid_modes
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.materials.material import Material
+from alula.geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
+from alula.geometry.parts.part import Body
+from alula.loads.case.case import Case
+from alula.loads.records.applied import LineLoad
+from alula.loads.records.bearing import WIDE
+from alula.loads.records.carried import Carried, CarriedSpread, mass_of
 
 Real = NDArray[np.float64]
 FINER = 1.6
@@ -133,7 +134,7 @@ def refined_modes(solid: LinkSolid, start: MeshSettings, count: int, threads: in
 
     Frequencies of a mesh are too high, so that the finer one's is about the band's upper end, and what it fell by since
     the coarser one tells how far the lower end lies below. The mesh of a part's file has no finer one: the recovered
-    stress of each mode tells (``fea.refine.error_estimate``), taken fourfold.
+    stress of each mode tells (``alula.fea.refine.error_estimate``), taken fourfold.
 
     Parameters
     ----------

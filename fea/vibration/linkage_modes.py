@@ -19,21 +19,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.build import ALONG_PINS, build_frame
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame, slot_normal
-from fea.frame.model import FrameModel, Guide
-from fea.nonlinear.corotational import subdivide
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import beam_answers, stiffness_parts
-from fea.vibration.flexibility_doubt import FlexibilityDoubt
-from fea.vibration.mass_matrix import MassMatrix, mass_matrix
-from fea.vibration.modes import Mode, NaturalModes, lowest
-from fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
-from geometry.base.errors import CannotRunError
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.applied import PartMass
+from alula.fea.frame.build import ALONG_PINS, build_frame
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame, slot_normal
+from alula.fea.frame.model import FrameModel, Guide
+from alula.fea.nonlinear.corotational import subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import beam_answers, stiffness_parts
+from alula.fea.vibration.flexibility_doubt import FlexibilityDoubt
+from alula.fea.vibration.mass_matrix import MassMatrix, mass_matrix
+from alula.fea.vibration.modes import Mode, NaturalModes, lowest
+from alula.fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.applied import PartMass
 
 Floats = NDArray[np.float64]
 

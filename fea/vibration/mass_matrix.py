@@ -24,18 +24,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.deflection import flexibility
-from fea.frame.build import ALONG_X
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import FrameElement, FrameModel
-from fea.frame.system import to_ends
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.kinematic_chain import Places
-from fea.vibration.eye_masses import eye_bodies, with_rims
-from loads.case.case import Case
-from loads.records.applied import PartMass
-from loads.records.carried import Carried, CarriedSpread, mass_of
-from loads.states.masses import all_carried
+from alula.fea.beam.deflection import flexibility
+from alula.fea.frame.build import ALONG_X
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import FrameElement, FrameModel
+from alula.fea.frame.system import to_ends
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.kinematic_chain import Places
+from alula.fea.vibration.eye_masses import eye_bodies, with_rims
+from alula.loads.case.case import Case
+from alula.loads.records.applied import PartMass
+from alula.loads.records.carried import Carried, CarriedSpread, mass_of
+from alula.loads.states.masses import all_carried
 
 Floats = NDArray[np.float64]
 

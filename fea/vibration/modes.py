@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from geometry.base.errors import CannotRunError
+from alula.fea.common.band import Band
+from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 

@@ -12,21 +12,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.threads import bounded
-from fea.frame.build import build_frame
-from fea.vibration.link_modes import LinkModes, link_modes
-from fea.vibration.linkage_modes import LinkageModes, linkage_modes
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.ties import TIE, first_least
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import Load, PartMass, chosen
-from loads.states.actions import acting_loads, placed
-from loads.states.case_motion import CaseMotion, solve_case_motion
-from loads.states.dead_point_reach import pose_at
-from loads.states.masses import part_masses
-from loads.states.standing import stand
+from alula.fea.common.threads import bounded
+from alula.fea.frame.build import build_frame
+from alula.fea.vibration.link_modes import LinkModes, link_modes
+from alula.fea.vibration.linkage_modes import LinkageModes, linkage_modes
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.ties import TIE, first_least
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import Load, PartMass, chosen
+from alula.loads.states.actions import acting_loads, placed
+from alula.loads.states.case_motion import CaseMotion, solve_case_motion
+from alula.loads.states.dead_point_reach import pose_at
+from alula.loads.states.masses import part_masses
+from alula.loads.states.standing import stand
 
 Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
 Real = NDArray[np.float64]
 SAME = 1e-6

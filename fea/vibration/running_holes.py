@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.source import Source, SourceKind, distinct
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import ALL_DOFS, Dof, FrameModel, Tie
-from fea.vibration.modes import Mode
-from loads.case.case import Case
+from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import ALL_DOFS, Dof, FrameModel, Tie
+from alula.fea.vibration.modes import Mode
+from alula.loads.case.case import Case
 
 ACROSS: tuple[Dof, Dof] = ("rx", "ry")
 _NOTHING = 1e-4

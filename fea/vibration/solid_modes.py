@@ -19,13 +19,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory
-from fea.elements.block_matrix import SymmetricBlockMatrix
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.space import DisplacementSpace
-from fea.solvers.solve import factorise
-from fea.vibration.rigid_regions import Reduction, RigidRegion, reduced
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.solvers.solve import factorise
+from alula.fea.vibration.rigid_regions import Reduction, RigidRegion, reduced
+from alula.geometry.base.errors import CannotRunError
 
 Real = NDArray[np.float64]
 TOLERANCE = 1e-8
@@ -39,7 +39,7 @@ class CarriedOn:
     Attributes
     ----------
     motion : ndarray, shape (6, 3 n)
-        From displacements of the nodes to the mean displacement and rotation (``fea.solid.bore_motion``).
+        From displacements of the nodes to the mean displacement and rotation (``alula.fea.solid.bore_motion``).
     inertia : ndarray, shape (6, 6)
         Its mass matrix for these.
     """
@@ -87,7 +87,7 @@ def solid_modes(
     space : DisplacementSpace
         Of the body.
     mass : csr_array, shape (n, n)
-        Mass matrix of one displacement component (``fea.elements.mass``) [tonne].
+        Mass matrix of one displacement component (``alula.fea.elements.mass``) [tonne].
     E, nu, density : float
         Young's modulus [MPa], Poisson's ratio, and a density that sets the shift [tonne/mm³].
     count : int

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from fea.whole.rubbed_motion import rubbed_motion
-from loads.states.case_motion import CaseMotion
-from loads.states.flapping import in_air
+from alula.fea.whole.rubbed_motion import rubbed_motion
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.flapping import in_air
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -2,12 +2,12 @@
 
 import math
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
-from loads.case.case import Case
-from loads.records.check_spec import ClearanceCheck
-from loads.states.clearance import Clearance
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import ClearanceCheck
+from alula.loads.states.clearance import Clearance
 
 SOURCES = (
     Source(kind=SourceKind.POSES, detail="bounded by the speed of the outlines"),

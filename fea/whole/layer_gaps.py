@@ -4,7 +4,7 @@ Links of different layers keep a gap along the pins. Under load they bend and tw
 their pins tilt in their holes. Where two outlines lie over each other in the pose, the gap at every corner of what they
 share is reduced by how far the lower link rises there against the upper one: by the linear frame of beams, in the band
 of its flexibility, of the load, the moduli, air and friction, and by the play at all rims at its worst
-(``fea.outcomes.free_motion``), for links that do not bend by it.
+(``alula.fea.outcomes.free_motion``), for links that do not bend by it.
 """
 
 import itertools
@@ -16,20 +16,20 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.source import distinct, play_source
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
-from fea.frame.displacement_band import compliance_range
-from fea.frame.linear import FrameSolution
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.model import NodeLoad
-from fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
-from fea.outcomes.free_motion import loose_holes, rim_forces
-from geometry.clearance.shape import TOUCHING
-from loads.case.case import Case
-from loads.case.joint_rules import clearances
-from loads.records.check_spec import ClearanceCheck
-from loads.states.clearance import Assembly
+from alula.fea.common.band import Band
+from alula.fea.common.source import distinct, play_source
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.fea.frame.displacement_band import compliance_range
+from alula.fea.frame.linear import FrameSolution
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import NodeLoad
+from alula.fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
+from alula.fea.outcomes.free_motion import loose_holes, rim_forces
+from alula.geometry.clearance.shape import TOUCHING
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import clearances
+from alula.loads.records.check_spec import ClearanceCheck
+from alula.loads.states.clearance import Assembly
 
 Real = NDArray[np.float64]
 

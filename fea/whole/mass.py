@@ -1,10 +1,10 @@
 """Whether a linkage weighs no more than it may."""
 
-from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
-from loads.case.case import Case
-from loads.records.check_spec import MassCheck
-from loads.states.weighed import Weighed
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import MassCheck
+from alula.loads.states.weighed import Weighed
 
 GRAMS = 1e6
 """In a tonne."""

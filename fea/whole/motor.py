@@ -4,7 +4,7 @@ A motor that turns evenly with a flywheel gives the mean of all power, for the f
 what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band. Play
 of pins moves both: each is taken with the drive torque at either end of what play makes of it, at all poses together.
 So does the air on wings that flap: each is taken at either end of the range of C_N, of which the mean is an affine and
-the peak a convex function. And so does friction, at either end of what it may be (``fea.frame.rubbing``).
+the peak a convex function. And so does friction, at either end of what it may be (``alula.fea.frame.rubbing``).
 """
 
 import math
@@ -14,20 +14,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.convex import least_of_convex
-from fea.common.source import Source, SourceKind, air_source, friction_source, play_source
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.whole.air_range import AirRange, air_range
-from fea.whole.rubbed_motion import friction_range, rubbed_motion
-from geometry.base.ties import TIE
-from loads.case.case import Case
-from loads.case.joint_rules import friction_ranges
-from loads.records.check_spec import MotorCheck
-from loads.records.flapping import Flapping
-from loads.states.case_motion import CaseMotion
-from loads.states.kinetostatics import relative_motion
-from loads.states.loose_motion import loose_motion
+from alula.fea.common.band import Band
+from alula.fea.common.convex import least_of_convex
+from alula.fea.common.source import Source, SourceKind, air_source, friction_source, play_source
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.whole.air_range import AirRange, air_range
+from alula.fea.whole.rubbed_motion import friction_range, rubbed_motion
+from alula.geometry.base.ties import TIE
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import friction_ranges
+from alula.loads.records.check_spec import MotorCheck
+from alula.loads.records.flapping import Flapping
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.kinetostatics import relative_motion
+from alula.loads.states.loose_motion import loose_motion
 
 Real = NDArray[np.float64]
 SOURCES = (Source(kind=SourceKind.FLYWHEEL, detail="from the mean over the motion to the peak"),)

@@ -3,20 +3,20 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from fea.common.verdict import CheckOutcome
-from fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
-from fea.vibration.over_motion import CaseFrequencies
-from fea.whole.clearance import clearance_outcomes
-from fea.whole.mass import mass_outcomes
-from fea.whole.motor import motor_outcomes
-from fea.whole.size import size_outcomes
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.check_spec import MassCheck, MotorCheck, SizeCheck
-from loads.states.actions import needs_masses
-from loads.states.clearance import Clearance, clearance
-from loads.states.extent import Extent, extent
-from loads.states.weighed import Weighed, weighed
+from alula.fea.common.verdict import CheckOutcome
+from alula.fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
+from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.fea.whole.clearance import clearance_outcomes
+from alula.fea.whole.mass import mass_outcomes
+from alula.fea.whole.motor import motor_outcomes
+from alula.fea.whole.size import size_outcomes
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import MassCheck, MotorCheck, SizeCheck
+from alula.loads.states.actions import needs_masses
+from alula.loads.states.clearance import Clearance, clearance
+from alula.loads.states.extent import Extent, extent
+from alula.loads.states.weighed import Weighed, weighed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,15 +8,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from fea.frame.joint_forces import joint_forces
-from fea.frame.rubbing import End, at_end, largest, presses_of
-from loads.case.case import Case
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import chosen
-from loads.states.case_motion import CaseMotion, solve_case_motion
-from loads.states.dead_point_reach import pose_at
-from loads.states.drive_work import DriveWork
-from loads.statics.friction import Presses
+from alula.fea.frame.joint_forces import joint_forces
+from alula.fea.frame.rubbing import End, at_end, largest, presses_of
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import chosen
+from alula.loads.states.case_motion import CaseMotion, solve_case_motion
+from alula.loads.states.dead_point_reach import pose_at
+from alula.loads.states.drive_work import DriveWork
+from alula.loads.statics.friction import Presses
 
 POSES = {"stated": 73, "largest": 25}
 """Poses of a motion whose frames are solved, spread evenly. Of the slider-crank to start from, 181 in place of 73

@@ -1,12 +1,12 @@
 """Whether a linkage fits into a box along the global axes."""
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, SIZES, CheckOutcome
-from geometry.clearance.reach import Outermost
-from loads.case.case import Case
-from loads.records.check_spec import SizeCheck
-from loads.states.extent import Extent, unmeasured
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, SIZES, CheckOutcome
+from alula.geometry.clearance.reach import Outermost
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import SizeCheck
+from alula.loads.states.extent import Extent, unmeasured
 
 POSES = Source(kind=SourceKind.POSES, detail="bounded by the acceleration of the outlines")
 CHORDS = Source(kind=SourceKind.CHORDS, detail="of the outlines")

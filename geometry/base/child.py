@@ -2,8 +2,8 @@
 
 A child is stopped at its time limit and on an interruption. Its standard input is a pipe that only the parent holds
 open, so that the end of that pipe is the end of the parent. Programs that are not alula's do not look there; the
-system ends them with their parent (``geometry.base.leash``). Children that answer requests are
-``geometry.base.child_server``'s.
+system ends them with their parent (``alula.geometry.base.leash``). Children that answer requests are
+``alula.geometry.base.child_server``'s.
 """
 
 import os
@@ -15,9 +15,10 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
-_ROOT = str(Path(__file__).resolve().parents[2])
+_ROOT = str(Path(str(sys.modules["alula"].__file__)).resolve().parents[1])
+"""The folder on the path in which the package ``alula`` stands."""
 _lock = threading.RLock()
 _running: set[subprocess.Popen[bytes]] = set()
 _stopped = threading.Event()
@@ -51,7 +52,7 @@ def module_command(module: str, *arguments: str) -> list[str]:
     list of str
         The command, for ``run``.
     """
-    # -P: a folder named "geometry" where the user stands must not be taken for this package.
+    # -P: a file where the user stands must not be taken for a module of alula's, of a library or of Python.
     return [sys.executable, "-P", "-m", module, *arguments]
 
 
@@ -70,7 +71,7 @@ def foreign_command(program: str, *arguments: str) -> list[str]:
     list of str
         The command, for ``run``.
     """
-    return module_command("geometry.base.leash", str(os.getpid()), os.path.abspath(program), *arguments)
+    return module_command("alula.geometry.base.leash", str(os.getpid()), os.path.abspath(program), *arguments)
 
 
 def environment(**more: str) -> dict[str, str]:

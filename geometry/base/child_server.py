@@ -1,8 +1,8 @@
 """A child process that answers one request after another, so that what it has made once serves later requests.
 
 Requests and answers are bytes, each behind its length, on the child's standard input and output: an answer is whole or
-none. A server takes a place (``geometry.base.child.at_most``) only while it works on a request. Between requests it
-waits in a pool, for ``IDLE`` seconds or until this process ends.
+none. A server takes a place (``alula.geometry.base.child.at_most``) only while it works on a request. Between requests
+it waits in a pool, for ``IDLE`` seconds or until this process ends.
 """
 
 import atexit
@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import IO
 
-from geometry.base import child
+from alula.geometry.base import child
 
 _LENGTH = struct.Struct("<Q")
 IDLE = 60.0

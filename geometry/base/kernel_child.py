@@ -11,9 +11,9 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Any
 
-from geometry.base import child, child_memory
-from geometry.base.child_server import ChildEndedError, ServerPool
-from geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base import child, child_memory
+from alula.geometry.base.child_server import ChildEndedError, ServerPool
+from alula.geometry.base.errors import CannotRunError, CaseError
 
 _workers = ServerPool()
 
@@ -51,7 +51,7 @@ def ask_kernel(
     time_limit: float,
     memory: float,
 ) -> Any:
-    """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result.
+    """Do a task of ``alula.geometry.meshing.mesh_worker`` in a child process and return its result.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def ask_kernel(
 
 
 def _command() -> list[str]:
-    return child.module_command("geometry.meshing.mesh_worker")
+    return child.module_command("alula.geometry.meshing.mesh_worker")
 
 
 def _obituary(status: int, told: str, words: KernelWords) -> str:

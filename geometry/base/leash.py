@@ -1,4 +1,6 @@
-"""Become another program that ends with its parent: ``python -m geometry.base.leash PARENT PROGRAM ARGUMENT ...``.
+"""Become another program that ends with its parent.
+
+Usage: ``python -m alula.geometry.base.leash PARENT PROGRAM ARGUMENT ...``.
 
 alula's own children notice by themselves that the parent has gone. For others the system is asked to kill them (Linux;
 elsewhere a program that outlives its parent runs to its end).

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
+from alula.geometry.base.errors import CaseError
 
 
 class CaseModel(BaseModel):
@@ -35,7 +35,7 @@ class CaseModel(BaseModel):
 @cache
 def _entry_texts() -> dict[str, dict[str, str]]:
     """Return the texts below the entries of all records, by the records' full names."""
-    return tomllib.loads(files("geometry.base").joinpath("entry_texts.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(files("alula.geometry.base").joinpath("entry_texts.toml").read_text(encoding="utf-8"))
 
 
 def refusal(rule: str) -> PydanticCustomError:

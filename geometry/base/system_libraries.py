@@ -2,7 +2,7 @@
 
 The wheels of gmsh and VTK do not carry them, and a bare system lacks them: ``import gmsh`` then raises ``OSError``,
 and rendering ends in a segmentation fault.  This module uses the standard library alone, because the set-up asks it
-before anything is installed: ``python3 -m geometry.base.system_libraries`` prints the Debian packages that are missing.
+before anything is installed: ``python3 geometry/base/system_libraries.py`` prints the Debian packages that are missing.
 """
 
 import ctypes

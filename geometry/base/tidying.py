@@ -1,7 +1,7 @@
 """What a process clears away before it ends: its scratch folders, and whatever else must not outlive it.
 
 Usually the block that made them clears them away. A process whose threads do not come back from native code is ended
-from outside of these blocks (``reports.commands.ending``), and ``tidy_all`` does it then.
+from outside of these blocks (``alula.reports.commands.ending``), and ``tidy_all`` does it then.
 """
 
 import shutil

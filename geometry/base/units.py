@@ -15,8 +15,8 @@ from typing import Annotated, Any
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from geometry.base.model import refusal
-from geometry.base.usual_units import CELSIUS, USUAL
+from alula.geometry.base.model import refusal
+from alula.geometry.base.usual_units import CELSIUS, USUAL
 
 INTERNAL_UNITS = {
     "length": "mm",

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
-from geometry.bodies.cut_section import CutSection
-from geometry.bodies.features import HoleRow, Pin, PlainEnd, Ring
-from geometry.bodies.footprint import Footprint
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.bodies.section import Section
-from geometry.materials.printable import Printable
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.bodies.features import HoleRow, Pin, PlainEnd, Ring
+from alula.geometry.bodies.footprint import Footprint
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.bodies.section import Section
+from alula.geometry.materials.printable import Printable
 
 Feature = Literal["slots", "arms", "rows of holes", "load points without a pin", "eyes of their own", "forks"]
 ON_AXIS = 1e-9

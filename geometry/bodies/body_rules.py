@@ -5,11 +5,11 @@ Here stand the rules for all kinds of parts; each kind adds its own in ``check``
 
 import itertools
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import ON_AXIS, Body, apart, extent, patch_span
-from geometry.bodies.eyes import eye_reach
-from geometry.bodies.features import HoleRow, PlainEnd
-from geometry.bodies.forks import check_forks
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import ON_AXIS, Body, apart, extent, patch_span
+from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.bodies.features import HoleRow, PlainEnd
+from alula.geometry.bodies.forks import check_forks
 
 SLENDEREST = 1e6
 """Largest distance of any part of a link from its origin over the smaller size of its section. Measured: the kernel's

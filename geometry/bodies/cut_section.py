@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from geometry.bodies.section import Section, rectangle, ring
+from alula.geometry.bodies.section import Section, rectangle, ring
 
 Place = tuple[float, float]
 

@@ -4,9 +4,9 @@ import itertools
 import math
 from dataclasses import replace
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import ON_AXIS, Body, extent
-from geometry.bodies.features import Pin
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import ON_AXIS, Body, extent
+from alula.geometry.bodies.features import Pin
 
 EYE_WIDTH = 1.6
 """Diameter of an eye over the width of its tube or bar, where none is stated: a proportion often met, no standard."""

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.base.model import CaseModel
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 
 OFF_PLANE = 1e-3
 """Share of a hole's length by which its middle may lie off the plane of forces before that counts."""

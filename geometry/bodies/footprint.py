@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from geometry.base.outline import Outline
-from geometry.bodies.features import Pin, Ring
-from geometry.bodies.kernel import Border
+from alula.geometry.base.outline import Outline
+from alula.geometry.bodies.features import Pin, Ring
+from alula.geometry.bodies.kernel import Border
 
 Place = tuple[float, float]
 

@@ -4,9 +4,9 @@ The gap is cut by a cylinder about the pin's axis, as a slotting cutter leaves i
 whatever its angle, and its root is a circular arc. ``radius`` rounds the edges between root and cheeks.
 """
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body, apart
-from geometry.bodies.features import Fork
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body, apart
+from alula.geometry.bodies.features import Fork
 
 ROOM = 1.05
 """Depth of a gap, less what rounds its root, over the radius of the larger eye, where none is stated: assumed."""

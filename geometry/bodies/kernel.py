@@ -1,6 +1,6 @@
 """The operations of gmsh's OpenCASCADE kernel that kinds of parts are built with.
 
-gmsh itself is loaded in a child process alone (``geometry.meshing``), which hands it to ``Kernel``.
+gmsh itself is loaded in a child process alone (``alula.geometry.meshing``), which hands it to ``Kernel``.
 """
 
 import math
@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
-from geometry.base.outline import Outline
-from geometry.bodies.features import Fork, Pin
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.outline import Outline
+from alula.geometry.bodies.features import Fork, Pin
 
 Entity = tuple[int, int]
 """Dimension and tag of something in the kernel."""
@@ -20,7 +20,7 @@ Vector = tuple[float, float, float]
 Border = Sequence[tuple[tuple[float, float], tuple[float, float] | None]]
 """A closed border: (x, y) where each piece of it starts, and the middle of an arc; None of a line."""
 ON_SURFACE = 1e-5
-"""Distance within which a point counts as lying on a surface, in the unit of ``geometry.solids.solid_model``."""
+"""Distance within which a point counts as lying on a surface, in the unit of ``alula.geometry.solids.solid_model``."""
 
 
 class FilletError(Exception):

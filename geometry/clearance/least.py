@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.ties import first_largest, first_least
-from geometry.clearance.shape import Core, Shape, error_of, gaps, meeting, nearest, overlap
-from geometry.linkage.placement import Placement
+from alula.geometry.base.ties import first_largest, first_least
+from alula.geometry.clearance.shape import Core, Shape, error_of, gaps, meeting, nearest, overlap
+from alula.geometry.linkage.placement import Placement
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

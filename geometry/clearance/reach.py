@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.ties import first_largest
-from geometry.clearance.least import POSES, Spot
-from geometry.clearance.shape import Shape
-from geometry.linkage.placement import Placement
+from alula.geometry.base.ties import first_largest
+from alula.geometry.clearance.least import POSES, Spot
+from alula.geometry.clearance.shape import Shape
+from alula.geometry.linkage.placement import Placement
 
 Real = NDArray[np.float64]
 Standing = tuple[Shape, Spot]

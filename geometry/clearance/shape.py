@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.ties import first_least
-from geometry.bodies.body import Body
-from geometry.bodies.footprint import Footprint
+from alula.geometry.base.ties import first_least
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.footprint import Footprint
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

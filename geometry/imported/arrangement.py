@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.facts import Bore, PartFacts, PartSurface
+from alula.geometry.imported.facts import Bore, PartFacts, PartSurface
 
 Real = NDArray[np.float64]
 

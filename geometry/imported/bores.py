@@ -10,9 +10,9 @@ from itertools import combinations
 
 import numpy as np
 
-from geometry.imported.columns import Columns
-from geometry.imported.facts import Bore, PartSurface, Vector
-from geometry.imported.walls import HALF_TURN, NEAR, Line, Real, Span, Wall, upwards
+from alula.geometry.imported.columns import Columns
+from alula.geometry.imported.facts import Bore, PartSurface, Vector
+from alula.geometry.imported.walls import HALF_TURN, NEAR, Line, Real, Span, Wall, upwards
 
 _BEYOND = 0.02
 """Share of the radius beyond a wall or its end at which material is looked for; chords of the wall are 0.005 off."""

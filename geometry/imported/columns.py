@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.facts import PartSurface
-from geometry.imported.walls import Line
+from alula.geometry.imported.facts import PartSurface
+from alula.geometry.imported.walls import Line
 
 Real = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
-from geometry.base.errors import CaseError
-from geometry.base.kernel_child import KernelWords, ask_kernel
-from geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.kernel_child import KernelWords, ask_kernel
+from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
 
 LARGEST_FILE = 200_000_000
 """Bytes."""

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from geometry.base.errors import CaseError
-from geometry.imported.bores import find_bores, in_order
-from geometry.imported.facts import Face, PartFacts, PartSurface, Vector
-from geometry.imported.walls import walls_of
+from alula.geometry.base.errors import CaseError
+from alula.geometry.imported.bores import find_bores, in_order
+from alula.geometry.imported.facts import Face, PartFacts, PartSurface, Vector
+from alula.geometry.imported.walls import walls_of
 
 _TRIANGLE = 2
 """gmsh's number of this shape."""

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.facts import PartSurface
+from alula.geometry.imported.facts import PartSurface
 
 Real = NDArray[np.float64]
 Span = tuple[float, float]

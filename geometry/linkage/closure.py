@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.linkage import Linkage
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]

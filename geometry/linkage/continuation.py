@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.driven import DrivenClosure
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.driven import DrivenClosure
 
 Real = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.pose_record import CLOSED
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.pose_record import CLOSED
 
 Real = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema, field_validator
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
-from geometry.parts.part import EyeSizes, HoleRow, Slot
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Name, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from alula.geometry.parts.part import EyeSizes, HoleRow, Slot
 
 
 def _as_list(stated: object) -> object:

@@ -5,11 +5,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.base.errors import CaseError
-from geometry.linkage.continuation import follow
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.motion_record import BLOCK, Motion
-from geometry.linkage.pose_record import Pose
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.continuation import follow
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.motion_record import BLOCK, Motion
+from alula.geometry.linkage.pose_record import Pose
 
 __all__ = ["Motion", "solve_motion"]
 

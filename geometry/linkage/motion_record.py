@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.continuation import Track
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose_record import Pose
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.continuation import Track
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose_record import Pose
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

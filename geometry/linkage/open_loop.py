@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.closure import LoopClosure
 
 Real = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.linkage import Linkage
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -17,10 +17,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.ties import first_largest
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose_record import CLOSED
+from alula.geometry.base.ties import first_largest
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose_record import CLOSED
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

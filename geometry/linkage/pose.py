@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.open_loop import open_loop
-from geometry.linkage.pose_record import CLOSED, Pose, constraint_jacobian, held_motion
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.open_loop import open_loop
+from alula.geometry.linkage.pose_record import CLOSED, Pose, constraint_jacobian, held_motion
 
 __all__ = ["CLOSED", "NEAR_DEAD_POINT", "Pose", "constraint_jacobian", "freedom", "held_motion", "solve_pose"]
 

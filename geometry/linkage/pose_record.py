@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.placement import Placement
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.placement import Placement
 
 Real = NDArray[np.float64]
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose_record import CLOSED, Pose
-from geometry.linkage.sampled_dead_points import dead_points, own_dead_point
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose_record import CLOSED, Pose
+from alula.geometry.linkage.sampled_dead_points import dead_points, own_dead_point
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

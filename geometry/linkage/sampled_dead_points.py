@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.continuation import DeadPointError, follow
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.pose_record import CLOSED, Pose
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.continuation import DeadPointError, follow
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.pose_record import CLOSED, Pose
 
 Real = NDArray[np.float64]
 

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.motion_record import Motion
-from geometry.linkage.pose import Pose
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.motion_record import Motion
+from alula.geometry.linkage.pose import Pose
 
 Real = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ family lies in a narrow range of density, while strengths of all of them overlap
 
 from collections.abc import Mapping
 
-from geometry.materials.material import Material
+from alula.geometry.materials.material import Material
 
 ALIKE = 2.0
 """Largest ratio of the densities of one family; on our cards polymers have 0.93 to 1.45, light alloys 2.7 to 2.8, heavy

@@ -10,11 +10,11 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress
-from geometry.materials.directional import directional
-from geometry.materials.temperature import TemperatureFactors, check_factors
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Text, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress
+from alula.geometry.materials.directional import directional
+from alula.geometry.materials.temperature import TemperatureFactors, check_factors
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
 TOLD = (
@@ -263,7 +263,7 @@ def stress_measure(*, brittle: bool) -> str:
 
 def library_text() -> str:
     """Return the text of the library, ``geometry/materials/materials.toml``."""
-    return files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8")
+    return files("alula.geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8")
 
 
 @cache

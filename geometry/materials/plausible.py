@@ -8,7 +8,7 @@ printed parts and plastics filled with metal (assumed).
 import re
 from dataclasses import dataclass
 
-from geometry.materials.material import Material
+from alula.geometry.materials.material import Material
 
 Range = tuple[float, float]
 

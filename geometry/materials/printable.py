@@ -2,8 +2,8 @@
 
 import re
 
-from geometry.base.model import CaseModel, Direction
-from geometry.materials.material import Material
+from alula.geometry.base.model import CaseModel, Direction
+from alula.geometry.materials.material import Material
 
 _PRINTED = frozenset(
     ("printed", "printer", "print", "filament", "fdm", "fff", "sla", "sls", "mjf", "dmls", "slm", "resin", "sintered")

@@ -6,8 +6,8 @@ from typing import Annotated
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
-from geometry.base.model import refusal
-from geometry.base.units import Temperature
+from alula.geometry.base.model import refusal
+from alula.geometry.base.units import Temperature
 
 TemperatureFactors = tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...]
 """(temperature [°C], factor), rising in temperature."""

@@ -15,11 +15,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.base.errors import CaseError
-from geometry.linkage.dyad import FloatArray, close_dyad, triangle_angle, wrap
-from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.grashof import Grashof
-from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.dyad import FloatArray, close_dyad, triangle_angle, wrap
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.grashof import Grashof
+from alula.geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
 
 Side = Literal["right", "left"]
 

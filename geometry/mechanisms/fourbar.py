@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.base.errors import CaseError
-from geometry.linkage.dyad import CLOSURE_TOLERANCE, BoolArray, Dyad, FloatArray, close_dyad, triangle_angle, wrap
-from geometry.mechanisms.grashof import EQUALITY_TOLERANCE, Grashof, classify
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.dyad import CLOSURE_TOLERANCE, BoolArray, Dyad, FloatArray, close_dyad, triangle_angle, wrap
+from alula.geometry.mechanisms.grashof import EQUALITY_TOLERANCE, Grashof, classify
 
 Branch = Literal["open", "crossed"]
 

@@ -14,11 +14,11 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
-from geometry.mechanisms.wing_drive import WingDrive
-from geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from alula.geometry.mechanisms.wing_drive import WingDrive
+from alula.geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd
 
 MARGIN = 0.2
 """By which the slot goes on at either end of the pin's travel [mm]: the printer's tolerance."""
@@ -47,7 +47,7 @@ class Motor(CaseModel):
 @cache
 def motors() -> dict[str, Motor]:
     """Return the motor table by name."""
-    text = resources.files("geometry").joinpath("motors.toml").read_text(encoding="utf-8")
+    text = resources.files("alula.geometry").joinpath("motors.toml").read_text(encoding="utf-8")
     return {name: Motor.model_validate(entry) for name, entry in tomllib.loads(text).items()}
 
 

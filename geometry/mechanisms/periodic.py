@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.linkage.dyad import FloatArray
+from alula.geometry.linkage.dyad import FloatArray
 
 
 def periodic_maximum(values: FloatArray) -> float:

@@ -15,9 +15,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.base.errors import CaseError
-from geometry.linkage.dyad import FloatArray, wrap
-from geometry.mechanisms.fourbar import Branch, FourBar
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.dyad import FloatArray, wrap
+from alula.geometry.mechanisms.fourbar import Branch, FourBar
 
 Drive = Literal["a", "b", "c"]
 """The link that is turned: a at φ, b at θ, c at ψ."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.base.errors import CaseError
-from geometry.linkage.dyad import FloatArray
-from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.dyad import FloatArray
+from alula.geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
 
 _SAMPLES = 3600
 """Crank positions from which extremes are refined; the refinement leaves some 1e-9 of them."""

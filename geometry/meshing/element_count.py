@@ -1,6 +1,6 @@
 """How many tetrahedra a body will get, from its areas, its volume and the element sizes: told before it is meshed.
 
-Runs in a child process only (see ``geometry.meshing.mesh``).
+Runs in a child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 import math
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.meshing.mesh_target import MeshTarget
+from alula.geometry.meshing.mesh_target import MeshTarget
 
 Sizes = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Element sizes (n,) at points (n, 3), in scaled units."""

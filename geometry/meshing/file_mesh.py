@@ -1,6 +1,6 @@
 """A volume mesh from a file: read, checked, what is found in it, and the mesh of a body that is made of it.
 
-Runs in a child process only (see ``geometry.meshing.mesh``).
+Runs in a child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 import hashlib
@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.cut_section import CutSection
-from geometry.imported.bores import find_bores
-from geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface, Vector
-from geometry.meshing.element_geometry import (
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.imported.bores import find_bores
+from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface, Vector
+from alula.geometry.meshing.element_geometry import (
     TETRA_EDGES,
     TRIANGLE_EDGES,
     jacobian_coefficients,
@@ -26,12 +26,12 @@ from geometry.meshing.element_geometry import (
     triangle_areas,
     triangle_rule,
 )
-from geometry.meshing.mesh_settings import MeshSettings
-from geometry.meshing.mesh_walls import ON_WALL, bent_edges, cylinder_walls, inner_edges
-from geometry.meshing.surface_section import section_of_surface
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.mesh_part import MeshedPart
-from geometry.solids.reentrant import ReentrantEdge
+from alula.geometry.meshing.mesh_settings import MeshSettings
+from alula.geometry.meshing.mesh_walls import ON_WALL, bent_edges, cylinder_walls, inner_edges
+from alula.geometry.meshing.surface_section import section_of_surface
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.mesh_part import MeshedPart
+from alula.geometry.solids.reentrant import ReentrantEdge
 
 Real = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -10,15 +10,15 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import AlulaError
-from geometry.base.kernel_child import KernelWords, ask_kernel
-from geometry.bodies.body_rules import check_body
-from geometry.bodies.cut_section import CutSection
-from geometry.meshing.mesh_settings import COARSE, MeshSettings
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.part import Body
-from geometry.parts.step import ImportedPart
-from geometry.solids.reentrant import ReentrantEdge
+from alula.geometry.base.errors import AlulaError
+from alula.geometry.base.kernel_child import KernelWords, ask_kernel
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.meshing.mesh_settings import COARSE, MeshSettings
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.part import Body
+from alula.geometry.parts.step import ImportedPart
+from alula.geometry.solids.reentrant import ReentrantEdge
 
 __all__ = [
     "COARSE",

@@ -1,7 +1,7 @@
 """What is meshed of a solid, whole or half, and the kernel's measures that the mesh is checked against.
 
 A body that is symmetric about z = 0 is cut there, and its upper half meshed. Lengths are in the solid's unit. Runs in a
-child process only (see ``geometry.meshing.mesh``).
+child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 from collections.abc import Iterable
@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
-from geometry.bodies.body import Body, patch_span
-from geometry.bodies.features import PlainEnd
-from geometry.bodies.kernel import ON_SURFACE
-from geometry.solids.patches import patch_faces, pieces_of_face
-from geometry.solids.solid_model import Solid
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.bodies.body import Body, patch_span
+from alula.geometry.bodies.features import PlainEnd
+from alula.geometry.bodies.kernel import ON_SURFACE
+from alula.geometry.solids.patches import patch_faces, pieces_of_face
+from alula.geometry.solids.solid_model import Solid
 
 SAME = 1e-3
 """Distance of two centroids, and relative difference of two areas or volumes, up to which a face and the image of

@@ -1,6 +1,6 @@
 """Cylindrical walls of a mesh: triangles of its surface whose nodes lie on one cylinder; and its sharp inner edges.
 
-Runs in a child process only (see ``geometry.meshing.mesh``).
+Runs in a child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 from collections import defaultdict
@@ -9,9 +9,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.walls import Line, Wall, fitted_circle, joined_walls, united, upwards
-from geometry.meshing.element_geometry import TRIANGLE_EDGES, shape_gradients
-from geometry.solids.reentrant import ReentrantEdge
+from alula.geometry.imported.walls import Line, Wall, fitted_circle, joined_walls, united, upwards
+from alula.geometry.meshing.element_geometry import TRIANGLE_EDGES, shape_gradients
+from alula.geometry.solids.reentrant import ReentrantEdge
 
 Real = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -1,4 +1,4 @@
-"""The child process in which the geometry kernel and the mesher run: ``python -m geometry.meshing.mesh_worker``.
+"""The child process in which the geometry kernel and the mesher run: ``python -m alula.geometry.meshing.mesh_worker``.
 
 A request is pickled: a limit of memory [bytes], the name of a task, a body (or, for a task about a file, its path and
 digest) and further arguments. So is its answer:
@@ -18,16 +18,16 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from geometry.base.child_memory import MemoryGuard
-from geometry.base.child_server import ChildService
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.system_libraries import advice
-from geometry.bodies.body import Body
-from geometry.imported.solid import facts_of_file, surface_of_file
-from geometry.meshing.file_mesh import MESH_TASKS, facts_of_mesh, surface_of_mesh
-from geometry.meshing.mesh_settings import MeshSettings
-from geometry.meshing.mesh_target import MeshTarget, mesh_target
-from geometry.solids.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
+from alula.geometry.base.child_memory import MemoryGuard
+from alula.geometry.base.child_server import ChildService
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.system_libraries import advice
+from alula.geometry.bodies.body import Body
+from alula.geometry.imported.solid import facts_of_file, surface_of_file
+from alula.geometry.meshing.file_mesh import MESH_TASKS, facts_of_mesh, surface_of_mesh
+from alula.geometry.meshing.mesh_settings import MeshSettings
+from alula.geometry.meshing.mesh_target import MeshTarget, mesh_target
+from alula.geometry.solids.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
 
 MOST_SOLIDS = 16
 """Solids that are kept at most; each takes a few megabytes."""
@@ -43,7 +43,7 @@ class _Built:
 
 
 def _mesh(gmsh: Any, built: _Built, settings: MeshSettings) -> object:
-    from geometry.meshing.mesher import mesh_solid
+    from alula.geometry.meshing.mesher import mesh_solid
 
     present(gmsh, built.solid.tag)
     if settings.halves not in built.targets:
@@ -61,7 +61,7 @@ def _mass(gmsh: Any, built: _Built) -> object:
 
 
 def _reentrant(gmsh: Any, built: _Built) -> object:
-    from geometry.solids.reentrant import find_reentrant_edges
+    from alula.geometry.solids.reentrant import find_reentrant_edges
 
     present(gmsh, built.solid.tag)
     return find_reentrant_edges(gmsh, built.solid)
@@ -75,7 +75,7 @@ def _step(gmsh: Any, built: _Built, path: str) -> None:
 
 
 def _sections(gmsh: Any, built: _Built, stations: tuple[float, ...]) -> object:
-    from geometry.solids.sections import cut_sections, ring_diameters
+    from alula.geometry.solids.sections import cut_sections, ring_diameters
 
     present(gmsh, built.solid.tag)
     return cut_sections(gmsh, built.solid, stations), ring_diameters(gmsh, built.solid)

@@ -1,6 +1,6 @@
 """Tetrahedra for a solid of the kernel or its upper half: sizes, extraction, and the checks that let a mesh pass.
 
-Runs in a child process only (see ``geometry.meshing.mesh``).
+Runs in a child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 import math
@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError, CoarseMeshError
-from geometry.bodies.body import Body
-from geometry.bodies.forks import fork_places
-from geometry.meshing.element_count import SAFETY, Sizes, estimated_elements
-from geometry.meshing.element_geometry import flatten, jacobian_coefficients, scaled_jacobians, triangle_areas
-from geometry.meshing.mesh_settings import MeshSettings
-from geometry.meshing.mesh_target import MeshTarget
-from geometry.meshing.mirror import mirrored
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.solids.solid_model import SECTION_UNITS, present
+from alula.geometry.base.errors import CannotRunError, CoarseMeshError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.forks import fork_places
+from alula.geometry.meshing.element_count import SAFETY, Sizes, estimated_elements
+from alula.geometry.meshing.element_geometry import flatten, jacobian_coefficients, scaled_jacobians, triangle_areas
+from alula.geometry.meshing.mesh_settings import MeshSettings
+from alula.geometry.meshing.mesh_target import MeshTarget
+from alula.geometry.meshing.mirror import mirrored
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.solids.solid_model import SECTION_UNITS, present
 
 SLOT_ELEMENTS = 1.5
 """Element edges along a slot to those round a hole of its width: a pin pushes on a shorter stretch of a flank."""

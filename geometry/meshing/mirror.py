@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
-from geometry.meshing.element_geometry import TETRA_EDGES
-from geometry.meshing.tagged_mesh import IMAGE_ORDER, REFLECTION, TaggedMesh
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.element_geometry import TETRA_EDGES
+from alula.geometry.meshing.tagged_mesh import IMAGE_ORDER, REFLECTION, TaggedMesh
 
 _OPPOSITE = {"top": "bottom", "bottom": "top"}
 _ON_PLANE = 1e-9  # of the body's size: the mesher rounds to some 1e-11

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bodies.cut_section import CutSection, convex
+from alula.geometry.bodies.cut_section import CutSection, convex
 
 Real = NDArray[np.float64]
 _ONE = 1e-9

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError
+from alula.geometry.base.errors import CannotRunError
 
 IMAGE_ORDER = (1, 0, 2, 3, 4, 6, 5, 8, 7, 9)
 """Nodes of an element, or the first four of a straight one, in the order in which its image is positive."""
@@ -43,7 +43,7 @@ class TaggedMesh:
     mirror : ndarray of int or None, shape (n,)
         Number of every point's image at -z, its own on the plane z = 0; None where the mesh has no such symmetry. The
         first half of the elements then lies at z ≥ 0, and the second holds their images in the same order
-        (``geometry.meshing.mirror``).
+        (``alula.geometry.meshing.mirror``).
 
     Raises
     ------

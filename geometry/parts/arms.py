@@ -3,9 +3,9 @@
 import itertools
 import math
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body, apart, extent
-from geometry.bodies.eyes import TOUCHING, arm_angle, flush
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body, apart, extent
+from alula.geometry.bodies.eyes import TOUCHING, arm_angle, flush
 
 LEAST_ARM_ANGLE = math.radians(30.0)
 """Between an arm and the link's axis: below it, bar and arm run into one another."""

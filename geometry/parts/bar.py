@@ -8,19 +8,19 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import Name
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.bodies.body import FLAT_WALL, ON_AXIS, Body, Feature, extent
-from geometry.bodies.cut_section import CutSection
-from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
-from geometry.bodies.features import Pin, Ring
-from geometry.bodies.footprint import Footprint
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.bodies.section import Section, rectangle
-from geometry.parts.profile import Profile, profile, width_at
-from geometry.parts.straight import CLEAR_EYE, Piece, Straight
-from geometry.parts.widths import check_widths, widths_cuts, widths_footprints, widths_places, widths_solid
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import Name
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.bodies.body import FLAT_WALL, ON_AXIS, Body, Feature, extent
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
+from alula.geometry.bodies.features import Pin, Ring
+from alula.geometry.bodies.footprint import Footprint
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.bodies.section import Section, rectangle
+from alula.geometry.parts.profile import Profile, profile, width_at
+from alula.geometry.parts.straight import CLEAR_EYE, Piece, Straight
+from alula.geometry.parts.widths import check_widths, widths_cuts, widths_footprints, widths_places, widths_solid
 
 WIDE = 10.0
 """Width over thickness of a bar from which on the elements of its first mesh follow its width."""

@@ -7,15 +7,15 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import Name
-from geometry.base.units import POSITIVE, Length
-from geometry.bodies.body import Body, Feature, PartKind, apart, extent
-from geometry.bodies.eyes import check_flat_eyes
-from geometry.bodies.features import Pin
-from geometry.bodies.footprint import Footprint
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.bodies.section import Section, rectangle
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import Name
+from alula.geometry.base.units import POSITIVE, Length
+from alula.geometry.bodies.body import Body, Feature, PartKind, apart, extent
+from alula.geometry.bodies.eyes import check_flat_eyes
+from alula.geometry.bodies.features import Pin
+from alula.geometry.bodies.footprint import Footprint
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.bodies.section import Section, rectangle
 
 _CHORDS = 200
 

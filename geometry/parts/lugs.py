@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import ON_AXIS, Body, patch_span
-from geometry.bodies.eyes import eye_reach
-from geometry.bodies.features import Pin
-from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import ON_AXIS, Body, patch_span
+from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.bodies.features import Pin
+from alula.geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 
 
 def without_lugs(body: Body) -> Body:

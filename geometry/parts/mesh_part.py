@@ -4,11 +4,11 @@ from typing import ClassVar, Literal
 
 from pydantic import field_validator
 
-from geometry.base.errors import CaseError
-from geometry.base.model import refusal
-from geometry.bodies.body import Body, Feature
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.parts.step import FilePart, ImportedPart
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import refusal
+from alula.geometry.bodies.body import Body, Feature
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.parts.step import FilePart, ImportedPart
 
 UNITS = {"um": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 """Units of length of mesh files [mm]."""

@@ -4,15 +4,15 @@ from typing import Annotated
 
 from pydantic import Field
 
-from geometry.bodies.body import Body
-from geometry.bodies.features import EyeSizes, HoleRow, Pin, PlainEnd, Ring, Slot
-from geometry.bodies.section import Section, rectangle, ring
-from geometry.parts.bar import Bar
-from geometry.parts.disc import Disc
-from geometry.parts.mesh_part import MeshPart
-from geometry.parts.plate import Plate
-from geometry.parts.step import FilePart, StepPart
-from geometry.parts.tube import Tube
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.features import EyeSizes, HoleRow, Pin, PlainEnd, Ring, Slot
+from alula.geometry.bodies.section import Section, rectangle, ring
+from alula.geometry.parts.bar import Bar
+from alula.geometry.parts.disc import Disc
+from alula.geometry.parts.mesh_part import MeshPart
+from alula.geometry.parts.plate import Plate
+from alula.geometry.parts.step import FilePart, StepPart
+from alula.geometry.parts.tube import Tube
 
 __all__ = [
     "Bar",

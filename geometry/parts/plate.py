@@ -6,17 +6,17 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field
 
-from geometry.base.errors import CaseError
-from geometry.base.model import Name
-from geometry.base.outline import STRAIGHT, BallError, Outline, gap, outline
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.bodies.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
-from geometry.bodies.eyes import check_flat_eyes
-from geometry.bodies.features import Pin, PlainEnd
-from geometry.bodies.footprint import Footprint, of_outlines
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.bodies.section import Section, rectangle
-from geometry.parts.pockets import Pocket, RoundHole
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import Name
+from alula.geometry.base.outline import STRAIGHT, BallError, Outline, gap, outline
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.bodies.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
+from alula.geometry.bodies.eyes import check_flat_eyes
+from alula.geometry.bodies.features import Pin, PlainEnd
+from alula.geometry.bodies.footprint import Footprint, of_outlines
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.bodies.section import Section, rectangle
+from alula.geometry.parts.pockets import Pocket, RoundHole
 
 LEAST_WALL = 0.05
 """Least wall beside a hole or pocket over its diameter, or that of its corners, and least neck over eye_diameter.

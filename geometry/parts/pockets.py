@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel
-from geometry.base.outline import Outline, outline
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel
+from alula.geometry.base.outline import Outline, outline
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 
 LEAST_FLOOR = 0.05
 """Least floor of a pocket over the plate's thickness. Assumed: a thinner one is hardly made."""

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from geometry.base.errors import CaseError
-from geometry.bodies.eyes import ROUNDING
-from geometry.bodies.kernel import Border
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.eyes import ROUNDING
+from alula.geometry.bodies.kernel import Border
 
 Place = tuple[float, float]
 

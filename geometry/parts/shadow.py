@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bodies.footprint import Footprint
+from alula.geometry.bodies.footprint import Footprint
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]

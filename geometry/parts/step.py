@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo
 
-from geometry.base.errors import CannotRunError
-from geometry.base.model import Direction, Name, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.bodies.body import Body, Feature, PartKind
-from geometry.bodies.cut_section import CutSection
-from geometry.bodies.footprint import Footprint
-from geometry.bodies.kernel import Entity, Kernel
-from geometry.bodies.section import Section, rectangle
-from geometry.imported.read import part_surface
-from geometry.materials.printable import Printable
-from geometry.parts.shadow import shadows
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.model import Direction, Name, Text, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.bodies.body import Body, Feature, PartKind
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.bodies.footprint import Footprint
+from alula.geometry.bodies.kernel import Entity, Kernel
+from alula.geometry.bodies.section import Section, rectangle
+from alula.geometry.imported.read import part_surface
+from alula.geometry.materials.printable import Printable
+from alula.geometry.parts.shadow import shadows
 
 Vector = tuple[float, float, float]
 

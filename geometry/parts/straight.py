@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import FLAT_WALL, Body, PartKind, extent
-from geometry.bodies.eyes import check_eyes, flush, plain_eye
-from geometry.bodies.features import Pin
-from geometry.bodies.footprint import Footprint, eye, strip
-from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
-from geometry.parts.arms import check_arms
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import FLAT_WALL, Body, PartKind, extent
+from alula.geometry.bodies.eyes import check_eyes, flush, plain_eye
+from alula.geometry.bodies.features import Pin
+from alula.geometry.bodies.footprint import Footprint, eye, strip
+from alula.geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from alula.geometry.parts.arms import check_arms
 
 CLEAR_EYE = 1.1
 """Eye over width of a bar from which on the eye's rim stands clear of the bar's sides."""

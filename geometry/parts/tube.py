@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import Name
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.bodies.body import Body, Feature, extent, patch_span
-from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
-from geometry.bodies.features import Pin, Ring
-from geometry.bodies.footprint import Footprint, eye, strip
-from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
-from geometry.bodies.section import Section, rectangle, ring
-from geometry.parts.lugs import check_lugs, fine_at_lugs, with_lugs, without_lugs
-from geometry.parts.straight import Piece, Straight
-from geometry.parts.tube_pins import check_pins_through
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import Name
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from alula.geometry.bodies.body import Body, Feature, extent, patch_span
+from alula.geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
+from alula.geometry.bodies.features import Pin, Ring
+from alula.geometry.bodies.footprint import Footprint, eye, strip
+from alula.geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from alula.geometry.bodies.section import Section, rectangle, ring
+from alula.geometry.parts.lugs import check_lugs, fine_at_lugs, with_lugs, without_lugs
+from alula.geometry.parts.straight import Piece, Straight
+from alula.geometry.parts.tube_pins import check_pins_through
 
 ROD_SIZE = 0.8
 """Largest element edge in a rod, over its radius."""

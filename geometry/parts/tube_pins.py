@@ -3,9 +3,9 @@
 import itertools
 import math
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body, apart
-from geometry.bodies.eyes import ROUNDING
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body, apart
+from alula.geometry.bodies.eyes import ROUNDING
 
 SHARPEST = math.radians(45.0)
 """Least angle between a pin's hole and the tube's outside, where the hole reaches farthest from the axis.

@@ -9,15 +9,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import ON_AXIS, Body, extent, patch_span
-from geometry.bodies.cut_section import CutSection
-from geometry.bodies.eyes import PLAIN_EYE, ROUNDING, TOUCHING, check_flat_eyes
-from geometry.bodies.features import Pin
-from geometry.bodies.footprint import Footprint, eye, of_border
-from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
-from geometry.parts.profile import Profile
-from geometry.parts.straight import CLEAR_EYE
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import ON_AXIS, Body, extent, patch_span
+from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.bodies.eyes import PLAIN_EYE, ROUNDING, TOUCHING, check_flat_eyes
+from alula.geometry.bodies.features import Pin
+from alula.geometry.bodies.footprint import Footprint, eye, of_border
+from alula.geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from alula.geometry.parts.profile import Profile
+from alula.geometry.parts.straight import CLEAR_EYE
 
 _CELLS = 32
 """Stretches of one section each that stand for the bar, about. Of a cantilever whose depth halves towards its tip, the

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.facts import Bore
+from alula.geometry.imported.facts import Bore
 
 Real = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.bodies.features import FlatFace
-from geometry.imported.facts import Face, Vector
-from geometry.imported.read import part_facts
-from geometry.parts.step import FilePart
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import FlatFace
+from alula.geometry.imported.facts import Face, Vector
+from alula.geometry.imported.read import part_facts
+from alula.geometry.parts.step import FilePart
 
 Real = NDArray[np.float64]
 

@@ -12,11 +12,11 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.imported.arrangement import PARALLEL, along_slot, angle_between
-from geometry.imported.facts import Bore
-from geometry.parts.step import FilePart
-from geometry.placement.fit import Fit, SlotEnd, Wanted, ends_of
+from alula.geometry.base.errors import CaseError
+from alula.geometry.imported.arrangement import PARALLEL, along_slot, angle_between
+from alula.geometry.imported.facts import Bore
+from alula.geometry.parts.step import FilePart
+from alula.geometry.placement.fit import Fit, SlotEnd, Wanted, ends_of
 
 Real = NDArray[np.float64]
 

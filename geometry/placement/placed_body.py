@@ -9,17 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.base.errors import AlulaError, CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.features import FlatFace, Pin, Ring
-from geometry.imported.facts import Bore, PartFacts
-from geometry.imported.read import part_facts
-from geometry.meshing.mesh import sections_and_rings
-from geometry.parts.mesh_part import MeshedPart
-from geometry.parts.step import FilePart, ImportedPart
-from geometry.placement.fit import Fit, Wanted
-from geometry.placement.load_faces import load_faces
-from geometry.placement.match import place, with_loaded_bores
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.features import FlatFace, Pin, Ring
+from alula.geometry.imported.facts import Bore, PartFacts
+from alula.geometry.imported.read import part_facts
+from alula.geometry.meshing.mesh import sections_and_rings
+from alula.geometry.parts.mesh_part import MeshedPart
+from alula.geometry.parts.step import FilePart, ImportedPart
+from alula.geometry.placement.fit import Fit, Wanted
+from alula.geometry.placement.load_faces import load_faces
+from alula.geometry.placement.match import place, with_loaded_bores
 
 EXACT = 1e-6
 """Share of its diameter by which the centre of a bore may lie off its point."""

@@ -2,7 +2,7 @@
 
 It enters the face that is nearest to its point, of a plate its top and bottom: a flat one within a circle about the
 nearest place, a round one whole. Where faces are equally near, as top and bottom of a flat part, all of them carry the
-load. Runs in a child process only (see ``geometry.meshing.mesh``).
+load. Runs in a child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 import math
@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.features import FlatFace, PlainEnd
-from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.features import FlatFace, PlainEnd
+from alula.geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 
 AS_NEAR = 1e-3
 """Share by which the distances of two faces from a point may differ where both count."""

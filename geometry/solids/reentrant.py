@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from geometry.solids.solid_model import Solid
+    from alula.geometry.solids.solid_model import Solid
 
 SHARP = math.radians(5.0)
 """Angles up to this far above 180° count as smooth: the exponent λ is then above 0.99."""

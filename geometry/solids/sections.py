@@ -1,6 +1,6 @@
 """Sections of a solid across the x axis of its link, and the flat rings about its holes, by the geometry kernel.
 
-Runs in a child process only (see ``geometry.meshing.mesh``).
+Runs in a child process only (see ``alula.geometry.meshing.mesh``).
 """
 
 import math
@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bodies.body import FLAT_WALL, apart
-from geometry.bodies.cut_section import CutSection, convex, joined
-from geometry.bodies.kernel import ON_SURFACE
-from geometry.solids.solid_model import Solid
+from alula.geometry.bodies.body import FLAT_WALL, apart
+from alula.geometry.bodies.cut_section import CutSection, convex, joined
+from alula.geometry.bodies.kernel import ON_SURFACE
+from alula.geometry.solids.solid_model import Solid
 
 WIDEST = 4.0
 """Diameter of the ring about a hole on a larger face, over that of the hole, at most."""

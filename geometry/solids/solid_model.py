@@ -1,6 +1,6 @@
 """Links as solids of gmsh's OpenCASCADE kernel.
 
-Runs in a child process only (see ``geometry.meshing.mesh``), since the kernel can crash or loop for ever.
+Runs in a child process only (see ``alula.geometry.meshing.mesh``), since the kernel can crash or loop for ever.
 OpenCASCADE works to 1e-7 in whatever unit, so a body is built in a unit of its own: a tenth of its
 section's smaller size. What this module is given and returns is in mm.
 """
@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.bodies.body import Body, patch_span
-from geometry.bodies.eyes import flush
-from geometry.bodies.features import HoleRow, Pin
-from geometry.bodies.kernel import Entity, FilletError, Kernel
-from geometry.solids.patches import patch_borders
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.bodies.body import Body, patch_span
+from alula.geometry.bodies.eyes import flush
+from alula.geometry.bodies.features import HoleRow, Pin
+from alula.geometry.bodies.kernel import Entity, FilletError, Kernel
+from alula.geometry.solids.patches import patch_borders
 
 SECTION_UNITS = 10.0
 """Smaller size of a section, in the unit in which it is built."""

@@ -1,8 +1,8 @@
 """The case: its core, and the tables that serve published sources."""
 
-from loads.case.case_rules import check_rules
-from loads.case.core import CoreCase
-from loads.sources.tables import SourceTables
+from alula.loads.case.case_rules import check_rules
+from alula.loads.case.core import CoreCase
+from alula.loads.sources.tables import SourceTables
 
 
 class Case(SourceTables, CoreCase):

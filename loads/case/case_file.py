@@ -12,15 +12,15 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.base.version import CASE_SCHEMA_VERSION
-from loads.case.case import Case
-from loads.case.part_points import with_part_points
-from loads.case.revisable import Origin
-from loads.text.entries import alike, names_tables
-from loads.text.explain import printable, sentence
-from loads.text.file_text import LARGEST_FILE, file_text
-from loads.text.nesting import refuse_deep, too_deep
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.version import CASE_SCHEMA_VERSION
+from alula.loads.case.case import Case
+from alula.loads.case.part_points import with_part_points
+from alula.loads.case.revisable import Origin
+from alula.loads.text.entries import alike, names_tables
+from alula.loads.text.explain import printable, sentence
+from alula.loads.text.file_text import LARGEST_FILE, file_text
+from alula.loads.text.nesting import refuse_deep, too_deep
 
 
 class Change(NamedTuple):
@@ -33,7 +33,7 @@ class Change(NamedTuple):
 
 def built_in_cases() -> tuple[str, ...]:
     """Names of the cases that alula ships."""
-    folder = files("loads.cases")
+    folder = files("alula.loads.cases")
     return tuple(sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml")))
 
 
@@ -187,7 +187,7 @@ def read_text(name_or_path: str) -> tuple[str, str]:
         For a file that is missing, too large, unreadable, empty or no text.
     """
     if name_or_path in built_in_cases():
-        return files("loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
+        return files("alula.loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
     text = file_text(
         name_or_path,
         "case",
@@ -221,7 +221,7 @@ def read_companion(case_path: str, name: str) -> str:
     if Path(name).name != name or name.startswith("."):
         raise CaseError(f"'{printable(name)}' must be the plain name of a file beside the case file")
     built_in = case_path in built_in_cases()
-    source = files("loads.cases").joinpath(name) if built_in else Path(case_path).parent / name
+    source = files("alula.loads.cases").joinpath(name) if built_in else Path(case_path).parent / name
     try:
         if source.is_file() and (built_in or Path(str(source)).stat().st_size <= LARGEST_FILE):
             return source.read_text(encoding="utf-8-sig")
@@ -242,7 +242,7 @@ def folder_of(name: str) -> str:
     -------
     str
     """
-    return str(files("loads.cases")) if name in built_in_cases() else str(Path(name).parent)
+    return str(files("alula.loads.cases")) if name in built_in_cases() else str(Path(name).parent)
 
 
 def validate(data: dict[str, Any], folder: str = "") -> Case:

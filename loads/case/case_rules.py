@@ -2,22 +2,22 @@
 
 import math
 
-from geometry.base.errors import CaseError
-from geometry.base.model import check_file_names
-from geometry.bodies.body_rules import check_body, check_length
-from geometry.materials.directional import directional
-from geometry.materials.material import Material
-from geometry.parts.part import Body, FilePart
-from loads.case.core import CoreCase
-from loads.case.forks import check_fork, check_pair
-from loads.case.heights import layer_of
-from loads.case.joint_rules import check_clamps, check_clearances, check_friction
-from loads.case.layers import check_layers, pin_masses
-from loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
-from loads.case.places import check_moving, check_point
-from loads.case.spring_rules import check_equilibrium, check_springs, check_stops
-from loads.case.toleranced import toleranced
-from loads.records.check_spec import (
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import check_file_names
+from alula.geometry.bodies.body_rules import check_body, check_length
+from alula.geometry.materials.directional import directional
+from alula.geometry.materials.material import Material
+from alula.geometry.parts.part import Body, FilePart
+from alula.loads.case.core import CoreCase
+from alula.loads.case.forks import check_fork, check_pair
+from alula.loads.case.heights import layer_of
+from alula.loads.case.joint_rules import check_clamps, check_clearances, check_friction
+from alula.loads.case.layers import check_layers, pin_masses
+from alula.loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
+from alula.loads.case.places import check_moving, check_point
+from alula.loads.case.spring_rules import check_equilibrium, check_springs, check_stops
+from alula.loads.case.toleranced import toleranced
+from alula.loads.records.check_spec import (
     BearingCheck,
     Check,
     ClearanceCheck,
@@ -31,11 +31,11 @@ from loads.records.check_spec import (
     SizeCheck,
     SustainedCheck,
 )
-from loads.records.conditions import Conditions
-from loads.records.motion_spec import MotionSpec
-from loads.records.settings import WaysToHold
-from loads.statics.statics import Drive, check_drive
-from loads.text.explain import require
+from alula.loads.records.conditions import Conditions
+from alula.loads.records.motion_spec import MotionSpec
+from alula.loads.records.settings import WaysToHold
+from alula.loads.statics.statics import Drive, check_drive
+from alula.loads.text.explain import require
 
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""

@@ -6,38 +6,38 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field
 
-from geometry.base.errors import CaseError
-from geometry.base.model import Name, Text
-from geometry.base.units import NOT_NEGATIVE, Length
-from geometry.bodies.body import PartKind
-from geometry.bodies.features import FlatFace
-from geometry.linkage.linkage import Joint, Link, Linkage
-from geometry.linkage.pose import Pose, solve_pose
-from geometry.materials.material import Material, library
-from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
-from geometry.placement.fit import Wanted
-from geometry.placement.placed_body import faces_of, placed_body
-from loads.case.eyes import with_eye
-from loads.case.heights import heights
-from loads.case.places import check_point
-from loads.case.revisable import Revisable
-from loads.records.aero import AirForces, air_forces
-from loads.records.carried import Carried
-from loads.records.check_spec import (
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import Name, Text
+from alula.geometry.base.units import NOT_NEGATIVE, Length
+from alula.geometry.bodies.body import PartKind
+from alula.geometry.bodies.features import FlatFace
+from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.geometry.materials.material import Material, library
+from alula.geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
+from alula.geometry.placement.fit import Wanted
+from alula.geometry.placement.placed_body import faces_of, placed_body
+from alula.loads.case.eyes import with_eye
+from alula.loads.case.heights import heights
+from alula.loads.case.places import check_point
+from alula.loads.case.revisable import Revisable
+from alula.loads.records.aero import AirForces, air_forces
+from alula.loads.records.carried import Carried
+from alula.loads.records.check_spec import (
     Check,
     ClearanceCheck,
     DisplacementCheck,
     SafetyFactorCheck,
     SustainedCheck,
 )
-from loads.records.conditions import Conditions, at_temperature, under
-from loads.records.flapping import Wing
-from loads.records.load_case import LoadCase
-from loads.records.motion_spec import MotionSpec
-from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
-from loads.records.springs import Spring, Stop, Tendon
-from loads.records.tolerances import TolerancesTable
-from loads.statics.statics import Drive
+from alula.loads.records.conditions import Conditions, at_temperature, under
+from alula.loads.records.flapping import Wing
+from alula.loads.records.load_case import LoadCase
+from alula.loads.records.motion_spec import MotionSpec
+from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
+from alula.loads.records.springs import Spring, Stop, Tendon
+from alula.loads.records.tolerances import TolerancesTable
+from alula.loads.statics.statics import Drive
 
 
 class CoreCase(Revisable):

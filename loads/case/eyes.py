@@ -3,11 +3,11 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from geometry.base.errors import CaseError
-from geometry.bodies.features import Fork, Pin, Ring
-from geometry.bodies.forks import depth_of
-from geometry.linkage.linkage import Linkage
-from geometry.parts.part import Body, FilePart, Part
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import Fork, Pin, Ring
+from alula.geometry.bodies.forks import depth_of
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.parts.part import Body, FilePart, Part
 
 
 def with_eye(linkage: Linkage, parts: Mapping[str, Part], body_of: Callable[[str], Body], link: str, pin: Pin) -> Pin:

@@ -1,12 +1,12 @@
 """Forks and pairs of side plates: which joints have one, and whether the other link's eye fits in between."""
 
-from geometry.base.errors import CaseError
-from geometry.bodies.eyes import ROUNDING
-from geometry.bodies.features import Ring
-from geometry.parts.part import FilePart
-from loads.case.core import CoreCase
-from loads.case.eyes import joint_of_fork, other_link
-from loads.case.heights import thickness
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.eyes import ROUNDING
+from alula.geometry.bodies.features import Ring
+from alula.geometry.parts.part import FilePart
+from alula.loads.case.core import CoreCase
+from alula.loads.case.eyes import joint_of_fork, other_link
+from alula.loads.case.heights import thickness
 
 
 def forked_link(case: CoreCase, joint: str) -> str | None:

@@ -3,9 +3,9 @@
 import json
 from collections.abc import Iterable, Mapping
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Link
-from geometry.parts.part import FilePart, Part
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Link
+from alula.geometry.parts.part import FilePart, Part
 
 Links = Mapping[str, Link]
 Parts = Mapping[str, Part]

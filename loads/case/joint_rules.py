@@ -4,10 +4,10 @@ import itertools
 import math
 from collections.abc import Iterator
 
-from geometry.base.errors import CaseError
-from loads.case.core import CoreCase
-from loads.records.check_spec import MotorCheck
-from loads.text.caveat import Caveat, Heading, Topic
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.core import CoreCase
+from alula.loads.records.check_spec import MotorCheck
+from alula.loads.text.caveat import Caveat, Heading, Topic
 
 LOOSE = 0.1
 """Play over the diameter of its pin above which it is unusual: ISO 286 H11/c11, a loose fit, leaves 0.06 at 3 mm."""

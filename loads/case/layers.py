@@ -2,11 +2,11 @@
 
 import math
 
-from geometry.base.errors import CaseError
-from loads.case.core import CoreCase
-from loads.case.forks import levels, outer_link
-from loads.case.heights import thickness
-from loads.records.carried import CarriedBody
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.core import CoreCase
+from alula.loads.case.forks import levels, outer_link
+from alula.loads.case.heights import thickness
+from alula.loads.records.carried import CarriedBody
 
 
 def slab(case: CoreCase, name: str) -> tuple[float, float]:

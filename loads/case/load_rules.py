@@ -4,16 +4,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from geometry.base.errors import CaseError
-from loads.case.core import CoreCase
-from loads.case.places import check_moving, check_point
-from loads.records.aero import AirPatch, check_air
-from loads.records.carried import CarriedBody, CarriedSpread
-from loads.records.check_spec import FrequencyCheck
-from loads.records.flapping import WIDEST, Wing, check_flapping
-from loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
-from loads.text.caveat import Caveat, Heading, Topic
-from loads.text.explain import require
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.core import CoreCase
+from alula.loads.case.places import check_moving, check_point
+from alula.loads.records.aero import AirPatch, check_air
+from alula.loads.records.carried import CarriedBody, CarriedSpread
+from alula.loads.records.check_spec import FrequencyCheck
+from alula.loads.records.flapping import WIDEST, Wing, check_flapping
+from alula.loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
+from alula.loads.text.caveat import Caveat, Heading, Topic
+from alula.loads.text.explain import require
 
 Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing
 

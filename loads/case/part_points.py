@@ -14,17 +14,17 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import AlulaError, CaseError
-from geometry.base.units import parse
-from geometry.bodies.features import Slot
-from geometry.linkage.linkage import Joint
-from geometry.parts.mesh_part import MeshPart
-from geometry.parts.step import FilePart, StepPart
-from geometry.placement.fit import Fit, Wanted
-from geometry.placement.load_faces import load_faces
-from geometry.placement.match import place, points_of_part, with_loaded_bores
-from geometry.placement.placed_body import bores_of
-from loads.text.explain import sentence
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.base.units import parse
+from alula.geometry.bodies.features import Slot
+from alula.geometry.linkage.linkage import Joint
+from alula.geometry.parts.mesh_part import MeshPart
+from alula.geometry.parts.step import FilePart, StepPart
+from alula.geometry.placement.fit import Fit, Wanted
+from alula.geometry.placement.load_faces import load_faces
+from alula.geometry.placement.match import place, points_of_part, with_loaded_bores
+from alula.geometry.placement.placed_body import bores_of
+from alula.loads.text.explain import sentence
 
 FROM_PART = "from-part"
 KINDS: dict[str, type[FilePart]] = {"step": StepPart, "mesh": MeshPart}

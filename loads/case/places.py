@@ -1,8 +1,8 @@
 """Links and points that an entry of a case names: whether there are such ones."""
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from loads.text.explain import require
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.loads.text.explain import require
 
 
 def check_moving(linkage: Linkage, entry: str, link: str) -> None:

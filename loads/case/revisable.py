@@ -6,8 +6,8 @@ from typing import Any, Self
 
 from pydantic import PrivateAttr
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,10 +3,10 @@
 import itertools
 import math
 
-from geometry.base.errors import CaseError
-from loads.case.core import CoreCase
-from loads.records.springs import Attachment, LineSpring
-from loads.text.explain import require
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.core import CoreCase
+from alula.loads.records.springs import Attachment, LineSpring
+from alula.loads.text.explain import require
 
 
 def check_springs(case: CoreCase) -> None:

@@ -6,11 +6,11 @@ from typing import Literal
 
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from loads.case.core import CoreCase
-from loads.records.tolerances import Distribution, Tolerance
-from loads.text.caveat import Caveat, Topic
-from loads.text.explain import printable, require
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.core import CoreCase
+from alula.loads.records.tolerances import Distribution, Tolerance
+from alula.loads.text.caveat import Caveat, Topic
+from alula.loads.text.explain import printable, require
 
 PINS = "pins"
 STRENGTHS = ("yield_strength", "ultimate_strength", "strength_across_layers")

@@ -3,12 +3,12 @@
 import tomllib
 from typing import Literal
 
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.exchange.pmks import read_pmks
-from loads.exchange.pylinkage import read_pylinkage
-from loads.exchange.sketch import MALFORMED, case_text
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.exchange.pmks import read_pmks
+from alula.loads.exchange.pylinkage import read_pylinkage
+from alula.loads.exchange.sketch import MALFORMED, case_text
+from alula.loads.text.explain import printable
 
 Program = Literal["pylinkage", "pmks"]
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from geometry.base.errors import CaseError
-from geometry.imported.arrangement import LinkFrame, far_end, link_frame, single_frame
-from geometry.imported.facts import PartFacts, PartSurface
-from geometry.imported.read import part_surface
-from geometry.parts.mesh_part import UNITS
-from loads.case.case_file import validate
-from loads.exchange.sketch import plain_name
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.geometry.imported.arrangement import LinkFrame, far_end, link_frame, single_frame
+from alula.geometry.imported.facts import PartFacts, PartSurface
+from alula.geometry.imported.read import part_surface
+from alula.geometry.parts.mesh_part import UNITS
+from alula.loads.case.case_file import validate
+from alula.loads.exchange.sketch import plain_name
+from alula.loads.text.explain import printable
 
 ASSUMED_MATERIAL = "aluminium-6061-t6"
 """Material in the entries where none is named."""

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from urllib.parse import unquote
 
-from geometry.base.errors import CaseError
-from loads.exchange.sketch import MALFORMED, Push, Rider, Sketch, plain_name
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.loads.exchange.sketch import MALFORMED, Push, Rider, Sketch, plain_name
+from alula.loads.text.explain import printable
 
 _LETTERS = string.digits + string.ascii_uppercase + string.ascii_lowercase
 _DIGITS = _LETTERS + "_-"

@@ -5,9 +5,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from geometry.base.errors import CaseError
-from loads.exchange.sketch import MALFORMED, Rider, Sketch, plain_name
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.loads.exchange.sketch import MALFORMED, Rider, Sketch, plain_name
+from alula.loads.text.explain import printable
 
 _LEGACY = {"Static", "Crank", "Revolute", "Fixed", "Prismatic"}
 _SAVE = "save it with pylinkage.mechanism.mechanism_to_json"

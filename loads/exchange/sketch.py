@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from geometry.base.errors import CaseError
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.loads.text.explain import printable
 
 GUIDED = 10.0
 """Distance of the second point of a sliding block from its pin [mm]; it only shows along what the block slides."""

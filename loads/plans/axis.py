@@ -5,10 +5,10 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from geometry.base.errors import CaseError
-from geometry.base.units import TYPOGRAPHY
-from loads.sources.quantity import UNIT, unit_of
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import TYPOGRAPHY
+from alula.loads.sources.quantity import UNIT, unit_of
+from alula.loads.text.explain import printable
 
 MOST_VALUES = 1_000_000
 """Values of one range."""

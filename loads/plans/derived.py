@@ -3,11 +3,11 @@
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from geometry.base.errors import CaseError
-from geometry.base.units import INTERNAL_UNITS
-from loads.sources.expression import Path, evaluate, evaluate_number
-from loads.sources.quantity import Value, describe, unit_of
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import INTERNAL_UNITS
+from alula.loads.sources.expression import Path, evaluate, evaluate_number
+from alula.loads.sources.quantity import Value, describe, unit_of
+from alula.loads.text.explain import printable
 
 
 def in_turn(links: Mapping[str, str], value: Callable[[str, Collection[str]], None]) -> None:

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Text
-from loads.case.case_file import built_in_cases, read_tables
-from loads.plans.axis import Axis, axis
-from loads.text.explain import printable, sentence
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Text
+from alula.loads.case.case_file import built_in_cases, read_tables
+from alula.loads.plans.axis import Axis, axis
+from alula.loads.text.explain import printable, sentence
 
 Value = str | int | float | bool
 LARGEST_TABLE = 256 << 20

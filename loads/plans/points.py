@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.plans.axis import Axis, plain
-from loads.plans.plan import Sample
+from alula.loads.plans.axis import Axis, plain
+from alula.loads.plans.plan import Sample
 
 Point = dict[str, object]
 """Entry -> value."""

@@ -7,14 +7,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import Change, changed_tables, folder_of, read_tables
-from loads.case.part_points import KINDS
-from loads.plans.derived import derived_value, in_turn
-from loads.plans.plan import StudyPlan, case_name, table_of
-from loads.plans.points import Point, Points
-from loads.text.explain import printable, sentence
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import Change, changed_tables, folder_of, read_tables
+from alula.loads.case.part_points import KINDS
+from alula.loads.plans.derived import derived_value, in_turn
+from alula.loads.plans.plan import StudyPlan, case_name, table_of
+from alula.loads.plans.points import Point, Points
+from alula.loads.text.explain import printable, sentence
 
 LEFT_OUT = ("published_statics", "claims")
 """Tables that say what a source published of the case as it stands, which no variant is."""

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Area, Density, Force, Speed
-from loads.records.applied import LineLoad, PointLoad
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Name, Text, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Area, Density, Force, Speed
+from alula.loads.records.applied import LineLoad, PointLoad
 
 Real = NDArray[np.float64]
 Direction = tuple[float, float, float]

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.placement import Placement, vector
+from alula.geometry.linkage.placement import Placement, vector
 
 Real = NDArray[np.float64]
 Axes = Literal["global", "link"]

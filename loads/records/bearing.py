@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.base.errors import CaseError
+from alula.geometry.base.errors import CaseError
 
 Span = Literal[180, 90]
 

@@ -6,9 +6,9 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Tag
 
-from geometry.base.model import CaseModel, Name
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length, Mass
-from loads.records.applied import PartMass
+from alula.geometry.base.model import CaseModel, Name
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length, Mass
+from alula.loads.records.applied import PartMass
 
 
 class CarriedSpread(CaseModel):

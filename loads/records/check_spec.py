@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, AngularSpeed, Current, Length, Mass, Moment, Voltage
+from alula.geometry.base.model import CaseModel, Name, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, AngularSpeed, Current, Length, Mass, Moment, Voltage
 
 
 class SafetyFactorCheck(CaseModel):

@@ -2,11 +2,11 @@
 
 from typing import Annotated
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel
-from geometry.base.units import POSITIVE, Temperature, Time
-from geometry.materials.material import Fatigue, Material
-from geometry.materials.temperature import covered, factor_at
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel
+from alula.geometry.base.units import POSITIVE, Temperature, Time
+from alula.geometry.materials.material import Fatigue, Material
+from alula.geometry.materials.temperature import covered, factor_at
 
 _LAYERS = "strength_across_layers", "shear_strength_between_layers"
 _STRENGTHS = ("yield_strength", "ultimate_strength", "sustained_stress", "strength_range", *_LAYERS,

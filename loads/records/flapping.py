@@ -15,9 +15,9 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, as_text
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Name, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, as_text
 
 LARGEST_NORMAL_COEFFICIENT = 8.0
 """Above this a coefficient is refused: by Graham's law that of a plate that swings by a sixth of its chord."""

@@ -6,11 +6,11 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PlainValidator, WithJsonSchema
 
-from geometry.base.model import CaseModel, Name, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Stress, parse
-from loads.records.aero import AirLoad
-from loads.records.flapping import Flapping
-from loads.text.shares import LoadScatter
+from alula.geometry.base.model import CaseModel, Name, Text, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Stress, parse
+from alula.loads.records.aero import AirLoad
+from alula.loads.records.flapping import Flapping
+from alula.loads.text.shares import LoadScatter
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import Acceleration, Angle, AngularAcceleration, AngularSpeed, Length, Speed
+from alula.geometry.base.model import CaseModel, Name, refusal
+from alula.geometry.base.units import Acceleration, Angle, AngularAcceleration, AngularSpeed, Length, Speed
 
 
 class MotionSpec(CaseModel):

@@ -5,9 +5,9 @@ from typing import Annotated, Literal, NamedTuple
 from pydantic import Field, PlainValidator, PrivateAttr, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel, Name, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length, parse
-from loads.text.shares import Accuracy
+from alula.geometry.base.model import CaseModel, Name, Text, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length, parse
+from alula.loads.text.shares import Accuracy
 
 
 class PoseSpec(CaseModel):

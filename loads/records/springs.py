@@ -5,8 +5,8 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 from pydantic import Discriminator, Field, PlainValidator, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import (
+from alula.geometry.base.model import CaseModel, Name, refusal
+from alula.geometry.base.units import (
     NOT_NEGATIVE,
     POSITIVE,
     Angle,

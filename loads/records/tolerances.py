@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 from pydantic_core import core_schema
 
-from geometry.base.model import CaseModel, Text, refusal
-from geometry.base.units import parse
+from alula.geometry.base.model import CaseModel, Text, refusal
+from alula.geometry.base.units import parse
 
 Distribution = Literal["uniform", "normal", "worst case"]
 

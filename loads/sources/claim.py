@@ -9,13 +9,13 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, Text, refusal
-from geometry.base.units import POSITIVE, Angle, AngularSpeed, Length
-from geometry.mechanisms.ornithopter import OrnithopterRules
-from loads.sources.expression import evaluate_number
-from loads.sources.quantity import Value
-from loads.text.explain import printable, sentence
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Name, Text, refusal
+from alula.geometry.base.units import POSITIVE, Angle, AngularSpeed, Length
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules
+from alula.loads.sources.expression import evaluate_number
+from alula.loads.sources.quantity import Value
+from alula.loads.text.explain import printable, sentence
 
 _FIGURE = re.compile(r"\s*([+-]?)((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-zµμ°Ω%]\S*)?\s*", re.ASCII)
 _EXACT = 1e-9
@@ -238,7 +238,7 @@ class PublishedSource(CaseModel):
 
 def sources() -> tuple[str, ...]:
     """Names of the source documents whose claims alula ships."""
-    return tuple(sorted(f.name[:-5] for f in files("loads.sources").iterdir() if f.name.endswith(".toml")))
+    return tuple(sorted(f.name[:-5] for f in files("alula.loads.sources").iterdir() if f.name.endswith(".toml")))
 
 
 def read_source(name: str) -> PublishedSource:
@@ -261,7 +261,7 @@ def read_source(name: str) -> PublishedSource:
     """
     if name not in sources():
         raise CaseError(f"source '{printable(name)}' is unknown; choose one of {', '.join(sources())}")
-    text = files("loads.sources").joinpath(f"{name}.toml").read_text(encoding="utf-8")
+    text = files("alula.loads.sources").joinpath(f"{name}.toml").read_text(encoding="utf-8")
     try:
         return PublishedSource.model_validate(tomllib.loads(text))
     except ValidationError as error:

@@ -19,10 +19,10 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import NoReturn
 
-from geometry.base.errors import CaseError
-from geometry.base.units import TYPOGRAPHY
-from loads.sources.quantity import ANGLE, UNIT, Dimensions, Value, describe, unit_of
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import TYPOGRAPHY
+from alula.loads.sources.quantity import ANGLE, UNIT, Dimensions, Value, describe, unit_of
+from alula.loads.text.explain import printable
 
 LONGEST = 500
 DEEPEST = 60

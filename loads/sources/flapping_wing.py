@@ -2,10 +2,10 @@
 
 import math
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name
-from geometry.linkage.linkage import Linkage
-from geometry.mechanisms.flapping import FlappingWing
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Name
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.mechanisms.flapping import FlappingWing
 
 SYMMETRY = 1e-6
 """Share of the longest link by which a crank's pivot may miss the origin."""

@@ -2,7 +2,7 @@
 
 import math
 
-from geometry.mechanisms.ornithopter import OrnithopterRules
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules
 
 _LEVERS = {"lever-right": ("R", 1.0), "lever-left": ("L", -1.0)}
 

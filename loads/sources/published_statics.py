@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, Text
-from geometry.linkage.pose import Pose
-from loads.records.applied import Load
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel, Name, Text
+from alula.geometry.linkage.pose import Pose
+from alula.loads.records.applied import Load
+from alula.loads.text.explain import printable
 
 Real = NDArray[np.float64]
 _MM = 1000.0

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
-from geometry.base.errors import CaseError
-from geometry.base.units import TYPOGRAPHY, registry
-from geometry.base.usual_units import ROOTS, USUAL
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import TYPOGRAPHY, registry
+from alula.geometry.base.usual_units import ROOTS, USUAL
+from alula.loads.text.explain import printable
 
 Dimensions = tuple[tuple[str, Fraction], ...]
 ANGLE: Dimensions = (("radian", Fraction(1)),)

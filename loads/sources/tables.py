@@ -5,15 +5,15 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel
-from geometry.linkage.linkage import Linkage
-from geometry.mechanisms.ornithopter import OrnithopterRules
-from loads.sources.claim import Claim
-from loads.sources.flapping_wing import FlappingWingSpec
-from loads.sources.ornithopter import ornithopter_entries
-from loads.sources.published_statics import PublishedStatics
-from loads.text.explain import require, sentence
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules
+from alula.loads.sources.claim import Claim
+from alula.loads.sources.flapping_wing import FlappingWingSpec
+from alula.loads.sources.ornithopter import ornithopter_entries
+from alula.loads.sources.published_statics import PublishedStatics
+from alula.loads.text.explain import require, sentence
 
 
 class SourceTables(CaseModel):

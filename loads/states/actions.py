@@ -6,19 +6,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.bodies.features import FlatFace
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.placement import Placement, vector
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.aero import air_loads
-from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
-from loads.records.carried import Carried, CarriedSpread, mass_of
-from loads.records.load_case import LoadCase, gravity, vector3
-from loads.states.flapping import flapping_loads
-from loads.states.masses import all_carried
-from loads.states.springs import spring_loads
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import FlatFace
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.placement import Placement, vector
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.aero import air_loads
+from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
+from alula.loads.records.carried import Carried, CarriedSpread, mass_of
+from alula.loads.records.load_case import LoadCase, gravity, vector3
+from alula.loads.states.flapping import flapping_loads
+from alula.loads.states.masses import all_carried
+from alula.loads.states.springs import spring_loads
 
 Real = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ def refuse_turning_bonds(place: Placement) -> None:
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
     """Return all that acts on the links but the joint forces: stated loads, air, weight, inertia, springs, tendons.
 
-    In layers pins weigh too (``loads.case.layers.pin_masses``), in the mid-plane of the link that they stand in.
+    In layers pins weigh too (``alula.loads.case.layers.pin_masses``), in the mid-plane of the link that they stand in.
 
     Parameters
     ----------

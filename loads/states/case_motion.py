@@ -7,18 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.pose import Pose
-from geometry.linkage.slot_ends import refuse_slot_ends
-from loads.case.case import Case
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import Load, PartMass
-from loads.records.load_case import LoadCase, gravity
-from loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
-from loads.states.drive_work import DriveWork, drive_work
-from loads.states.flapping import flapping_loads
-from loads.states.kinetostatics import (
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.pose import Pose
+from alula.geometry.linkage.slot_ends import refuse_slot_ends
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import Load, PartMass
+from alula.loads.records.load_case import LoadCase, gravity
+from alula.loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
+from alula.loads.states.drive_work import DriveWork, drive_work
+from alula.loads.states.flapping import flapping_loads
+from alula.loads.states.kinetostatics import (
     Kinetostatics,
     Power,
     dead_points,
@@ -28,14 +28,14 @@ from loads.states.kinetostatics import (
     solve_kinetostatics,
     torque_by_virtual_work,
 )
-from loads.states.masses import laden_masses, part_masses
-from loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
-from loads.states.springs import spring_loads
-from loads.states.standing import refuse_stops
-from loads.statics.friction import Presses
-from loads.statics.momentum import LinkageMomentum, linkage_momentum
-from loads.statics.statics import Drive
-from loads.text.caveat import Caveat, Topic
+from alula.loads.states.masses import laden_masses, part_masses
+from alula.loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
+from alula.loads.states.springs import spring_loads
+from alula.loads.states.standing import refuse_stops
+from alula.loads.statics.friction import Presses
+from alula.loads.statics.momentum import LinkageMomentum, linkage_momentum
+from alula.loads.statics.statics import Drive
+from alula.loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 

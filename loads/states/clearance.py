@@ -8,18 +8,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.base.ties import first_least, ranked
-from geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap
-from geometry.clearance.shape import Shape, link_shape, pin_shape
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.forks import levels
-from loads.case.layers import on_one_axis, slab
-from loads.states.case_motion import drive_angles
-from loads.text.caveat import Caveat, Topic
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.ties import first_least, ranked
+from alula.geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap
+from alula.geometry.clearance.shape import Shape, link_shape, pin_shape
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.forks import levels
+from alula.loads.case.layers import on_one_axis, slab
+from alula.loads.states.case_motion import drive_angles
+from alula.loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 

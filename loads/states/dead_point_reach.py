@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from geometry.linkage.continuation import DeadPointError
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.pose import Pose
-from loads.states.case_motion import CaseMotion
-from loads.states.kinetostatics import dead_points
+from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.pose import Pose
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.kinetostatics import dead_points
 
 _TRAVEL = 2.0
 """How far beyond its range a slider is moved in search of a dead point, over the links' lengths together."""

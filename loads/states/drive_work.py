@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.motion import Motion
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.states.kinetostatics import relative_motion
-from loads.states.rubbing import WAYS, at_one_pose
-from loads.statics.statics import Drive, Reactions
+from alula.geometry.linkage.motion import Motion
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.states.kinetostatics import relative_motion
+from alula.loads.states.rubbing import WAYS, at_one_pose
+from alula.loads.statics.statics import Drive, Reactions
 
 Real = NDArray[np.float64]
 

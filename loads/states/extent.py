@@ -6,18 +6,18 @@ from functools import cached_property
 
 import numpy as np
 
-from geometry.clearance.least import Spot
-from geometry.clearance.reach import Sides, Standing, reaches, reaches_at
-from geometry.clearance.shape import point_shape
-from geometry.linkage.motion import Motion
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.layers import slab
-from loads.records.check_spec import SizeCheck
-from loads.states.clearance import Assembly, along, assembly, start_of, way_of
-from loads.states.flapping import wing_span
-from loads.text.caveat import Caveat, Topic
+from alula.geometry.clearance.least import Spot
+from alula.geometry.clearance.reach import Sides, Standing, reaches, reaches_at
+from alula.geometry.clearance.shape import point_shape
+from alula.geometry.linkage.motion import Motion
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.layers import slab
+from alula.loads.records.check_spec import SizeCheck
+from alula.loads.states.clearance import Assembly, along, assembly, start_of, way_of
+from alula.loads.states.flapping import wing_span
+from alula.loads.text.caveat import Caveat, Topic
 
 _NEAR = 1e-6
 """Share of the longest link to which the box over a motion is found."""

@@ -23,11 +23,11 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.placement import Placement
-from loads.case.case import Case
-from loads.records.applied import LineLoad, PointLoad
-from loads.records.flapping import VISCOSITY, Flapping, Wing
-from loads.records.load_case import LoadCase
+from alula.geometry.linkage.placement import Placement
+from alula.loads.case.case import Case
+from alula.loads.records.applied import LineLoad, PointLoad
+from alula.loads.records.flapping import VISCOSITY, Flapping, Wing
+from alula.loads.records.load_case import LoadCase
 
 Real = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import Motion
-from geometry.linkage.placement import Placement
-from loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
-from loads.statics.momentum import centroid_motion
-from loads.statics.statics import (
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import Motion
+from alula.geometry.linkage.placement import Placement
+from alula.loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
+from alula.loads.statics.momentum import centroid_motion
+from alula.loads.statics.statics import (
     NEARLY_SINGULAR,
     Drive,
     Equilibrium,
@@ -25,7 +25,7 @@ from loads.statics.statics import (
     check_drive,
     joint_reactions,
 )
-from loads.statics.system import require_determinate
+from alula.loads.statics.system import require_determinate
 
 Real = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ class Kinetostatics(Equilibrium):
     """Joint forces, drive torque and power at the n poses of a motion under one set of loads.
 
     Forces and torque grow without bound at a dead point. They are NaN where the leverage is below ``NEARLY_SINGULAR``
-    of ``loads.statics.statics``.
+    of ``alula.loads.statics.statics``.
 
     Attributes
     ----------

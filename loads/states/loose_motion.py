@@ -1,8 +1,8 @@
 """What the play of pins does over a motion: how far points, drive effort, joint forces and dead points may be off.
 
 Every joint may stand anywhere in its play at every pose, since forces turn round as the linkage moves. All numbers are
-to first order, from the gradients of ``loads.states.play`` at all poses at once; a single pose is also solved at its
-worst offsets (``Play``). Offsets stand still in global axes: the speed at which a pin crosses its play is left out.
+to first order, from the gradients of ``alula.loads.states.play`` at all poses at once; a single pose is also solved at
+its worst offsets (``Play``). Offsets stand still in global axes: the speed at which a pin crosses its play is left out.
 """
 
 from collections.abc import Mapping
@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.ties import first_largest, first_least
-from geometry.linkage.play import LooseJoints
-from loads.case.joint_rules import clearances
-from loads.states.case_motion import CaseMotion, with_inertia
-from loads.states.play import Play, held_rows, play_at
+from alula.geometry.base.ties import first_largest, first_least
+from alula.geometry.linkage.play import LooseJoints
+from alula.loads.case.joint_rules import clearances
+from alula.loads.states.case_motion import CaseMotion, with_inertia
+from alula.loads.states.play import Play, held_rows, play_at
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -5,13 +5,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry.base.errors import AlulaError
-from geometry.meshing.mesh import MassProperties, mass_properties
-from geometry.parts.part import Body
-from loads.case.case import Case
-from loads.case.layers import pin_masses
-from loads.records.applied import PartMass
-from loads.records.carried import Carried, mass_of
+from alula.geometry.base.errors import AlulaError
+from alula.geometry.meshing.mesh import MassProperties, mass_properties
+from alula.geometry.parts.part import Body
+from alula.loads.case.case import Case
+from alula.loads.case.layers import pin_masses
+from alula.loads.records.applied import PartMass
+from alula.loads.records.carried import Carried, mass_of
 
 
 @lru_cache(maxsize=256)

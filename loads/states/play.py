@@ -14,19 +14,19 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.placement import Placement
-from geometry.linkage.play import LooseJoints
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.joint_rules import clearances, rubbing_joints
-from loads.records.applied import Load, PartMass
-from loads.states.actions import acting_loads
-from loads.states.kinetostatics import is_determinate
-from loads.states.rubbing import WAYS, friction_at
-from loads.statics.friction import NOTHING_MORE, Presses
-from loads.statics.joint_reaction import JointReaction
-from loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_reactions
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.play import LooseJoints
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import clearances, rubbing_joints
+from alula.loads.records.applied import Load, PartMass
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.kinetostatics import is_determinate
+from alula.loads.states.rubbing import WAYS, friction_at
+from alula.loads.statics.friction import NOTHING_MORE, Presses
+from alula.loads.statics.joint_reaction import JointReaction
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_reactions
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

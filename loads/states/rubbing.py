@@ -7,18 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import Load, at_poses, chosen
-from loads.records.load_case import LoadCase
-from loads.states.kinetostatics import is_determinate, leverage
-from loads.statics.friction import NOTHING_MORE, Friction, Presses, friction_loads, solve_friction
-from loads.statics.statics import NEARLY_SINGULAR, Drive
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import Load, at_poses, chosen
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.kinetostatics import is_determinate, leverage
+from alula.loads.statics.friction import NOTHING_MORE, Friction, Presses, friction_loads, solve_friction
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive
 
 Real = NDArray[np.float64]
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.placement import Complex, Placement, vector
-from loads.case.core import CoreCase
-from loads.records.applied import PointLoad
-from loads.records.springs import Attachment, LineSpring, Stop, Tendon, TurnSpring
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.placement import Complex, Placement, vector
+from alula.loads.case.core import CoreCase
+from alula.loads.records.applied import PointLoad
+from alula.loads.records.springs import Attachment, LineSpring, Stop, Tendon, TurnSpring
 
 Real = NDArray[np.float64]
 

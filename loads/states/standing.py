@@ -14,23 +14,23 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.continuation import DeadPointError, Track
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.records.applied import PartMass
-from loads.records.check_spec import FrequencyCheck
-from loads.records.load_case import LoadCase
-from loads.records.settings import DriveSpec
-from loads.records.springs import LineSpring, Spring
-from loads.states.actions import acting_loads
-from loads.states.kinetostatics import work
-from loads.states.springs import SpringState, joint_value, spring_states, stop_gaps, touching
-from loads.statics.statics import Drive
-from loads.text.caveat import Caveat, Heading, Topic
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.continuation import DeadPointError, Track
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.records.applied import PartMass
+from alula.loads.records.check_spec import FrequencyCheck
+from alula.loads.records.load_case import LoadCase
+from alula.loads.records.settings import DriveSpec
+from alula.loads.records.springs import LineSpring, Spring
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.kinetostatics import work
+from alula.loads.states.springs import SpringState, joint_value, spring_states, stop_gaps, touching
+from alula.loads.statics.statics import Drive
+from alula.loads.text.caveat import Caveat, Heading, Topic
 
 Real = NDArray[np.float64]
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.layers import on_one_axis, pin_masses
-from loads.records.check_spec import MassCheck
-from loads.states.masses import laden_masses, part_masses
-from loads.text.caveat import Caveat, Topic
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.layers import on_one_axis, pin_masses
+from alula.loads.records.check_spec import MassCheck
+from alula.loads.states.masses import laden_masses, part_masses
+from alula.loads.text.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 

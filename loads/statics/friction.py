@@ -6,8 +6,8 @@ A x = b and a unit of friction at every contact, C,
     A x - t sum_k mu_k sgn(v_k) p_k(x) C_k = b
 
 at t = 1. v is the speed at the contact, and p what presses it: the size of the force in a bore (the friction circle has
-the radius mu r), times what a couple presses beside it (``loads.statics.pressing``), and the normal force in a slot and
-on a guide. Every p is homogeneous of degree one. So x = y / s with
+the radius mu r), times what a couple presses beside it (``alula.loads.statics.pressing``), and the normal force in a
+slot and on a guide. Every p is homogeneous of degree one. So x = y / s with
 
     A y - t sum_k mu_k sgn(v_k) p_k(y) C_k = s b,        |y|^2 + s^2 fixed,
 
@@ -29,11 +29,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.placement import Complex, Placement
-from loads.records.applied import FrictionLoad, Load, shifted
-from loads.statics.joint_reaction import travelled
-from loads.statics.statics import Drive, along_joint, assemble, joint_column
-from loads.statics.system import System
+from alula.geometry.linkage.placement import Complex, Placement
+from alula.loads.records.applied import FrictionLoad, Load, shifted
+from alula.loads.statics.joint_reaction import travelled
+from alula.loads.statics.statics import Drive, along_joint, assemble, joint_column
+from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
 Presses = Mapping[str, Real]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.placement import Placement, vector
+from alula.geometry.linkage.placement import Placement, vector
 
 Real = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.placement import Complex, Placement, vector
-from loads.records.applied import FrictionLoad, Load, PartMass, shifted
+from alula.geometry.linkage.placement import Complex, Placement, vector
+from alula.loads.records.applied import FrictionLoad, Load, PartMass, shifted
 
 Real = NDArray[np.float64]
 

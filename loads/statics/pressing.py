@@ -10,7 +10,7 @@ with F along D, from |D| = |F| L/6 on, |F| (a/4 + 1/a) with a = 12 |D|/(|F| L).
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bodies.features import Ring
+from alula.geometry.bodies.features import Ring
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.statics.statics import Reactions
+from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 

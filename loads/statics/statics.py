@@ -17,13 +17,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.placement import Complex, Placement
-from geometry.linkage.pose import Pose
-from loads.records.applied import Load, shifted
-from loads.statics.joint_reaction import JointReaction, travelled
-from loads.statics.system import System, require_determinate
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.placement import Complex, Placement
+from alula.geometry.linkage.pose import Pose
+from alula.loads.records.applied import Load, shifted
+from alula.loads.statics.joint_reaction import JointReaction, travelled
+from alula.loads.statics.system import System, require_determinate
 
 Real = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
 
 Real = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from geometry.base.units import INTERNAL_UNITS, as_text
+from alula.geometry.base.units import INTERNAL_UNITS, as_text
 
 Schema = Mapping[str, Any]
 

@@ -5,8 +5,8 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from geometry.base.errors import CaseError
-from loads.text.entries import alike, known_keys
+from alula.geometry.base.errors import CaseError
+from alula.loads.text.entries import alike, known_keys
 
 _TABLE = "it must be a table of entries; write it as [{entry}] with one entry per line below"
 _LIST = "it must be a list of values in square brackets; write for example {example}"

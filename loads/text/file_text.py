@@ -3,8 +3,8 @@
 import os
 from pathlib import Path
 
-from geometry.base.errors import CaseError
-from loads.text.explain import printable
+from alula.geometry.base.errors import CaseError
+from alula.loads.text.explain import printable
 
 LARGEST_FILE = 1 << 20
 """Bytes; a case file is some kilobytes."""

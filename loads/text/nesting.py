@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from geometry.base.errors import CaseError
+from alula.geometry.base.errors import CaseError
 
 DEEPEST = 32
 """Levels; the deepest entry that a case file has stands at the eighth. Beyond some hundred, Python cannot copy them."""

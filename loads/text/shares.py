@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import PlainValidator, WithJsonSchema
 
-from geometry.base.model import refusal
+from alula.geometry.base.model import refusal
 
 LEAST_ACCURACY, LARGEST_ACCURACY = 0.001, 1.0
 LARGEST_LOAD = 10.0

@@ -7,14 +7,21 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from reports.commands.ending import progress, run
-from reports.commands.frequencies import app as frequencies
-from reports.commands.materials import app as materials
-from reports.commands.options import CaseArgument, JsonOption, MemoryOption, SetOption, ThreadsOption, folder_option
-from reports.commands.size import app as size
-from reports.commands.starters import app as starters
-from reports.commands.study import app as study
-from reports.commands.tolerance import app as tolerance
+from alula.reports.commands.ending import progress, run
+from alula.reports.commands.frequencies import app as frequencies
+from alula.reports.commands.materials import app as materials
+from alula.reports.commands.options import (
+    CaseArgument,
+    JsonOption,
+    MemoryOption,
+    SetOption,
+    ThreadsOption,
+    folder_option,
+)
+from alula.reports.commands.size import app as size
+from alula.reports.commands.starters import app as starters
+from alula.reports.commands.study import app as study
+from alula.reports.commands.tolerance import app as tolerance
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -46,7 +53,7 @@ def main() -> NoReturn:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from geometry.base.version import alula_version
+        from alula.geometry.base.version import alula_version
 
         print(f"alula {alula_version()}")
         raise typer.Exit
@@ -87,13 +94,13 @@ def check(
     ] = False,
 ) -> None:
     """Check a case: pose, joint forces, stress, verdict."""
-    from fea.check.run import check_case, effort_of
-    from loads.case.case_file import read_case
-    from reports.page.folder import report_names
-    from reports.page.output import refuse_unusable
-    from reports.tables.console import print_result
-    from reports.tables.record import as_json
-    from reports.words.limits import limited
+    from alula.fea.check.run import check_case, effort_of
+    from alula.loads.case.case_file import read_case
+    from alula.reports.page.folder import report_names
+    from alula.reports.page.output import refuse_unusable
+    from alula.reports.tables.console import print_result
+    from alula.reports.tables.record import as_json
+    from alula.reports.words.limits import limited
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
@@ -105,14 +112,14 @@ def check(
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=tell)
         decks = None
         if second_opinion:
-            from geometry.base.tidying import scratch_folder
-            from reports.tables.second_opinion import with_second_opinions
+            from alula.geometry.base.tidying import scratch_folder
+            from alula.reports.tables.second_opinion import with_second_opinions
 
             decks = scratch.enter_context(scratch_folder("alula-"))
             result = with_second_opinions(result, decks, threads=threads, progress=progress)
         _show(result, as_json if json else None, print_result)
         if output is not None:
-            from reports.page.folder import write_report
+            from alula.reports.page.folder import write_report
 
             write_report(result, output, decks=decks, progress=progress)
             _tell(f"Report: {output / 'report.html'}", json)
@@ -127,9 +134,9 @@ def statics(
     overrides: SetOption = None,
 ) -> None:
     """Solve pose and joint forces only."""
-    from fea.frame.case_statics import solve_case_statics
-    from loads.case.case_file import read_case
-    from reports.commands.statics import print_statics
+    from alula.fea.frame.case_statics import solve_case_statics
+    from alula.loads.case.case_file import read_case
+    from alula.reports.commands.statics import print_statics
 
     parsed = read_case(case, overrides or ())
     print_statics(solve_case_statics(parsed, case), matrix=matrix, json=json)
@@ -147,12 +154,12 @@ def motion(
     threads: ThreadsOption = 2,
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
-    from fea.common.verdict import Verdict
-    from fea.whole.rubbed_motion import rubbed_motion
-    from loads.case.case_file import read_case
-    from reports.commands.motion import print_motion, write_motion
-    from reports.page.output import refuse_unusable, write_folder
-    from reports.words.limits import limited
+    from alula.fea.common.verdict import Verdict
+    from alula.fea.whole.rubbed_motion import rubbed_motion
+    from alula.loads.case.case_file import read_case
+    from alula.reports.commands.motion import print_motion, write_motion
+    from alula.reports.page.output import refuse_unusable, write_folder
+    from alula.reports.words.limits import limited
 
     with limited(threads):
         parsed = read_case(case, overrides or ())
@@ -197,12 +204,12 @@ def envelope(
     time_limit: TimeOption = 600.0,
 ) -> None:
     """Check every link over the whole motion: least safety factor and fatigue."""
-    from fea.check.run import effort_of
-    from fea.motion.envelope import envelope_case
-    from loads.case.case_file import read_case
-    from reports.commands.envelope import as_json, print_envelope, write_envelope
-    from reports.page.output import refuse_unusable
-    from reports.words.limits import limited
+    from alula.fea.check.run import effort_of
+    from alula.fea.motion.envelope import envelope_case
+    from alula.loads.case.case_file import read_case
+    from alula.reports.commands.envelope import as_json, print_envelope, write_envelope
+    from alula.reports.page.output import refuse_unusable
+    from alula.reports.words.limits import limited
 
     with limited(threads, memory):
         parsed = read_case(case, overrides or ())
@@ -243,11 +250,11 @@ def claims(
     memory: MemoryOption = None,
 ) -> None:
     """Re-derive published figures and report which of them hold."""
-    from fea.claims.sources import check_all, check_claims
-    from geometry.base.errors import CaseError
-    from loads.sources.claim import read_source, sources
-    from reports.tables.claims import as_json, as_markdown, as_text
-    from reports.words.limits import limited
+    from alula.fea.claims.sources import check_all, check_claims
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.sources.claim import read_source, sources
+    from alula.reports.tables.claims import as_json, as_markdown, as_text
+    from alula.reports.words.limits import limited
 
     if case is None and overrides:
         raise CaseError("--set: it needs a case; name one")
@@ -286,8 +293,8 @@ def synth(
     json: JsonOption = False,
 ) -> None:
     """Synthesise a four-bar through three precision points, and report its defects."""
-    from reports.commands.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
-    from reports.page.output import refuse_unusable, write_folder
+    from alula.reports.commands.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
+    from alula.reports.page.output import refuse_unusable, write_folder
 
     refuse_unusable(output, "synth")
     found = read_synthesis(points or PUBLISHED_POINTS, ground)
@@ -324,9 +331,9 @@ def inspect(
     json: JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from reports.commands.inspect_part import as_json, inspect_file, print_inspection, write_inspection
-    from reports.figures.figures import start_renderer
-    from reports.page.output import refuse_unusable, write_folder
+    from alula.reports.commands.inspect_part import as_json, inspect_file, print_inspection, write_inspection
+    from alula.reports.figures.figures import start_renderer
+    from alula.reports.page.output import refuse_unusable, write_folder
 
     refuse_unusable(output, "inspect")
     if output is not None:
@@ -347,10 +354,10 @@ def export(
     overrides: SetOption = None,
 ) -> None:
     """Write the parts of a case to CAD files."""
-    from geometry.base.errors import CaseError
-    from geometry.meshing.mesh import export_step, step_names
-    from loads.case.case_file import read_case
-    from reports.page.output import EXPORT, refuse_unusable, write_folder
+    from alula.geometry.base.errors import CaseError
+    from alula.geometry.meshing.mesh import export_step, step_names
+    from alula.loads.case.case_file import read_case
+    from alula.reports.page.output import EXPORT, refuse_unusable, write_folder
 
     if not step:
         raise CaseError("export: no format is given; add --step")
@@ -380,7 +387,7 @@ def _tell(written: str, json: bool) -> None:
 
 def _solving(message: str) -> None:
     """Tell of a solid that is being solved, and start what will draw its stress."""
-    from reports.figures.figures import start_renderer
+    from alula.reports.figures.figures import start_renderer
 
     progress(message)
     start_renderer()

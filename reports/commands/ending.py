@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Collection
 from typing import NoReturn
 
-from geometry.base.errors import AlulaError
+from alula.geometry.base.errors import AlulaError
 
 INTERRUPTED = 130
 CRASHED = 4
@@ -120,7 +120,7 @@ def place_for_matplotlib() -> None:
     import shutil
     import tempfile
 
-    from geometry.base.tidying import owed
+    from alula.geometry.base.tidying import owed
 
     with contextlib.suppress(OSError):
         made = os.environ["MPLCONFIGDIR"] = tempfile.mkdtemp(prefix="alula-")
@@ -144,7 +144,7 @@ def end_cleanly_on_signals() -> None:
     def end(number: int, frame: object) -> None:
         for other in ending:
             signal.signal(other, signal.SIG_IGN)  # a second one would cut the cleaning short
-        from geometry.base.child import stop_all
+        from alula.geometry.base.child import stop_all
 
         stop_all()
         raise KeyboardInterrupt
@@ -153,7 +153,7 @@ def end_cleanly_on_signals() -> None:
 
     def tell(unraisable: "sys.UnraisableHookArgs") -> None:
         """Stay silent on the interruption that a callback swallowed; ``end_if_stopped`` makes up for it."""
-        from geometry.base.child import stopped
+        from alula.geometry.base.child import stopped
 
         if not (stopped() and isinstance(unraisable.exc_value, KeyboardInterrupt)):
             told(unraisable)
@@ -185,8 +185,8 @@ def _end_at_the_latest(ending: Collection[int]) -> None:
         while ours.recv(1)[0] not in ending:
             pass
         time.sleep(GRACE)
-        from geometry.base.child import stop_all
-        from geometry.base.tidying import tidy_all
+        from alula.geometry.base.child import stop_all
+        from alula.geometry.base.tidying import tidy_all
 
         stop_all()
         tidy_all()
@@ -219,7 +219,7 @@ def progress(message: str) -> None:
 
 def end_if_stopped() -> None:
     """End where a signal was to end the process but a library swallowed it."""
-    from geometry.base.child import stopped
+    from alula.geometry.base.child import stopped
 
     if stopped():
         raise KeyboardInterrupt

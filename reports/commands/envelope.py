@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import UNLOADED_QUANTITIES
-from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
-from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from fea.outcomes.unchecked import caveats, unchecked
-from geometry.base.version import result_stamp
-from geometry.materials.material import Material
-from reports.page.motion_pages import envelope_headline
-from reports.page.output import MARK, write_folder
-from reports.tables.console import say_checks, verdict_line
-from reports.tables.data import check_records, data, entries, finite
-from reports.tables.frames import motion_linkage_line, motion_linkage_record
-from reports.tables.friction import motion_friction_lines, motion_friction_record
-from reports.tables.meshes import solver_record
-from reports.words.terminal import say, say_table
-from reports.words.wording import band, fixed, number, sentence
+from alula.fea.common.verdict import UNLOADED_QUANTITIES
+from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
+from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from alula.fea.outcomes.unchecked import caveats, unchecked
+from alula.geometry.base.version import result_stamp
+from alula.geometry.materials.material import Material
+from alula.reports.page.motion_pages import envelope_headline
+from alula.reports.page.output import MARK, write_folder
+from alula.reports.tables.console import say_checks, verdict_line
+from alula.reports.tables.data import check_records, data, entries, finite
+from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
+from alula.reports.tables.friction import motion_friction_lines, motion_friction_record
+from alula.reports.tables.meshes import solver_record
+from alula.reports.words.terminal import say, say_table
+from alula.reports.words.wording import band, fixed, number, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -72,9 +72,9 @@ def write_envelope(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from reports.figures.envelope_figures import envelope_figure, stress_pictures
-    from reports.page.export import write_vtu
-    from reports.page.motion_pages import ENVELOPE, envelope_page
+    from alula.reports.figures.envelope_figures import envelope_figure, stress_pictures
+    from alula.reports.page.export import write_vtu
+    from alula.reports.page.motion_pages import ENVELOPE, envelope_page
 
     def fill(folder: Path) -> None:
         (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")

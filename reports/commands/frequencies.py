@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.commands.ending import progress
-from reports.commands.options import CaseArgument, JsonOption, SetOption, ThreadsOption, folder_option
+from alula.reports.commands.ending import progress
+from alula.reports.commands.options import CaseArgument, JsonOption, SetOption, ThreadsOption, folder_option
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from fea.vibration.over_motion import CaseFrequencies
+    from alula.fea.vibration.over_motion import CaseFrequencies
 
 UNITS = {"angle": "deg", "length": "mm", "frequency": "Hz"}
 app = typer.Typer()
@@ -34,11 +34,11 @@ def frequencies(
     threads: ThreadsOption = 2,
 ) -> None:
     """Natural frequencies over the motion and of each link, and the harmonics of the drive that meet them."""
-    from fea.common.at_temperature import require_stiffness
-    from fea.common.threads import bounded
-    from fea.vibration.over_motion import case_frequencies
-    from loads.case.case_file import read_case
-    from reports.page.output import refuse_unusable, write_folder
+    from alula.fea.common.at_temperature import require_stiffness
+    from alula.fea.common.threads import bounded
+    from alula.fea.vibration.over_motion import case_frequencies
+    from alula.loads.case.case_file import read_case
+    from alula.reports.page.output import refuse_unusable, write_folder
 
     parsed = read_case(case, overrides or ())
     require_stiffness(parsed)
@@ -71,9 +71,9 @@ def as_json(found: "CaseFrequencies", name: str) -> str:
     -------
     str
     """
-    from geometry.base.version import result_stamp
-    from reports.tables.data import finite
-    from reports.tables.frequencies import frequencies_record
+    from alula.geometry.base.version import result_stamp
+    from alula.reports.tables.data import finite
+    from alula.reports.tables.frequencies import frequencies_record
 
     record: dict[str, Any] = {**result_stamp(), "case": name, "title": found.case.title, "units": UNITS}
     record["frequencies"] = finite(frequencies_record(found), {})
@@ -88,9 +88,9 @@ def print_frequencies(found: "CaseFrequencies", console: "Console") -> None:
     found : CaseFrequencies
     console : rich.console.Console
     """
-    from reports.tables.frequencies import history_sentence, mode_rows
-    from reports.words.terminal import say, say_table
-    from reports.words.wording import band
+    from alula.reports.tables.frequencies import history_sentence, mode_rows
+    from alula.reports.words.terminal import say, say_table
+    from alula.reports.words.wording import band
 
     say(console, found.case.title)
     rows = mode_rows(found)
@@ -137,8 +137,8 @@ def write_frequencies(found: "CaseFrequencies", folder: Path, name: str) -> None
     name : str
         Of the case, as the command was given it.
     """
-    from reports.page.frequencies_page import PAGE, frequencies_page
-    from reports.vibration.pictures import frequency_pictures
+    from alula.reports.page.frequencies_page import PAGE, frequencies_page
+    from alula.reports.vibration.pictures import frequency_pictures
 
     pictures = frequency_pictures(found, every=True)
     (folder / "result.json").write_text(as_json(found, name) + "\n", encoding="utf-8")
@@ -150,7 +150,7 @@ def write_frequencies(found: "CaseFrequencies", folder: Path, name: str) -> None
 
 def _write_table(found: "CaseFrequencies", path: Path) -> None:
     """Write natural frequencies over the motion, one load case below the other."""
-    from fea.vibration.frequency_outcomes import told, unit
+    from alula.fea.vibration.frequency_outcomes import told, unit
 
     case = found.case
     count = max(history.frequencies.shape[1] for history in found.histories.values())

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.base.errors import AlulaError, CaseError
-from geometry.base.version import result_stamp
-from geometry.imported.arrangement import angle_between, coaxial, parallel_groups
-from geometry.imported.facts import MESH_FORMATS, Bore, PartFacts, Vector
-from geometry.imported.read import part_facts
-from geometry.materials.material import Material, library
-from geometry.parts.mesh_part import UNITS
-from loads.exchange.part import FoundPart, part_entries
-from loads.text.explain import printable
-from reports.tables.data import entries
-from reports.words.terminal import KEPT, say, say_table
-from reports.words.wording import fixed, joined, number, plain
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.base.version import result_stamp
+from alula.geometry.imported.arrangement import angle_between, coaxial, parallel_groups
+from alula.geometry.imported.facts import MESH_FORMATS, Bore, PartFacts, Vector
+from alula.geometry.imported.read import part_facts
+from alula.geometry.materials.material import Material, library
+from alula.geometry.parts.mesh_part import UNITS
+from alula.loads.exchange.part import FoundPart, part_entries
+from alula.loads.text.explain import printable
+from alula.reports.tables.data import entries
+from alula.reports.words.terminal import KEPT, say, say_table
+from alula.reports.words.wording import fixed, joined, number, plain
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -177,7 +177,7 @@ def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], 
     progress : callable, optional
         Receives a warning where the picture cannot be drawn.
     """
-    from reports.figures.part_picture import part_picture
+    from alula.reports.figures.part_picture import part_picture
 
     try:
         picture, trouble = part_picture(found.facts, found.surface)

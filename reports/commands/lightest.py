@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from fea.sizing.candidates import Place
-    from fea.sizing.lightest import Gain, Lightest
+    from alula.fea.sizing.candidates import Place
+    from alula.fea.sizing.lightest import Gain, Lightest
 
 
 def status_of(found: "Lightest") -> int:
@@ -21,7 +21,7 @@ def status_of(found: "Lightest") -> int:
     -------
     int
     """
-    from fea.sizing.lightest import none_passes
+    from alula.fea.sizing.lightest import none_passes
 
     return 0 if found.best is not None else 1 if none_passes(found) else 3
 
@@ -37,9 +37,9 @@ def record_of(found: "Lightest") -> Mapping[str, Any]:
     -------
     mapping
     """
-    from fea.study.margin import nearest
-    from geometry.base.version import result_stamp
-    from reports.tables.data import finite
+    from alula.fea.study.margin import nearest
+    from alula.geometry.base.version import result_stamp
+    from alula.reports.tables.data import finite
 
     solved = []
     for place, result in found.solved.items():
@@ -74,8 +74,8 @@ def print_lightest(found: "Lightest", console: "Console") -> None:
     found : Lightest
     console : rich.console.Console
     """
-    from reports.study.rows import number_text
-    from reports.words.terminal import say, say_table
+    from alula.reports.study.rows import number_text
+    from alula.reports.words.terminal import say, say_table
 
     sought = f"{'Greatest' if found.objective.largest else 'Least'} {found.objective.quantity}"
     if found.best is None:
@@ -114,15 +114,15 @@ def _values(found: "Lightest", place: "Place") -> str:
 
 
 def _cost(found: "Lightest", place: "Place") -> str:
-    from reports.words.wording import number
+    from alula.reports.words.wording import number
 
     cost = found.objective.number(found.solved[place])
     return "" if cost is None else number(cost.value) + ("" if cost.unit == "1" else f" {cost.unit}")
 
 
 def _outcome(found: "Lightest", place: "Place") -> tuple[str, str]:
-    from fea.study.margin import nearest
-    from reports.study.rows import number_text
+    from alula.fea.study.margin import nearest
+    from alula.reports.study.rows import number_text
 
     result = found.solved[place]
     limit = nearest(result)
@@ -130,7 +130,7 @@ def _outcome(found: "Lightest", place: "Place") -> tuple[str, str]:
 
 
 def _gained(found: "Lightest", gain: "Gain") -> str:
-    from reports.words.wording import percent
+    from alula.reports.words.wording import percent
 
     model = ", by hand calculation" if gain.by_hand else ""
     changes = f"changes it by {percent(gain.share)} and the {found.objective.quantity} by {percent(gain.cost)}"

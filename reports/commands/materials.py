@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from geometry.materials.material import Material
+    from alula.geometry.materials.material import Material
 
 app = typer.Typer()
 _COLUMNS = (
@@ -44,10 +44,10 @@ def materials(
     markdown: Annotated[bool, typer.Option("--markdown", help="Print the list as a table of Markdown.")] = False,
 ) -> None:
     """List the material library: values, sources, what is assumed and what is missing."""
-    from geometry.base.errors import CaseError
-    from geometry.materials.directional import directional
-    from geometry.materials.material import library
-    from loads.text.explain import require
+    from alula.geometry.base.errors import CaseError
+    from alula.geometry.materials.directional import directional
+    from alula.geometry.materials.material import library
+    from alula.loads.text.explain import require
 
     if name is not None:
         if why := directional(name):
@@ -106,7 +106,7 @@ def card_text(name: str) -> str:
     str
         Its lines as they stand in the library.
     """
-    from geometry.materials.material import library_text
+    from alula.geometry.materials.material import library_text
 
     lines, inside = [], False
     for line in library_text().splitlines():
@@ -126,13 +126,13 @@ def as_markdown() -> str:
 
 
 def _rows() -> list[tuple[str, ...]]:
-    from geometry.materials.material import library
+    from alula.geometry.materials.material import library
 
     return [_row(name, material) for name, material in library().items()]
 
 
 def _row(name: str, material: "Material") -> tuple[str, ...]:
-    from reports.words.wording import plain
+    from alula.reports.words.wording import plain
 
     across, least = material.strength_across_layers, material.minimum_safety_factor
     assumed = [_SHORT.get(entry, entry) for entry, status in material.status.items() if status == "assumed"]
@@ -153,8 +153,8 @@ def _row(name: str, material: "Material") -> tuple[str, ...]:
 def _print(name: str | None) -> None:
     from rich.console import Console
 
-    from geometry.materials.material import library
-    from reports.words.terminal import say, say_table
+    from alula.geometry.materials.material import library
+    from alula.reports.words.terminal import say, say_table
 
     console = Console()
     if name is None:
@@ -189,7 +189,7 @@ def _text(value: Any) -> str:
 def _raw() -> dict[str, Any]:
     import tomllib
 
-    from geometry.materials.material import library_text
+    from alula.geometry.materials.material import library_text
 
     return tomllib.loads(library_text())
 
@@ -198,8 +198,8 @@ def _as_json(name: str | None) -> str:
     """Return the cards as they are stated, with their units, and what each lacks."""
     import json
 
-    from geometry.base.version import result_stamp
-    from geometry.materials.material import library
+    from alula.geometry.base.version import result_stamp
+    from alula.geometry.materials.material import library
 
     cards = {one: card | {"missing": missing(library()[one])} for one, card in _raw().items() if name in (None, one)}
     return json.dumps({**result_stamp(), "materials": cards}, indent=2, ensure_ascii=False)

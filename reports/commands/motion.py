@@ -3,11 +3,11 @@
 import json as jsonlib
 from pathlib import Path
 
-from loads.states.case_motion import CaseMotion
-from loads.states.clearance import clearance
-from reports.motion.csv_tables import write_tables
-from reports.motion.lines import motion_lines
-from reports.motion.record import record
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.clearance import clearance
+from alula.reports.motion.csv_tables import write_tables
+from alula.reports.motion.lines import motion_lines
+from alula.reports.motion.record import record
 
 
 def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
@@ -21,10 +21,10 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
     name : str
         Of the case, as the command was given it.
     """
-    from reports.figures.motion_animation import draw_animation
-    from reports.motion.figures import draw_figures
-    from reports.outlines.contact import contact_drawing
-    from reports.page.motion_pages import MOTION, motion_page
+    from alula.reports.figures.motion_animation import draw_animation
+    from alula.reports.motion.figures import draw_figures
+    from alula.reports.outlines.contact import contact_drawing
+    from alula.reports.page.motion_pages import MOTION, motion_page
 
     (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")
     write_tables(result, folder)

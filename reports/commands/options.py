@@ -51,7 +51,7 @@ def folder_option(text: str, *names: str) -> Any:
 
 
 def _folder(text: str | Path) -> Path:
-    from reports.page.output import folder_named
+    from alula.reports.page.output import folder_named
 
     return folder_named(text)
 
@@ -73,8 +73,8 @@ def at_a_time(threads: int | None, workers: int | None) -> int | None:
     CaseError
         Where both are given.
     """
-    from geometry.base.errors import CaseError
-    from reports.commands.ending import progress
+    from alula.geometry.base.errors import CaseError
+    from alula.reports.commands.ending import progress
 
     if workers is None:
         return threads

@@ -10,15 +10,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.commands.options import CaseArgument, SetOption, VariantsOption, WorkersOption, at_a_time, folder_option
-from reports.commands.study import stated
+from alula.reports.commands.options import (
+    CaseArgument,
+    SetOption,
+    VariantsOption,
+    WorkersOption,
+    at_a_time,
+    folder_option,
+)
+from alula.reports.commands.study import stated
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from fea.sizing.least import Sized
-    from fea.sizing.lightest import Lightest
-    from loads.plans.axis import Axis
+    from alula.fea.sizing.least import Sized
+    from alula.fea.sizing.lightest import Lightest
+    from alula.loads.plans.axis import Axis
 
 app = typer.Typer()
 STEPS = 100
@@ -73,7 +80,7 @@ def size(
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
-    from loads.case.case_file import stated_changes
+    from alula.loads.case.case_file import stated_changes
 
     found = find_size(
         case,
@@ -157,18 +164,18 @@ def find_size(
     CaseError
         For options that do not go together, and for a wrong case, entry or range.
     """
-    from fea.outcomes.unchecked import caveats
-    from fea.sizing.candidates import Objective
-    from fea.sizing.least import least_size
-    from fea.sizing.lightest import lightest
-    from fea.sizing.search import Search
-    from fea.study.compute import engine_for
-    from fea.study.store import Store
-    from geometry.base.errors import CaseError
-    from geometry.base.tidying import scratch_folder
-    from loads.case.case_file import read_case
-    from loads.plans.plan import plan_of
-    from loads.plans.variants import Variants
+    from alula.fea.outcomes.unchecked import caveats
+    from alula.fea.sizing.candidates import Objective
+    from alula.fea.sizing.least import least_size
+    from alula.fea.sizing.lightest import lightest
+    from alula.fea.sizing.search import Search
+    from alula.fea.study.compute import engine_for
+    from alula.fea.study.store import Store
+    from alula.geometry.base.errors import CaseError
+    from alula.geometry.base.tidying import scratch_folder
+    from alula.loads.case.case_file import read_case
+    from alula.loads.plans.plan import plan_of
+    from alula.loads.plans.variants import Variants
 
     axes = _axes(vary, choose, step)
     if minimise and maximise:
@@ -210,10 +217,10 @@ def print_found(found: "Sized | Lightest", console: "Console") -> None:
     found : Sized or Lightest
     console : rich.console.Console
     """
-    from fea.sizing.least import Sized
-    from reports.commands.lightest import print_lightest
-    from reports.words.terminal import say
-    from reports.words.wording import besides
+    from alula.fea.sizing.least import Sized
+    from alula.reports.commands.lightest import print_lightest
+    from alula.reports.words.terminal import say
+    from alula.reports.words.wording import besides
 
     if isinstance(found, Sized):
         print_size(found, console)
@@ -224,26 +231,26 @@ def print_found(found: "Sized | Lightest", console: "Console") -> None:
 
 
 def _record(found: "Sized | Lightest") -> Mapping[str, Any]:
-    from fea.sizing.least import Sized
-    from reports.commands.lightest import record_of
-    from reports.tables.data import entries
+    from alula.fea.sizing.least import Sized
+    from alula.reports.commands.lightest import record_of
+    from alula.reports.tables.data import entries
 
     told = record(found) if isinstance(found, Sized) else record_of(found)
     return {**told, "caveats": [entries(one, "heading topic what why") for one in found.caveats]}
 
 
 def _status(found: "Sized | Lightest") -> int:
-    from fea.sizing.least import Sized
-    from reports.commands.lightest import status_of
+    from alula.fea.sizing.least import Sized
+    from alula.reports.commands.lightest import status_of
 
     return exit_status(found) if isinstance(found, Sized) else status_of(found)
 
 
 def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None) -> "list[Axis]":
     """Read what may be chosen: ranges in steps, and lists."""
-    from geometry.base.errors import CaseError
-    from loads.plans.axis import axis
-    from loads.text.explain import printable
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.plans.axis import axis
+    from alula.loads.text.explain import printable
 
     if twice := [path for path in varied if path in chosen]:
         raise CaseError(f"size: '{printable(twice[0])}' is varied and chosen; leave one of the two out")
@@ -298,8 +305,8 @@ def record(found: "Sized") -> Mapping[str, Any]:
     -------
     mapping
     """
-    from geometry.base.version import result_stamp
-    from reports.tables.data import finite
+    from alula.geometry.base.version import result_stamp
+    from alula.reports.tables.data import finite
 
     def value(step: int | None) -> object:
         return None if step is None else found.values[step]
@@ -334,7 +341,7 @@ def print_size(found: "Sized", console: "Console") -> None:
     found : Sized
     console : rich.console.Console
     """
-    from reports.words.terminal import say
+    from alula.reports.words.terminal import say
 
     least, most = ("Least", "greatest") if found.rising else ("Greatest", "least")
     span = f"{found.values[0]} to {found.values[-1]}"
@@ -367,8 +374,8 @@ def _best(found: "Sized") -> int | None:
 
 
 def _limited(found: "Sized", step: int) -> str:
-    from fea.study.margin import sense_of
-    from reports.study.rows import number_text
+    from alula.fea.study.margin import sense_of
+    from alula.reports.study.rows import number_text
 
     limit, gain = found.limit(step), found.gain(step)
     if limit is None:

@@ -17,7 +17,7 @@ app = typer.Typer()
 @app.command()
 def cases() -> None:
     """List the built-in cases."""
-    from loads.case.case_file import built_in_cases, read_case
+    from alula.loads.case.case_file import built_in_cases, read_case
 
     width = max(map(len, built_in_cases()))
     for name in built_in_cases():
@@ -31,9 +31,9 @@ def schema(
     """Print the JSON Schema of the case file."""
     import json
 
-    from loads.case.case import Case
-    from loads.plans.plan import StudyPlan
-    from loads.text.entries import file_schema
+    from alula.loads.case.case import Case
+    from alula.loads.plans.plan import StudyPlan
+    from alula.loads.text.entries import file_schema
 
     print(json.dumps(file_schema(StudyPlan if study else Case), indent=2))
 
@@ -68,8 +68,8 @@ def new(
     ] = None,
 ) -> None:
     """Write a commented case to start from: a four-bar linkage, any built-in case, or one for a part from CAD."""
-    from geometry.base.errors import CaseError
-    from reports.words.wording import joined
+    from alula.geometry.base.errors import CaseError
+    from alula.reports.words.wording import joined
 
     if listed:
         if path is not None or start is not None or study or pylinkage or pmks or step:
@@ -86,8 +86,8 @@ def new(
     if sum(source is not None for source in (*sources.values(), study or None)) > 1:
         raise CaseError(f"{', '.join(sources)}, --study: they name different things; keep one of them")
     if step is not None:
-        from loads.exchange.part import part_case
-        from reports.commands.inspect_part import inspect_file
+        from alula.loads.exchange.part import part_case
+        from alula.reports.commands.inspect_part import inspect_file
 
         write_new({path: part_case(inspect_file(step, None, unit), path).encode()})
         print(f"Wrote {path}. Correct its lines marked GUESS. Check it with: alula check {path} -o out")
@@ -96,7 +96,9 @@ def new(
         write_new({path: sketched(pylinkage, pmks, unit or "mm")})
         print(f"Wrote {path}. It has no parts yet. See its joint forces with: alula statics {path}")
         return
-    contents = {path: _text("loads.plans", "starter-study.toml.txt")} if study else case_files(start or STARTER, path)
+    contents = (
+        {path: _text("alula.loads.plans", "starter-study.toml.txt")} if study else case_files(start or STARTER, path)
+    )
     write_new(contents)
     command = "study" if study else "check"
     print(
@@ -124,10 +126,10 @@ def sketched(pylinkage: Path | None, pmks: Path | None, unit: Unit) -> bytes:
     CaseError
         For a file that cannot be read, or whose linkage is no case.
     """
-    from geometry.parts.mesh_part import UNITS
-    from loads.exchange.exchange import case_of_linkage
-    from loads.text.explain import printable
-    from loads.text.file_text import file_text
+    from alula.geometry.parts.mesh_part import UNITS
+    from alula.loads.exchange.exchange import case_of_linkage
+    from alula.loads.text.explain import printable
+    from alula.loads.text.file_text import file_text
 
     source = pylinkage or pmks
     assert source is not None
@@ -164,21 +166,21 @@ def case_files(name: str, path: Path) -> dict[Path, bytes]:
     """
     from importlib.resources import files
 
-    from geometry.base.errors import CaseError
-    from loads.case.case_file import built_in_cases, read_tables
-    from loads.text.entries import alike
-    from loads.text.explain import printable
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.case.case_file import built_in_cases, read_tables
+    from alula.loads.text.entries import alike
+    from alula.loads.text.explain import printable
 
     if name not in built_in_cases():
         meant = alike(name, built_in_cases()) or "; alula new --list shows the names"
         raise CaseError(f"--from: there is no built-in case '{printable(name)}'{meant}")
-    shipped = {file.name for file in files("loads.cases").iterdir()}
+    shipped = {file.name for file in files("alula.loads.cases").iterdir()}
     beside = [text for text in _texts(read_tables(name)) if text in shipped]
     if path.name in beside:
         raise CaseError(f"PATH: '{printable(path.name)}' is a file that the case names; choose another name")
-    case, companions = _text("loads.cases", f"{name}.toml"), dict[Path, bytes]()
+    case, companions = _text("alula.loads.cases", f"{name}.toml"), dict[Path, bytes]()
     for file in beside:
-        content = _text("loads.cases", file)
+        content = _text("alula.loads.cases", file)
         place = _place_for(path.parent / file, content)
         case = case.replace(f'"{file}"'.encode(), f'"{place.name}"'.encode())
         if not place.exists():
@@ -224,7 +226,7 @@ def write_new(contents: Mapping[Path, bytes]) -> None:
     CannotRunError
         Where the disk refuses.
     """
-    from geometry.base.errors import CannotRunError, CaseError
+    from alula.geometry.base.errors import CannotRunError, CaseError
 
     begun: list[Path] = []
     try:

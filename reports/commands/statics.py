@@ -5,14 +5,14 @@ import math
 
 import numpy as np
 
-from fea.frame.case_statics import CaseStatics, with_ends
-from geometry.base.version import result_stamp
-from loads.statics.friction import friction_wrenches
-from loads.statics.rounding import rounded, size_of, without_rounding
-from loads.statics.statics import Reactions
-from loads.statics.system import System
-from reports.tables.data import finite
-from reports.tables.frames import (
+from alula.fea.frame.case_statics import CaseStatics, with_ends
+from alula.geometry.base.version import result_stamp
+from alula.loads.statics.friction import friction_wrenches
+from alula.loads.statics.rounding import rounded, size_of, without_rounding
+from alula.loads.statics.statics import Reactions
+from alula.loads.statics.system import System
+from alula.reports.tables.data import finite
+from alula.reports.tables.frames import (
     AXES,
     play_line,
     play_record,
@@ -22,8 +22,8 @@ from reports.tables.frames import (
     thrust_records,
     tips,
 )
-from reports.tables.friction import friction_record, friction_sentence
-from reports.tables.springs import holding_sentence, spring_sentences, standing_record
+from alula.reports.tables.friction import friction_record, friction_sentence
+from alula.reports.tables.springs import holding_sentence, spring_sentences, standing_record
 
 
 def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:

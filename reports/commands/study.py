@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 import typer.core
 
-from reports.commands.options import VariantsOption, WorkersOption, at_a_time, folder_option
+from alula.reports.commands.options import VariantsOption, WorkersOption, at_a_time, folder_option
 
 if TYPE_CHECKING:
-    from fea.study.study import Progress
-    from loads.plans.plan import StudyPlan
-    from loads.plans.variants import Variants
+    from alula.fea.study.study import Progress
+    from alula.loads.plans.plan import StudyPlan
+    from alula.loads.plans.variants import Variants
 
 MANY = 10_000
 """Points above which ``--yes`` is asked for."""
@@ -96,8 +96,8 @@ def run(
     ] = None,
 ) -> None:
     """Compute the variants of a case that are missing in a folder."""
-    from fea.study.compute import compute_study
-    from loads.plans.variants import Variants
+    from alula.fea.study.compute import compute_study
+    from alula.loads.plans.variants import Variants
 
     workers = at_a_time(threads, workers)
     plan, folder = _plan(case, stated(vary, "--vary"), stated(link, "--link"), points, sample, seed, overrides, {
@@ -105,7 +105,7 @@ def run(
     })  # fmt: skip
     variants = Variants(plan, folder)
     if pictures is not None:
-        from reports.study.page import refuse_folder
+        from alula.reports.study.page import refuse_folder
 
         refuse_folder(output, pictures)
     if len(variants) > MANY and not yes:
@@ -118,7 +118,7 @@ def run(
 
 
 def _draw(folder: Path, output: Path, wanted: Sequence[str], told: TextIO) -> None:
-    from reports.study.page import write_study
+    from alula.reports.study.page import write_study
 
     print(f"Pictures: {write_study(folder, output, wanted)}", file=told)
 
@@ -141,8 +141,8 @@ def stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
     CaseError
         For text of another form, and an entry that is stated twice.
     """
-    from geometry.base.errors import CaseError
-    from loads.text.explain import printable
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.text.explain import printable
 
     found: dict[str, str] = {}
     for option in options or ():
@@ -167,9 +167,9 @@ def _plan(
     more: Mapping[str, object],
 ) -> "tuple[StudyPlan, Path]":
     """The plan of the options, or of a file of its own, of which options change analysis and model alone."""
-    from geometry.base.errors import CaseError
-    from loads.case.case_file import built_in_cases, read_tables, stated_changes
-    from loads.plans.plan import plan_of, read_plan
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.case.case_file import built_in_cases, read_tables, stated_changes
+    from alula.loads.plans.plan import plan_of, read_plan
 
     stated = {name: value for name, value in more.items() if value is not None}
     options = bool(vary or link or points or sample or overrides)
@@ -187,10 +187,10 @@ def _plan(
 
 def _refuse_many(variants: "Variants", workers: int | None) -> None:
     """Estimate time and bytes from one point, and ask for ``--yes``."""
-    from fea.study.engine import usable_cores
-    from fea.study.evaluate import evaluate
-    from fea.study.study import task_of
-    from geometry.base.errors import CaseError
+    from alula.fea.study.engine import usable_cores
+    from alula.fea.study.evaluate import evaluate
+    from alula.fea.study.study import task_of
+    from alula.geometry.base.errors import CaseError
 
     tables = variants.tables(variants.points[0])
     contents = {name: path.read_bytes() for name, path in variants.files.items()}
@@ -268,8 +268,8 @@ def show(
     ] = None,
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
-    from fea.study.store import Store
-    from reports.study.rows import as_record, columns, print_study
+    from alula.fea.study.store import Store
+    from alula.reports.study.rows import as_record, columns, print_study
 
     with Store.reading(folder) as store:
         if csv_file is not None:
@@ -285,7 +285,7 @@ def show(
 
 
 def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:
-    from geometry.base.errors import CannotRunError, CaseError
+    from alula.geometry.base.errors import CannotRunError, CaseError
 
     try:
         with path.open("x", encoding="utf-8", newline="") as stream:

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel
-from geometry.base.units import POSITIVE, Angle, Length
-from geometry.base.version import result_stamp
-from geometry.mechanisms.synthesis import DRIVES, PrecisionPoint, Synthesis, synthesise
-from loads.text.explain import printable, sentence
-from reports.tables.data import entries
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import CaseModel
+from alula.geometry.base.units import POSITIVE, Angle, Length
+from alula.geometry.base.version import result_stamp
+from alula.geometry.mechanisms.synthesis import DRIVES, PrecisionPoint, Synthesis, synthesise
+from alula.loads.text.explain import printable, sentence
+from alula.reports.tables.data import entries
 
 PUBLISHED_POINTS = ("0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg")
 """Precision points (theta, psi) of Arango and Hurtado."""

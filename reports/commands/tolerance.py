@@ -6,13 +6,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.commands.ending import progress
-from reports.commands.options import CaseArgument, JsonOption, MemoryOption, SetOption, ThreadsOption, folder_option
-from reports.commands.study import stated
+from alula.reports.commands.ending import progress
+from alula.reports.commands.options import (
+    CaseArgument,
+    JsonOption,
+    MemoryOption,
+    SetOption,
+    ThreadsOption,
+    folder_option,
+)
+from alula.reports.commands.study import stated
 
 if TYPE_CHECKING:
-    from fea.tolerance.result import ToleranceResult
-    from loads.case.case import Case
+    from alula.fea.tolerance.result import ToleranceResult
+    from alula.loads.case.case import Case
 
 SAMPLES = "samples.npz"
 app = typer.Typer()
@@ -41,12 +48,12 @@ def tolerance(
     ] = None,
 ) -> None:
     """Sample the tolerances of a case: how likely every check passes, and which tolerance matters."""
-    from fea.check.run import effort_of
-    from fea.tolerance.analysis import tolerance_case
-    from loads.case.case_file import read_case
-    from reports.page.output import refuse_unusable
-    from reports.study.tolerance_table import as_json, print_tolerance
-    from reports.words.limits import limited
+    from alula.fea.check.run import effort_of
+    from alula.fea.tolerance.analysis import tolerance_case
+    from alula.loads.case.case_file import read_case
+    from alula.reports.page.output import refuse_unusable
+    from alula.reports.study.tolerance_table import as_json, print_tolerance
+    from alula.reports.words.limits import limited
 
     with limited(threads, memory):
         parsed = with_tolerances(read_case(case, overrides or ()), stated(tolerances, "--tolerance"))
@@ -102,9 +109,9 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
     """
     import numpy as np
 
-    from reports.page.output import MARK, write_folder
-    from reports.study.tolerance_pictures import tolerance_pictures
-    from reports.study.tolerance_table import as_json
+    from alula.reports.page.output import MARK, write_folder
+    from alula.reports.study.tolerance_pictures import tolerance_pictures
+    from alula.reports.study.tolerance_table import as_json
 
     def fill(folder: Path) -> None:
         (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")

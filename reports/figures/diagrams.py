@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.theory import BeamCheck
-from reports.sheet.canvas import Canvas, faint
-from reports.sheet.labels import heights, stacked, write_stacked
-from reports.sheet.plot import Axes
-from reports.sheet.style import GROUND, INK, WIDTH
-from reports.words.wording import number
+from alula.fea.beam.theory import BeamCheck
+from alula.reports.sheet.canvas import Canvas, faint
+from alula.reports.sheet.labels import heights, stacked, write_stacked
+from alula.reports.sheet.plot import Axes
+from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.words.wording import number
 
 Real = NDArray[np.float64]
 _BESIDE = 0.03

@@ -6,19 +6,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import CheckResult, SolidResult
-from loads.records.aero import shares
-from loads.records.applied import LineLoad, PointLoad, in_axes
-from loads.records.springs import LineSpring
-from loads.states.actions import stated_loads
-from loads.statics.rounding import without_rounding
-from reports.figures.sprung import coil, spiral, stop_mark
-from reports.sheet.canvas import Canvas, extent
-from reports.sheet.labels import along, place_labels
-from reports.sheet.plot import Axes, ticks, widest
-from reports.sheet.silhouette import curves, outlines, silhouette
-from reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
-from reports.words.wording import number, turning
+from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.loads.records.aero import shares
+from alula.loads.records.applied import LineLoad, PointLoad, in_axes
+from alula.loads.records.springs import LineSpring
+from alula.loads.states.actions import stated_loads
+from alula.loads.statics.rounding import without_rounding
+from alula.reports.figures.sprung import coil, spiral, stop_mark
+from alula.reports.sheet.canvas import Canvas, extent
+from alula.reports.sheet.labels import along, place_labels
+from alula.reports.sheet.plot import Axes, ticks, widest
+from alula.reports.sheet.silhouette import curves, outlines, silhouette
+from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
+from alula.reports.words.wording import number, turning
 
 Real = NDArray[np.float64]
 

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import Quantity, Subject
-from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
-from reports.figures.motion_figures import COLOURS, DASHES, quiet_glyphs
-from reports.sheet.style import GROUND, INK, STYLE, WIDTH, as_png
-from reports.words.wording import number, plain
+from alula.fea.common.verdict import Quantity, Subject
+from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
+from alula.reports.figures.motion_figures import COLOURS, DASHES, quiet_glyphs
+from alula.reports.sheet.style import GROUND, INK, STYLE, WIDTH, as_png
+from alula.reports.words.wording import number, plain
 
 Real = NDArray[np.float64]
 
@@ -90,8 +90,8 @@ def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[
     tuple
         Link -> PNG, and warnings.
     """
-    from reports.figures.figures import plots_of
-    from reports.figures.scene import scene_from
+    from alula.reports.figures.figures import plots_of
+    from alula.reports.figures.scene import scene_from
 
     scenes, points = {}, {}
     for name in links:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.figures.scene import View, hits
-from reports.sheet.canvas import extent
+from alula.reports.figures.scene import View, hits
+from alula.reports.sheet.canvas import extent
 
 Real = NDArray[np.float64]
 

@@ -16,16 +16,16 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import LinkResult, SolidResult
-from geometry.base import child
-from geometry.base.child_server import ChildEndedError, ServerPool
-from geometry.base.system_libraries import OSMESA, loads
-from reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
-from reports.sheet.canvas import SIZE, Canvas, faint
-from reports.sheet.labels import heights, stacked, write_stacked
-from reports.sheet.plot import Axes
-from reports.sheet.style import INK, WIDTH
-from reports.words.wording import fixed, number, plain
+from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.geometry.base import child
+from alula.geometry.base.child_server import ChildEndedError, ServerPool
+from alula.geometry.base.system_libraries import OSMESA, loads
+from alula.reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
+from alula.reports.sheet.canvas import SIZE, Canvas, faint
+from alula.reports.sheet.labels import heights, stacked, write_stacked
+from alula.reports.sheet.plot import Axes
+from alula.reports.sheet.style import INK, WIDTH
+from alula.reports.words.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
 
@@ -168,7 +168,7 @@ def _renderers() -> tuple[dict[str, str], ...]:
 
 
 def _command() -> list[str]:
-    return child.module_command("reports.figures.figures_worker")
+    return child.module_command("alula.reports.figures.figures_worker")
 
 
 def _environment(choice: Mapping[str, str]) -> dict[str, str]:

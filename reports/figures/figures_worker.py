@@ -1,4 +1,4 @@
-"""The child process that renders views with pyvista: ``python -m reports.figures.figures_worker``.
+"""The child process that renders views with pyvista: ``python -m alula.reports.figures.figures_worker``.
 
 A request is pickled: a view and its arrays. So is its answer: ("done", image) or ("failed", sentence).
 """
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.child_server import ChildService
+from alula.geometry.base.child_server import ChildService
 
 SMOOTH_BELOW = 40.0
 """Angle between faces [degrees] above which an edge is drawn sharp."""

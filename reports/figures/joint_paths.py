@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.motion import Motion
-from loads.states.loose_motion import LooseMotion
+from alula.geometry.linkage.motion import Motion
+from alula.loads.states.loose_motion import LooseMotion
 
 Real = NDArray[np.float64]
 _SAME = 1e-9

@@ -7,9 +7,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import NDArray
 from PIL import Image
 
-from geometry.linkage.motion import Motion
-from reports.figures.joint_paths import moving_points
-from reports.figures.motion_figures import COLOURS, chains, ground, plane, quiet_glyphs
+from alula.geometry.linkage.motion import Motion
+from alula.reports.figures.joint_paths import moving_points
+from alula.reports.figures.motion_figures import COLOURS, chains, ground, plane, quiet_glyphs
 
 Real = NDArray[np.float64]
 

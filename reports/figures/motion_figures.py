@@ -12,11 +12,11 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import Motion
-from loads.states.case_motion import CaseMotion
-from loads.states.loose_motion import LooseMotion, loose_motion
-from reports.figures.joint_paths import loosest, moving_points
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import Motion
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.loose_motion import LooseMotion, loose_motion
+from alula.reports.figures.joint_paths import loosest, moving_points
 
 Real = NDArray[np.float64]
 

@@ -6,15 +6,15 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.imported.arrangement import LinkFrame, viewing_frame
-from geometry.imported.facts import Bore, PartFacts, PartSurface
-from reports.figures.face_labels import FaceSpot, face_spot, is_seen
-from reports.figures.figures import rendered, scale_bar
-from reports.figures.scene import Rendering, View, axes_of
-from reports.sheet.canvas import SIZE, Canvas, faint
-from reports.sheet.labels import place_labels
-from reports.sheet.plot import Axes
-from reports.sheet.style import GROUND, INK, LOAD, WIDTH
+from alula.geometry.imported.arrangement import LinkFrame, viewing_frame
+from alula.geometry.imported.facts import Bore, PartFacts, PartSurface
+from alula.reports.figures.face_labels import FaceSpot, face_spot, is_seen
+from alula.reports.figures.figures import rendered, scale_bar
+from alula.reports.figures.scene import Rendering, View, axes_of
+from alula.reports.sheet.canvas import SIZE, Canvas, faint
+from alula.reports.sheet.labels import place_labels
+from alula.reports.sheet.plot import Axes
+from alula.reports.sheet.style import GROUND, INK, LOAD, WIDTH
 
 Real = NDArray[np.float64]
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import SolidResult
-from fea.refine.discretisation import Discretisation, MeshStatus
-from fea.solid.stress import StressField
-from geometry.materials.material import stress_measure
-from geometry.parts.part import Section
-from reports.sheet.style import DPI, WIDTH
+from alula.fea.outcomes.result import SolidResult
+from alula.fea.refine.discretisation import Discretisation, MeshStatus
+from alula.fea.solid.stress import StressField
+from alula.geometry.materials.material import stress_measure
+from alula.geometry.parts.part import Section
+from alula.reports.sheet.style import DPI, WIDTH
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]

@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fea.whole.air_range import air_range
-from loads.case.case import Case
-from loads.states.case_motion import CaseMotion
-from reports.figures.motion_figures import DPI, legend, over_angle
-from reports.tables.loads import motion_air_record, motion_in_air
+from alula.fea.whole.air_range import air_range
+from alula.loads.case.case import Case
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.figures.motion_figures import DPI, legend, over_angle
+from alula.reports.tables.loads import motion_air_record, motion_in_air
 
 Real = NDArray[np.float64]
 _SIZE = (8.0, 6.6)

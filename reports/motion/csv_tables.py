@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.motion import Motion
-from loads.states.case_motion import CaseMotion
-from reports.figures.joint_paths import moving_points, owners
-from reports.motion.play import drive_play, point_play
-from reports.motion.rates import QUANTITIES, Series, Values, series
-from reports.tables.springs import motion_springs
+from alula.geometry.linkage.motion import Motion
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.figures.joint_paths import moving_points, owners
+from alula.reports.motion.play import drive_play, point_play
+from alula.reports.motion.rates import QUANTITIES, Series, Values, series
+from alula.reports.tables.springs import motion_springs
 
 Real = NDArray[np.float64]
 ANGULAR = ("angular_speed", "angular_acceleration")

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from loads.states.case_motion import CaseMotion
-from loads.states.loose_motion import loose_motion
-from reports.figures.motion_figures import (
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.loose_motion import loose_motion
+from alula.reports.figures.motion_figures import (
     COLOURS,
     DASHES,
     DPI,
@@ -21,9 +21,9 @@ from reports.figures.motion_figures import (
     quiet_glyphs,
     torque_figure,
 )  # fmt: skip
-from reports.motion.air_figures import air_figures
-from reports.motion.rate_rows import told_speed
-from reports.motion.rates import QUANTITIES, Series, Values, series
+from alula.reports.motion.air_figures import air_figures
+from alula.reports.motion.rate_rows import told_speed
+from alula.reports.motion.rates import QUANTITIES, Series, Values, series
 
 _SIZE = (8.0, 5.4)
 _NEAR = 1e-9

@@ -3,17 +3,17 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from fea.motion.linkage_history import asked_over_motion
-from loads.states.case_motion import CaseMotion
-from loads.states.clearance import clearance
-from reports.motion.play import drive_line, motion_play_record, play_lines
-from reports.motion.rate_rows import link_columns, point_columns, told_speed, whole_sentences
-from reports.tables.clearance import clearance_line
-from reports.tables.frames import motion_linkage_line
-from reports.tables.friction import motion_friction_lines
-from reports.tables.loads import air_lines
-from reports.tables.mechanism import design_lines
-from reports.tables.springs import motion_springs
+from alula.fea.motion.linkage_history import asked_over_motion
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.clearance import clearance
+from alula.reports.motion.play import drive_line, motion_play_record, play_lines
+from alula.reports.motion.rate_rows import link_columns, point_columns, told_speed, whole_sentences
+from alula.reports.tables.clearance import clearance_line
+from alula.reports.tables.frames import motion_linkage_line
+from alula.reports.tables.friction import motion_friction_lines
+from alula.reports.tables.loads import air_lines
+from alula.reports.tables.mechanism import design_lines
+from alula.reports.tables.springs import motion_springs
 
 
 def motion_lines(result: CaseMotion, data: Mapping[str, Any]) -> Iterator[str]:
@@ -23,7 +23,7 @@ def motion_lines(result: CaseMotion, data: Mapping[str, Any]) -> Iterator[str]:
     ----------
     result : CaseMotion
     data : mapping
-        From ``reports.motion.record.record``.
+        From ``alula.reports.motion.record.record``.
 
     Yields
     ------

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.states.case_motion import CaseMotion
-from loads.states.loose_motion import LooseMotion, loose_motion
-from reports.figures.joint_paths import loosest, moving_points
-from reports.words.wording import number
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.loose_motion import LooseMotion, loose_motion
+from alula.reports.figures.joint_paths import loosest, moving_points
+from alula.reports.words.wording import number
 
 Real = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from loads.states.case_motion import CaseMotion
-from reports.motion.rates import QUANTITIES
-from reports.words.wording import number
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.motion.rates import QUANTITIES
+from alula.reports.words.wording import number
 
 Columns = list[tuple[str, list[str]]]
 """Head with its unit, and the cells below it."""

@@ -6,20 +6,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.motion.linkage_history import asked_over_motion
-from geometry.base.version import result_stamp
-from loads.states.case_motion import CaseMotion, with_inertia
-from loads.states.clearance import clearance
-from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
-from reports.figures.joint_paths import moving_points, path_length
-from reports.motion.play import motion_play_record
-from reports.motion.rates import QUANTITIES, Series, extremes, finite_or_none, rates_record, series, told
-from reports.tables.clearance import clearance_record
-from reports.tables.data import finite
-from reports.tables.frames import motion_linkage_record
-from reports.tables.friction import motion_friction_record
-from reports.tables.loads import motion_air_record
-from reports.tables.mechanism import design_record
+from alula.fea.motion.linkage_history import asked_over_motion
+from alula.geometry.base.version import result_stamp
+from alula.loads.states.case_motion import CaseMotion, with_inertia
+from alula.loads.states.clearance import clearance
+from alula.loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
+from alula.reports.figures.joint_paths import moving_points, path_length
+from alula.reports.motion.play import motion_play_record
+from alula.reports.motion.rates import QUANTITIES, Series, extremes, finite_or_none, rates_record, series, told
+from alula.reports.tables.clearance import clearance_record
+from alula.reports.tables.data import finite
+from alula.reports.tables.frames import motion_linkage_record
+from alula.reports.tables.friction import motion_friction_record
+from alula.reports.tables.loads import motion_air_record
+from alula.reports.tables.mechanism import design_record
 
 Real = NDArray[np.float64]
 

@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Verdict
-from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
-from fea.whole.size import size_limits
-from geometry.base.errors import CannotRunError, CaseError
-from loads.case.heights import layer_of
-from loads.statics.rounding import without_rounding
-from reports.notebook.shown import Picture, Row, Table, pick, summary
-from reports.tables.record import worst_load_case
-from reports.words.wording import checks_of, headline, inapplicable
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
+from alula.fea.whole.size import size_limits
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.case.heights import layer_of
+from alula.loads.statics.rounding import without_rounding
+from alula.reports.notebook.shown import Picture, Row, Table, pick, summary
+from alula.reports.tables.record import worst_load_case
+from alula.reports.words.wording import checks_of, headline, inapplicable
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class CheckReport:
         CaseError
             For a load case that there is not.
         """
-        from reports.figures.drawings import linkage_drawing
+        from alula.reports.figures.drawings import linkage_drawing
 
         name = self.load_cases[0] if load_case is None else load_case
         pick(self.result.load_cases, name, "load case")
@@ -131,7 +131,7 @@ class CheckReport:
         CaseError
             For a case without layers.
         """
-        from reports.outlines.assembly import assembly_drawing
+        from alula.reports.outlines.assembly import assembly_drawing
 
         if self.result.clearance is None:
             layer = layer_of(self.result.case.links)
@@ -150,7 +150,7 @@ class CheckReport:
         CaseError
             For a case without layers and without a check of size.
         """
-        from reports.outlines.box import box_drawing
+        from alula.reports.outlines.box import box_drawing
 
         if self.result.size is None:
             raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
@@ -168,7 +168,7 @@ class CheckReport:
         CaseError
             For a case without layers, and where nothing lies at one height.
         """
-        from reports.outlines.contact import contact_drawing
+        from alula.reports.outlines.contact import contact_drawing
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
@@ -191,7 +191,7 @@ class CheckReport:
         CaseError
             For another picture, and for a case without a check of frequencies.
         """
-        from reports.notebook.frequency_report import FrequencyReport
+        from alula.reports.notebook.frequency_report import FrequencyReport
 
         if self.result.frequencies is None:
             raise CaseError('no check asks for natural frequencies; add one of type = "frequency"')
@@ -214,7 +214,7 @@ class CheckReport:
         CaseError
             For a link that there is not.
         """
-        from reports.figures.diagrams import internal_force_diagram
+        from alula.reports.figures.diagrams import internal_force_diagram
 
         pick({name: name for name in self._links}, link, "link")
         stations = {point: x for point, (x, _) in self.result.case.links[link].points.items()}
@@ -237,8 +237,8 @@ class CheckReport:
         CaseError
             For a link without layers, and where nothing is known of them.
         """
-        from reports.figures.build_map import build_map
-        from reports.tables.layers import build_directions_of
+        from alula.reports.figures.build_map import build_map
+        from alula.reports.tables.layers import build_directions_of
 
         known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
         return Picture(build_map(pick(known, link, "printed link, solved as a solid,")))
@@ -264,7 +264,7 @@ class CheckReport:
         CannotRunError
             Where rendering fails.
         """
-        from reports.figures.figures import stress_plots
+        from alula.reports.figures.figures import stress_plots
 
         pick({name: name for name in self._links}, link, "link")
         found = self._case(link, load_case).links[link]
@@ -292,8 +292,8 @@ class CheckReport:
         CannotRunError
             Where the folder cannot be written.
         """
-        from reports.page.folder import write_report
-        from reports.page.output import folder_named
+        from alula.reports.page.folder import write_report
+        from alula.reports.page.output import folder_named
 
         write_report(self.result, folder_named(folder), progress=progress)
 

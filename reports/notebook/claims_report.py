@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 
-from fea.claims.audit import ClaimResult
-from reports.notebook.shown import Table
-from reports.tables.claims import as_records, count
+from alula.fea.claims.audit import ClaimResult
+from alula.reports.notebook.shown import Table
+from alula.reports.tables.claims import as_records, count
 
 
 @dataclass(frozen=True)

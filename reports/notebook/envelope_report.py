@@ -7,13 +7,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.verdict import Verdict
-from fea.motion.envelope_result import EnvelopeResult
-from geometry.base.errors import CannotRunError
-from reports.commands.envelope import drive_angle
-from reports.notebook.check_report import check_rows
-from reports.notebook.shown import Picture, Row, Table, pick, summary
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Verdict
+from alula.fea.motion.envelope_result import EnvelopeResult
+from alula.geometry.base.errors import CannotRunError
+from alula.reports.commands.envelope import drive_angle
+from alula.reports.notebook.check_report import check_rows
+from alula.reports.notebook.shown import Picture, Row, Table, pick, summary
 
 Real = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class EnvelopeReport:
     @property
     def headline(self) -> str:
         """The verdict, what decides it, and what it stands on besides."""
-        from reports.page.motion_pages import envelope_headline
+        from alula.reports.page.motion_pages import envelope_headline
 
         return envelope_headline(self.result)
 
@@ -102,7 +102,7 @@ class EnvelopeReport:
 
     def plot_safety_factors(self) -> Picture:
         """Draw the safety factor of every link over the motion."""
-        from reports.figures.envelope_figures import envelope_figure
+        from alula.reports.figures.envelope_figures import envelope_figure
 
         return Picture(envelope_figure(self.result))
 
@@ -125,7 +125,7 @@ class EnvelopeReport:
         CannotRunError
             Where rendering fails.
         """
-        from reports.figures.envelope_figures import stress_pictures
+        from alula.reports.figures.envelope_figures import stress_pictures
 
         pick(self.result.links, link, "loaded link")
         plots, warnings = stress_pictures(self.result, [link])

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fea.common.band import Band
-from fea.vibration.frequency_outcomes import deciding_load_case, least_frequency, unit
-from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
-from reports.notebook.shown import Picture, Row, Table, pick
-from reports.tables.frequencies import history_sentence, mode_rows
+from alula.fea.common.band import Band
+from alula.fea.vibration.frequency_outcomes import deciding_load_case, least_frequency, unit
+from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
+from alula.reports.notebook.shown import Picture, Row, Table, pick
+from alula.reports.tables.frequencies import history_sentence, mode_rows
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class FrequencyReport:
         CaseError
             For a load case that there is not.
         """
-        from reports.vibration.campbell import campbell_diagram
+        from alula.reports.vibration.campbell import campbell_diagram
 
         name, history = self._history(load_case)
         case = self.result.case
@@ -95,7 +95,7 @@ class FrequencyReport:
         CaseError
             For a load case that there is not.
         """
-        from reports.vibration.shapes import shapes_drawing
+        from alula.reports.vibration.shapes import shapes_drawing
 
         return Picture(shapes_drawing(self._history(load_case)[1].lowest))
 

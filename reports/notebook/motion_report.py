@@ -8,11 +8,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.states.case_motion import CaseMotion
-from reports.motion.rate_rows import whole_rows
-from reports.motion.rates import QUANTITIES, rates_record, series
-from reports.motion.record import record
-from reports.notebook.shown import Picture, Row, Table, pick
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.motion.rate_rows import whole_rows
+from alula.reports.motion.rates import QUANTITIES, rates_record, series
+from alula.reports.motion.record import record
+from alula.reports.notebook.shown import Picture, Row, Table, pick
 
 Real = NDArray[np.float64]
 
@@ -142,7 +142,7 @@ class MotionReport:
 
     def plot_drive(self) -> Picture:
         """Draw drive torque or force over the coordinate, a line per load case."""
-        from reports.figures.motion_figures import torque_figure
+        from alula.reports.figures.motion_figures import torque_figure
 
         return _picture(torque_figure(self.result))
 
@@ -162,15 +162,15 @@ class MotionReport:
         CaseError
             For a load case that does not exist or has no speed.
         """
-        from reports.motion.figures import energy_figure
+        from alula.reports.motion.figures import energy_figure
 
         moving = {name: found for name in self.result.torque if (found := series(self.result, name)) is not None}
         return _picture(energy_figure(self.result, load_case, pick(moving, load_case, "load case with a speed")))
 
     def plot_linkage(self) -> Picture:
         """Draw the linkage at a few poses, with the paths of its points."""
-        from loads.states.loose_motion import loose_motion
-        from reports.figures.motion_figures import paths_figure
+        from alula.loads.states.loose_motion import loose_motion
+        from alula.reports.figures.motion_figures import paths_figure
 
         return _picture(paths_figure(self.result.motion, loose_motion(self.result)))
 
@@ -189,7 +189,7 @@ class MotionReport:
 def _picture(figure: object) -> Picture:
     from matplotlib.figure import Figure
 
-    from reports.figures.motion_figures import DPI, quiet_glyphs
+    from alula.reports.figures.motion_figures import DPI, quiet_glyphs
 
     assert isinstance(figure, Figure)
     stream = io.BytesIO()

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from geometry.base.errors import CannotRunError
-from loads.exchange.part import part_entries
-from reports.commands.inspect_part import GRAMS, Inspection
-from reports.notebook.shown import Picture, Row, Table
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.exchange.part import part_entries
+from alula.reports.commands.inspect_part import GRAMS, Inspection
+from alula.reports.notebook.shown import Picture, Row, Table
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class PartReport:
         CannotRunError
             Where rendering fails.
         """
-        from reports.figures.part_picture import part_picture
+        from alula.reports.figures.part_picture import part_picture
 
         picture, trouble = part_picture(self.result.facts, self.result.surface)
         if picture is None:

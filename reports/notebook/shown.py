@@ -7,9 +7,9 @@ from html import escape
 from pathlib import Path
 from typing import TypeVar
 
-from fea.common.verdict import Verdict
-from geometry.base.errors import CaseError
-from reports.words.wording import number, plain
+from alula.fea.common.verdict import Verdict
+from alula.geometry.base.errors import CaseError
+from alula.reports.words.wording import number, plain
 
 Cell = str | float | int | None
 Row = dict[str, Cell]

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 
-from fea.sizing.least import Sized
-from fea.sizing.lightest import Lightest
-from fea.study.margin import margin, nearest
-from fea.study.numbers import VariantResult
-from reports.notebook.shown import Row, Table
+from alula.fea.sizing.least import Sized
+from alula.fea.sizing.lightest import Lightest
+from alula.fea.study.margin import margin, nearest
+from alula.fea.study.numbers import VariantResult
+from alula.reports.notebook.shown import Row, Table
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class SizeReport:
 
         from rich.console import Console
 
-        from reports.commands.size import print_found
+        from alula.reports.commands.size import print_found
 
         stream = io.StringIO()
         print_found(self.result, Console(file=stream, width=120))

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from fea.study.store import Store
-from reports.notebook.shown import Picture, Row, Table
-from reports.study.rows import nearest_text, study_rows
+from alula.fea.study.store import Store
+from alula.reports.notebook.shown import Picture, Row, Table
+from alula.reports.study.rows import nearest_text, study_rows
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class StudyReport:
     @property
     def pictures(self) -> Mapping[str, Picture]:
         """What ``alula study show`` draws of the variants, by the title of each picture."""
-        from reports.study.choice import pictures
-        from reports.study.columns import read_study
+        from alula.reports.study.choice import pictures
+        from alula.reports.study.columns import read_study
 
         with Store.reading(self.folder) as store:
             drawn, _ = pictures(read_study(store))

@@ -4,9 +4,9 @@ import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from geometry.mechanisms.synthesis import Synthesis
-from reports.commands.synthesis import draw_linkage, record
-from reports.notebook.shown import Picture, Row, Table
+from alula.geometry.mechanisms.synthesis import Synthesis
+from alula.reports.commands.synthesis import draw_linkage, record
+from alula.reports.notebook.shown import Picture, Row, Table
 
 
 @dataclass(frozen=True)

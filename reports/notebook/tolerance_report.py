@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from reports.notebook.shown import Picture, Row, Table, pick
+from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
+from alula.reports.notebook.shown import Picture, Row, Table, pick
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class ToleranceReport:
         CaseError
             For a number that there is not.
         """
-        from reports.study.tolerance_pictures import spread_picture
+        from alula.reports.study.tolerance_pictures import spread_picture
 
         return Picture(spread_picture(pick(self.numbers, number, "number")))
 

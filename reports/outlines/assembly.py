@@ -6,17 +6,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.clearance.least import Spot
-from geometry.clearance.shape import Shape
-from geometry.linkage.placement import Placement
-from loads.case.case import Case
-from loads.case.forks import levels
-from loads.states.clearance import Assembly, Clearance
-from reports.sheet.canvas import Canvas, faint
-from reports.sheet.labels import place_labels
-from reports.sheet.plot import Axes, ticks, widest
-from reports.sheet.style import GROUND, INK, WIDTH
-from reports.words.wording import plain
+from alula.geometry.clearance.least import Spot
+from alula.geometry.clearance.shape import Shape
+from alula.geometry.linkage.placement import Placement
+from alula.loads.case.case import Case
+from alula.loads.case.forks import levels
+from alula.loads.states.clearance import Assembly, Clearance
+from alula.reports.sheet.canvas import Canvas, faint
+from alula.reports.sheet.labels import place_labels
+from alula.reports.sheet.plot import Axes, ticks, widest
+from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.words.wording import plain
 
 Real = NDArray[np.float64]
 

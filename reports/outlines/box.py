@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.whole.size import size_band
-from geometry.clearance.reach import Standing
-from geometry.linkage.placement import Placement
-from loads.states.extent import Extent
-from reports.outlines.assembly import draw
-from reports.sheet.canvas import Canvas, faint
-from reports.sheet.plot import Axes, ticks, widest
-from reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, WIDTH
-from reports.words.wording import plain
+from alula.fea.whole.size import size_band
+from alula.geometry.clearance.reach import Standing
+from alula.geometry.linkage.placement import Placement
+from alula.loads.states.extent import Extent
+from alula.reports.outlines.assembly import draw
+from alula.reports.sheet.canvas import Canvas, faint
+from alula.reports.sheet.plot import Axes, ticks, widest
+from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, WIDTH
+from alula.reports.words.wording import plain
 
 Real = NDArray[np.float64]
 

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.clearance.least import Gap
-from loads.states.clearance import Clearance
-from reports.outlines.assembly import FILL, LAYERS, Placed, border, dark, draw
-from reports.sheet.canvas import Canvas, extent, faint
-from reports.sheet.labels import place_labels
-from reports.sheet.plot import Axes, ticks, widest
-from reports.sheet.style import JOINT_FORCE, WIDTH
-from reports.words.wording import number
+from alula.geometry.clearance.least import Gap
+from alula.loads.states.clearance import Clearance
+from alula.reports.outlines.assembly import FILL, LAYERS, Placed, border, dark, draw
+from alula.reports.sheet.canvas import Canvas, extent, faint
+from alula.reports.sheet.labels import place_labels
+from alula.reports.sheet.plot import Axes, ticks, widest
+from alula.reports.sheet.style import JOINT_FORCE, WIDTH
+from alula.reports.words.wording import number
 
 Real = NDArray[np.float64]
 

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from fea.claims.audit import ClaimResult
-from fea.claims.sources import check_claims
-from fea.outcomes.result import CheckResult
-from loads.case.case_file import built_in_cases
-from loads.sources.published_statics import StaticsAudit
-from reports.page.template import fill
-from reports.tables.claims import as_records, count
+from alula.fea.claims.audit import ClaimResult
+from alula.fea.claims.sources import check_claims
+from alula.fea.outcomes.result import CheckResult
+from alula.loads.case.case_file import built_in_cases
+from alula.loads.sources.published_statics import StaticsAudit
+from alula.reports.page.template import fill
+from alula.reports.tables.claims import as_records, count
 
 CLAIMS = "claims.html"
 

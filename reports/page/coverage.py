@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from fea.common.verdict import LINKAGE, Quantity, Subject
-from fea.outcomes.result import CheckResult, LinkResult, SolidResult
-from fea.solid.buckling_factor import MOST
-from loads.case.joint_rules import clearances, rubbing_joints
-from reports.words.wording import joined
+from alula.fea.common.verdict import LINKAGE, Quantity, Subject
+from alula.fea.outcomes.result import CheckResult, LinkResult, SolidResult
+from alula.fea.solid.buckling_factor import MOST
+from alula.loads.case.joint_rules import clearances, rubbing_joints
+from alula.reports.words.wording import joined
 
 STACKING = (
     "The case states no layers, so all links lie in one plane. In a real linkage they are stacked along the pins; the "

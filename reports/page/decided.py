@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, reason_for
+from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, reason_for
 
 _MEANING = {
     Verdict.PASS: "{where} and under these loads every check keeps its limit, even at the unfavourable end of its "

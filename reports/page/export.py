@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.stress import COMPONENTS, StressField
-from geometry.base.errors import CannotRunError
+from alula.fea.solid.stress import COMPONENTS, StressField
+from alula.geometry.base.errors import CannotRunError
 
 PRINCIPAL = ("first", "second", "third")
 

@@ -6,13 +6,21 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-from fea.outcomes.result import CheckResult, SolidResult
-from loads.case.case import Case
-from reports.page.claims_page import CLAIMS, write_claims
-from reports.page.output import MARK, write_folder
-from reports.page.pictures import ASSEMBLY, CONTACT, diagram_name, flapping_name, layers_name, linkage_name, stress_name
-from reports.tables.record import as_json, worst_load_case
-from reports.vibration.pictures import campbell_name, shapes_name
+from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.loads.case.case import Case
+from alula.reports.page.claims_page import CLAIMS, write_claims
+from alula.reports.page.output import MARK, write_folder
+from alula.reports.page.pictures import (
+    ASSEMBLY,
+    CONTACT,
+    diagram_name,
+    flapping_name,
+    layers_name,
+    linkage_name,
+    stress_name,
+)
+from alula.reports.tables.record import as_json, worst_load_case
+from alula.reports.vibration.pictures import campbell_name, shapes_name
 
 REPORT = "report.html"
 PICTURES = "pictures"
@@ -72,11 +80,11 @@ def write_report(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from reports.page.html import render
-    from reports.page.pictures import draw_pictures, repacked
-    from reports.turnable.link import link_models
-    from reports.turnable.moving import LINKAGE, check_linkage
-    from reports.turnable.pack import data_block
+    from alula.reports.page.html import render
+    from alula.reports.page.pictures import draw_pictures, repacked
+    from alula.reports.turnable.link import link_models
+    from alula.reports.turnable.moving import LINKAGE, check_linkage
+    from alula.reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
         with ThreadPoolExecutor(1) as beside:
@@ -107,7 +115,7 @@ def _write_fields(result: CheckResult, folder: Path) -> None:
     solids = {link: found for link, found in links.items() if isinstance(found, SolidResult)}
     if not solids:
         return
-    from reports.page.export import write_vtu
+    from alula.reports.page.export import write_vtu
 
     folder.mkdir()
     for link, found in solids.items():

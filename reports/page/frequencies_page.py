@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from fea.vibration.frequency_outcomes import deciding_load_case
-from fea.vibration.over_motion import CaseFrequencies
-from reports.page.template import fill
-from reports.tables.frequencies import LEFT_OUT, history_sentence, mode_rows
-from reports.vibration.pictures import campbell_name, shapes_name
+from alula.fea.vibration.frequency_outcomes import deciding_load_case
+from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.reports.page.template import fill
+from alula.reports.tables.frequencies import LEFT_OUT, history_sentence, mode_rows
+from alula.reports.vibration.pictures import campbell_name, shapes_name
 
 PAGE = "frequencies.html"
 

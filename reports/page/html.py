@@ -4,16 +4,16 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from fea.common.verdict import CheckOutcome, Subject, by_nearness
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
-from geometry.linkage.pose import NEAR_DEAD_POINT
-from geometry.materials.material import Material
-from loads.case.forks import forked_link
-from loads.statics.rounding import without_rounding
-from reports.page.coverage import not_covered
-from reports.page.decided import held, meaning, reasons
-from reports.page.frequencies_page import frequencies_view
-from reports.page.pictures import (
+from alula.fea.common.verdict import CheckOutcome, Subject, by_nearness
+from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
+from alula.geometry.linkage.pose import NEAR_DEAD_POINT
+from alula.geometry.materials.material import Material
+from alula.loads.case.forks import forked_link
+from alula.loads.statics.rounding import without_rounding
+from alula.reports.page.coverage import not_covered
+from alula.reports.page.decided import held, meaning, reasons
+from alula.reports.page.frequencies_page import frequencies_view
+from alula.reports.page.pictures import (
     ASSEMBLY,
     BOX,
     CONTACT,
@@ -24,22 +24,22 @@ from reports.page.pictures import (
     linkage_name,
     stress_name,
 )
-from reports.page.template import fill
-from reports.tables.clearance import MOST, clearance_line, clearance_record
-from reports.tables.data import change_records
-from reports.tables.frames import AXES, linkage_line, play_line, shown_components, thrust_line, tips
-from reports.tables.friction import friction_sentence
-from reports.tables.layers import BuildDirections, build_directions_of
-from reports.tables.loads import air_lines, air_record, anchor_record, case_air_record, weight_sentence
-from reports.tables.mechanism import design_of
-from reports.tables.meshes import solver_sentence
-from reports.tables.record import worst_load_case
-from reports.tables.springs import holding_sentence, spring_sentences
-from reports.tables.whole import whole_table
-from reports.turnable.link import link_name
-from reports.turnable.moving import CHECK_CAPTION, LINKAGE
-from reports.turnable.script import viewer
-from reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
+from alula.reports.page.template import fill
+from alula.reports.tables.clearance import MOST, clearance_line, clearance_record
+from alula.reports.tables.data import change_records
+from alula.reports.tables.frames import AXES, linkage_line, play_line, shown_components, thrust_line, tips
+from alula.reports.tables.friction import friction_sentence
+from alula.reports.tables.layers import BuildDirections, build_directions_of
+from alula.reports.tables.loads import air_lines, air_record, anchor_record, case_air_record, weight_sentence
+from alula.reports.tables.mechanism import design_of
+from alula.reports.tables.meshes import solver_sentence
+from alula.reports.tables.record import worst_load_case
+from alula.reports.tables.springs import holding_sentence, spring_sentences
+from alula.reports.tables.whole import whole_table
+from alula.reports.turnable.link import link_name
+from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
+from alula.reports.turnable.script import viewer
+from alula.reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
 
 MOST_CHECKS = 8
 """That the first page shows; the others stand below."""
@@ -66,12 +66,12 @@ def render(
     ----------
     result : CheckResult
     figures : mapping
-        PNG pictures by the names of ``reports.page.pictures``; the page omits missing ones.
+        PNG pictures by the names of ``alula.reports.page.pictures``; the page omits missing ones.
     published : str, optional
         How many published figures ``claims.html`` beside the page has, in a sentence; "" where there is none.
     models : mapping, optional
-        Data blocks of the models that a reader can turn, by the names of ``reports.turnable``; the page omits missing
-        ones.
+        Data blocks of the models that a reader can turn, by the names of ``alula.reports.turnable``; the page omits
+        missing ones.
 
     Returns
     -------

@@ -5,18 +5,18 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from fea.common.verdict import by_nearness
-from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
-from fea.outcomes.unchecked import caveats
-from loads.states.case_motion import CaseMotion
-from reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
-from reports.motion.rates import rates_record
-from reports.page.decided import held, meaning, reasons
-from reports.page.template import fill
-from reports.turnable.moving import ENVELOPE_CAPTION, MOTION_CAPTION, envelope_linkage, motion_linkage
-from reports.turnable.pack import data_block
-from reports.turnable.script import viewer
-from reports.words.wording import besides, decision
+from alula.fea.common.verdict import by_nearness
+from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
+from alula.fea.outcomes.unchecked import caveats
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
+from alula.reports.motion.rates import rates_record
+from alula.reports.page.decided import held, meaning, reasons
+from alula.reports.page.template import fill
+from alula.reports.turnable.moving import ENVELOPE_CAPTION, MOTION_CAPTION, envelope_linkage, motion_linkage
+from alula.reports.turnable.pack import data_block
+from alula.reports.turnable.script import viewer
+from alula.reports.words.wording import besides, decision
 
 ENVELOPE, MOTION = "envelope.html", "motion.html"
 STYLES = ("report.css", "turnable.css")

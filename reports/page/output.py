@@ -16,10 +16,10 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from geometry.base import child
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.locks import locked
-from geometry.base.tidying import tidied
+from alula.geometry.base import child
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.locks import locked
+from alula.geometry.base.tidying import tidied
 
 MARK = "result.json"
 """The last file to be put and the first to be taken: a folder that holds it holds a whole result."""

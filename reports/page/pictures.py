@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
-from fea.outcomes.result import CheckResult
-from fea.whole.size import size_limits
-from reports.tables.layers import build_directions_of
-from reports.tables.record import worst_load_case
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.whole.size import size_limits
+from alula.reports.tables.layers import build_directions_of
+from alula.reports.tables.record import worst_load_case
 
 
 def linkage_name(load_case: str) -> str:
@@ -124,15 +124,15 @@ def draw_pictures(
     tuple
         Name -> PNG, and warnings.
     """
-    from reports.figures.build_map import build_map
-    from reports.figures.diagrams import internal_force_diagram
-    from reports.figures.drawings import linkage_drawing
-    from reports.figures.figures import stress_plots
-    from reports.motion.air_figures import case_air_pictures
-    from reports.outlines.assembly import assembly_drawing
-    from reports.outlines.box import box_drawing
-    from reports.outlines.contact import contact_drawing
-    from reports.vibration.pictures import frequency_pictures
+    from alula.reports.figures.build_map import build_map
+    from alula.reports.figures.diagrams import internal_force_diagram
+    from alula.reports.figures.drawings import linkage_drawing
+    from alula.reports.figures.figures import stress_plots
+    from alula.reports.motion.air_figures import case_air_pictures
+    from alula.reports.outlines.assembly import assembly_drawing
+    from alula.reports.outlines.box import box_drawing
+    from alula.reports.outlines.contact import contact_drawing
+    from alula.reports.vibration.pictures import frequency_pictures
 
     worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
     points = {link: result.case.links[link].points for link in worst}

@@ -27,7 +27,7 @@ def sealed(*styles: str, script: str = "") -> dict[str, str]:
     ----------
     W3C, Content Security Policy Level 3.
     """
-    style = "".join((files("reports.templates") / name).read_text(encoding="utf-8") for name in styles)
+    style = "".join((files("alula.reports.templates") / name).read_text(encoding="utf-8") for name in styles)
     rules = {
         "default-src": "'none'",
         "script-src": _allowed(script),

@@ -4,9 +4,9 @@ import base64
 import math
 from typing import Any
 
-from geometry.base.version import alula_version
-from reports.page.policy import sealed
-from reports.words.wording import band, fixed, joined, number, percent, plain, sentence
+from alula.geometry.base.version import alula_version
+from alula.reports.page.policy import sealed
+from alula.reports.words.wording import band, fixed, joined, number, percent, plain, sentence
 
 
 def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: str = "", **entries: Any) -> str:
@@ -30,7 +30,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=PackageLoader("reports"),
+        loader=PackageLoader("alula.reports"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

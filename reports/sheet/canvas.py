@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reports.sheet.marks import Area, Box, Raster, Stroke, Text
-from reports.sheet.style import DPI, INK
+from alula.reports.sheet.marks import Area, Box, Raster, Stroke, Text
+from alula.reports.sheet.style import DPI, INK
 
 Real = NDArray[np.float64]
 

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import Quantity
-from fea.study.margin import least_margin, nearest
-from fea.study.numbers import VariantNumber
-from fea.study.store import Store
-from geometry.base.errors import CaseError
-from loads.plans.axis import number_of
-from loads.sources.quantity import unit_of
-from reports.study.rows import Chosen, Row, study_rows, title
+from alula.fea.common.verdict import Quantity
+from alula.fea.study.margin import least_margin, nearest
+from alula.fea.study.numbers import VariantNumber
+from alula.fea.study.store import Store
+from alula.geometry.base.errors import CaseError
+from alula.loads.plans.axis import number_of
+from alula.loads.sources.quantity import unit_of
+from alula.reports.study.rows import Chosen, Row, study_rows, title
 
 Real = NDArray[np.float64]
 MOST_NUMBERS = 3

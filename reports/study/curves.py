@@ -7,9 +7,19 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from reports.sheet.style import GROUND, INK, WIDTH
-from reports.study.columns import Parameter, Response
-from reports.study.style import LOOKS, Words, legend, limit_handle, mark_size, scale, scatter, styled, wants_decades
+from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.study.columns import Parameter, Response
+from alula.reports.study.style import (
+    LOOKS,
+    Words,
+    legend,
+    limit_handle,
+    mark_size,
+    scale,
+    scatter,
+    styled,
+    wants_decades,
+)
 
 Real = NDArray[np.float64]
 Panel = tuple[str, NDArray[np.bool_]]

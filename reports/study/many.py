@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from reports.sheet.style import GROUND, INK, WIDTH
-from reports.study.columns import Parameter, Response
-from reports.study.curves import reach
-from reports.study.style import (
+from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.study.columns import Parameter, Response
+from alula.reports.study.curves import reach
+from alula.reports.study.style import (
     LOOKS,
     MOST_MARKS,
     Words,

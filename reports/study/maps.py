@@ -7,10 +7,21 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from reports.sheet.style import INK
-from reports.study.columns import Parameter, Response
-from reports.study.curves import Panel, name_axes, subplots
-from reports.study.style import LOOKS, Words, legend, levels, mark_size, scale, scatter, styled, tick, wants_decades
+from alula.reports.sheet.style import INK
+from alula.reports.study.columns import Parameter, Response
+from alula.reports.study.curves import Panel, name_axes, subplots
+from alula.reports.study.style import (
+    LOOKS,
+    Words,
+    legend,
+    levels,
+    mark_size,
+    scale,
+    scatter,
+    styled,
+    tick,
+    wants_decades,
+)
 
 Real = NDArray[np.float64]
 _TINT = 0.22

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.study.columns import Parameter, Response
+from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
 

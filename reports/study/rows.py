@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from fea.common.band import Band
-from fea.common.verdict import Verdict
-from fea.study.margin import margin, nearest, sense_of
-from fea.study.numbers import VariantNumber, VariantResult
-from fea.study.store import Store
-from geometry.base.version import result_stamp
-from reports.tables.data import finite
-from reports.words.terminal import say, say_table
-from reports.words.wording import band, number
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Verdict
+from alula.fea.study.margin import margin, nearest, sense_of
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.fea.study.store import Store
+from alula.geometry.base.version import result_stamp
+from alula.reports.tables.data import finite
+from alula.reports.words.terminal import say, say_table
+from alula.reports.words.wording import band, number
 
 if TYPE_CHECKING:
     from rich.console import Console

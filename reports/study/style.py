@@ -12,9 +12,9 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from reports.figures.motion_figures import quiet_glyphs
-from reports.sheet.style import DPI, GROUND, INK, LOAD, STYLE, as_png
-from reports.words.wording import number
+from alula.reports.figures.motion_figures import quiet_glyphs
+from alula.reports.sheet.style import DPI, GROUND, INK, LOAD, STYLE, as_png
+from alula.reports.words.wording import number
 
 Real = NDArray[np.float64]
 Words = NDArray[np.str_]

@@ -5,9 +5,9 @@ import re
 
 import numpy as np
 
-from fea.tolerance.result import ToleranceNumber, ToleranceResult
-from reports.study.spread import histogram, tornado
-from reports.study.style import png
+from alula.fea.tolerance.result import ToleranceNumber, ToleranceResult
+from alula.reports.study.spread import histogram, tornado
+from alula.reports.study.style import png
 
 MOST = 6
 """Numbers that are drawn: those that come nearest to their limits."""

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from geometry.base.version import result_stamp
-from reports.tables.data import entries, finite
-from reports.words.terminal import say, say_table
-from reports.words.wording import besides, number
+from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
+from alula.geometry.base.version import result_stamp
+from alula.reports.tables.data import entries, finite
+from alula.reports.words.terminal import say, say_table
+from alula.reports.words.wording import besides, number
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -4,7 +4,7 @@ import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from fea.claims.audit import ClaimResult, Finding
+from alula.fea.claims.audit import ClaimResult, Finding
 
 LONGEST_TABLE = 300
 """Claims of one source beyond which its page lists those alone that do not hold."""

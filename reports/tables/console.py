@@ -4,19 +4,19 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from fea.check.anchor import anchor_loads
-from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness
-from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
-from loads.records.aero import AirForces
-from loads.statics.rounding import without_rounding
-from reports.tables.data import change_records
-from reports.tables.frames import frame_lines
-from reports.tables.friction import friction_sentence
-from reports.tables.layers import build_directions_of
-from reports.tables.second_opinion import say_opinions
-from reports.tables.springs import holding_sentence, spring_sentences
-from reports.words.terminal import KEPT, say, say_command, say_table
-from reports.words.wording import (
+from alula.fea.check.anchor import anchor_loads
+from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness
+from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
+from alula.loads.records.aero import AirForces
+from alula.loads.statics.rounding import without_rounding
+from alula.reports.tables.data import change_records
+from alula.reports.tables.frames import frame_lines
+from alula.reports.tables.friction import friction_sentence
+from alula.reports.tables.layers import build_directions_of
+from alula.reports.tables.second_opinion import say_opinions
+from alula.reports.tables.springs import holding_sentence, spring_sentences
+from alula.reports.words.terminal import KEPT, say, say_command, say_table
+from alula.reports.words.wording import (
     agreement,
     apart,
     band,

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome
-from fea.outcomes.result import CheckResult
-from fea.sizing.changes import changes
-from reports.words.changes import change_sentences, change_title, size_command
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.sizing.changes import changes
+from alula.reports.words.changes import change_sentences, change_title, size_command
 
 
 def data(value: Any) -> Any:

@@ -5,22 +5,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fea.common.band import Band
-from fea.common.source import play_source
-from fea.frame.thrust import thrusts
-from loads.case.case import Case
-from loads.records.check_spec import DisplacementCheck
-from loads.states.play import Play, Span
-from loads.statics.rounding import without_rounding
-from loads.statics.statics import Reactions
-from reports.tables.data import data, entries
-from reports.words.wording import band, fixed, limit_load, number
+from alula.fea.common.band import Band
+from alula.fea.common.source import play_source
+from alula.fea.frame.thrust import thrusts
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import DisplacementCheck
+from alula.loads.states.play import Play, Span
+from alula.loads.statics.rounding import without_rounding
+from alula.loads.statics.statics import Reactions
+from alula.reports.tables.data import data, entries
+from alula.reports.words.wording import band, fixed, limit_load, number
 
 if TYPE_CHECKING:
-    from fea.frame.joint_forces import JointForces
-    from fea.motion.linkage_history import LinkageOverMotion
-    from fea.outcomes.result import CheckResult, LoadCaseResult
-    from loads.states.case_motion import CaseMotion
+    from alula.fea.frame.joint_forces import JointForces
+    from alula.fea.motion.linkage_history import LinkageOverMotion
+    from alula.fea.outcomes.result import CheckResult, LoadCaseResult
+    from alula.loads.states.case_motion import CaseMotion
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 _ROUNDING = 1e-9

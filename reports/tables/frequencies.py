@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fea.vibration.frequency_outcomes import (
+from alula.fea.vibration.frequency_outcomes import (
     harmonic_sentence,
     least_at,
     least_frequency,
@@ -11,12 +11,12 @@ from fea.vibration.frequency_outcomes import (
     told,
     unit,
 )
-from fea.vibration.harmonics import HIGHEST, in_words, meetings
-from fea.vibration.link_modes import LinkModes
-from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
-from loads.case.case import Case
-from reports.tables.data import data, entries
-from reports.words.wording import sentence
+from alula.fea.vibration.harmonics import HIGHEST, in_words, meetings
+from alula.fea.vibration.link_modes import LinkModes
+from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
+from alula.loads.case.case import Case
+from alula.reports.tables.data import data, entries
+from alula.reports.words.wording import sentence
 
 LEFT_OUT = (
     "damping",

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.whole.rubbed_motion import work_between
-from loads.records.applied import Load
-from loads.states.case_motion import CaseMotion
-from loads.states.drive_work import DriveWork
-from loads.states.rubbing import told_direction
-from loads.statics.friction import friction_wrenches
-from loads.statics.rounding import size_of
-from loads.statics.statics import Reactions
-from reports.words.wording import number
+from alula.fea.whole.rubbed_motion import work_between
+from alula.loads.records.applied import Load
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.drive_work import DriveWork
+from alula.loads.states.rubbing import told_direction
+from alula.loads.statics.friction import friction_wrenches
+from alula.loads.statics.rounding import size_of
+from alula.loads.statics.statics import Reactions
+from alula.reports.words.wording import number
 
 Real = NDArray[np.float64]
 

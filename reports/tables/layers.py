@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.outcomes.layer_stress import LayerStress
-from fea.outcomes.result import CheckResult
-from fea.solid.layers import Layers, build_directions
-from reports.tables.data import data
-from reports.words.wording import band, fixed, number
+from alula.fea.common.band import Band
+from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.solid.layers import Layers, build_directions
+from alula.reports.tables.data import data
+from alula.reports.words.wording import band, fixed, number
 
 ALIKE = 0.05
 """Gain in safety factor up to which another direction is not called better."""
@@ -32,7 +32,7 @@ class BuildDirections:
         Which one that is.
     scan : ndarray or None
         Least safety factor (POLAR, AZIMUTH) of all load cases for the directions of
-        ``fea.solid.layers.build_directions``; None where it is not known.
+        ``alula.fea.solid.layers.build_directions``; None where it is not known.
     """
 
     link: str

@@ -6,23 +6,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.anchor import anchor_loads
-from fea.outcomes.result import CheckResult, LoadCaseResult
-from fea.whole.air_range import air_range
-from fea.whole.motor import demand
-from fea.whole.rubbed_motion import rubbed_motion
-from geometry.base.units import as_text
-from geometry.linkage.placement import Placement
-from loads.case.case import Case
-from loads.case.layers import pin_masses
-from loads.records.aero import shares
-from loads.records.applied import LineLoad
-from loads.records.carried import CarriedSpread
-from loads.records.load_case import LoadCase
-from loads.states.case_motion import CaseMotion
-from loads.states.flapping import flapping_loads, wing_reynolds, wing_span
-from reports.tables.data import entries
-from reports.words.wording import joined, number, plain
+from alula.fea.check.anchor import anchor_loads
+from alula.fea.outcomes.result import CheckResult, LoadCaseResult
+from alula.fea.whole.air_range import air_range
+from alula.fea.whole.motor import demand
+from alula.fea.whole.rubbed_motion import rubbed_motion
+from alula.geometry.base.units import as_text
+from alula.geometry.linkage.placement import Placement
+from alula.loads.case.case import Case
+from alula.loads.case.layers import pin_masses
+from alula.loads.records.aero import shares
+from alula.loads.records.applied import LineLoad
+from alula.loads.records.carried import CarriedSpread
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.flapping import flapping_loads, wing_reynolds, wing_span
+from alula.reports.tables.data import entries
+from alula.reports.words.wording import joined, number, plain
 
 Real = NDArray[np.float64]
 _AT = ("without", "least", "stated", "largest")

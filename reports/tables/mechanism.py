@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from loads.case.case import Case
+from alula.loads.case.case import Case
 
 
 @dataclass(frozen=True, kw_only=True)

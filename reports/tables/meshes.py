@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from fea.motion.envelope_result import LinkEnvelope
-from fea.refine.discretisation import Discretisation
-from fea.solid.solution import SolidSolution
-from reports.tables.data import entries
+from alula.fea.motion.envelope_result import LinkEnvelope
+from alula.fea.refine.discretisation import Discretisation
+from alula.fea.solid.solution import SolidSolution
+from alula.reports.tables.data import entries
 
 LEAST_TOLD = 1e-9
 """Solver error below which its size is not stated."""

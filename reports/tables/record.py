@@ -8,23 +8,23 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from fea.outcomes.result import CheckResult, HandResult, LinkResult, LoadCaseResult, SolidResult
-from geometry.base.version import result_stamp
-from loads.sources.published_statics import StaticsAudit
-from loads.statics.statics import Reactions
-from loads.text.caveat import Heading
-from reports.tables.clearance import clearance_record
-from reports.tables.data import change_records, check_records, data, entries, finite
-from reports.tables.frames import frame_record, reaction_records
-from reports.tables.frequencies import frequencies_record
-from reports.tables.friction import friction_record
-from reports.tables.layers import layer_record
-from reports.tables.loads import air_record, anchor_record, case_air_record
-from reports.tables.mechanism import design_record
-from reports.tables.meshes import discretisation_record, solver_record
-from reports.tables.second_opinion import opinion_records
-from reports.tables.springs import standing_record
-from reports.tables.whole import mass_record, size_record
+from alula.fea.outcomes.result import CheckResult, HandResult, LinkResult, LoadCaseResult, SolidResult
+from alula.geometry.base.version import result_stamp
+from alula.loads.sources.published_statics import StaticsAudit
+from alula.loads.statics.statics import Reactions
+from alula.loads.text.caveat import Heading
+from alula.reports.tables.clearance import clearance_record
+from alula.reports.tables.data import change_records, check_records, data, entries, finite
+from alula.reports.tables.frames import frame_record, reaction_records
+from alula.reports.tables.frequencies import frequencies_record
+from alula.reports.tables.friction import friction_record
+from alula.reports.tables.layers import layer_record
+from alula.reports.tables.loads import air_record, anchor_record, case_air_record
+from alula.reports.tables.mechanism import design_record
+from alula.reports.tables.meshes import discretisation_record, solver_record
+from alula.reports.tables.second_opinion import opinion_records
+from alula.reports.tables.springs import standing_record
+from alula.reports.tables.whole import mass_record, size_record
 
 _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
 
@@ -32,7 +32,7 @@ _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sour
 @cache
 def field_units() -> dict[str, Any]:
     """Return the unit of every dimension and, under ``fields``, of every field of ``result.json``."""
-    found = tomllib.loads(files("reports.tables").joinpath("units.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads(files("alula.reports.tables").joinpath("units.toml").read_text(encoding="utf-8"))
     return {**found["dimensions"], "fields": found["fields"]}
 
 

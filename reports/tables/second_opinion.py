@@ -5,12 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fea.calculix.second_opinion import second_opinions
-from fea.outcomes.opinion import SecondOpinion
-from fea.outcomes.result import CheckResult
-from reports.tables.data import entries
-from reports.words.terminal import say_table
-from reports.words.wording import number
+from alula.fea.calculix.second_opinion import second_opinions
+from alula.fea.outcomes.opinion import SecondOpinion
+from alula.fea.outcomes.result import CheckResult
+from alula.reports.tables.data import entries
+from alula.reports.words.terminal import say_table
+from alula.reports.words.wording import number
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.records.springs import TurnSpring
-from loads.states.case_motion import CaseMotion
-from loads.states.springs import SpringState, spring_states
-from loads.states.standing import Standing
-from reports.words.wording import number, turning
+from alula.loads.records.springs import TurnSpring
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.springs import SpringState, spring_states
+from alula.loads.states.standing import Standing
+from alula.reports.words.wording import number, turning
 
 
 def holding_sentence(standing: Standing) -> str:

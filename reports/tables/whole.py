@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from typing import Any
 
-from fea.outcomes.result import CheckResult
-from fea.whole.mass import GRAMS, mass_sentence
-from fea.whole.size import size_band
-from loads.records.check_spec import MassCheck, SizeCheck
-from loads.states.extent import Extent, unmeasured
-from loads.states.weighed import Weighed
-from reports.tables.data import data
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.whole.mass import GRAMS, mass_sentence
+from alula.fea.whole.size import size_band
+from alula.loads.records.check_spec import MassCheck, SizeCheck
+from alula.loads.states.extent import Extent, unmeasured
+from alula.loads.states.weighed import Weighed
+from alula.reports.tables.data import data
 
 AXES = "xyz"
 Masses = tuple[float, float, float, float]

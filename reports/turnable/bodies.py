@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bodies.body import Body
-from geometry.clearance.shape import Core, link_shape
-from geometry.parts.lugs import without_lugs
-from geometry.parts.tube import Tube
+from alula.geometry.bodies.body import Body
+from alula.geometry.clearance.shape import Core, link_shape
+from alula.geometry.parts.lugs import without_lugs
+from alula.geometry.parts.tube import Tube
 
 Real = NDArray[np.float64]
 

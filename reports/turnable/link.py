@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import CheckResult, SolidResult, VariantPeak
-from fea.solid.stress import stress_field
-from reports.figures.figures import COLOURS, colour_range
-from reports.figures.scene import Scene, scene_of
-from reports.tables.record import worst_load_case
-from reports.turnable.pack import data_block, indices, quantised
-from reports.turnable.surface import CutSurface, cut_surface
-from reports.words.wording import fixed, number
+from alula.fea.outcomes.result import CheckResult, SolidResult, VariantPeak
+from alula.fea.solid.stress import stress_field
+from alula.reports.figures.figures import COLOURS, colour_range
+from alula.reports.figures.scene import Scene, scene_of
+from alula.reports.tables.record import worst_load_case
+from alula.reports.turnable.pack import data_block, indices, quantised
+from alula.reports.turnable.surface import CutSurface, cut_surface
+from alula.reports.words.wording import fixed, number
 
 
 def link_name(link: str) -> str:

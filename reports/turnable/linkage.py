@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.placement import Placement
-from loads.case.case import Case
-from loads.case.forks import levels, outer_link
-from loads.case.layers import on_one_axis, slab
-from loads.records.applied import LineLoad, PointLoad
-from loads.records.springs import Attachment, LineSpring
-from loads.states.actions import stated_loads
-from reports.figures.figures import COLOURS
-from reports.outlines.assembly import LAYERS
-from reports.turnable.bodies import PlateBody, plate_body
-from reports.turnable.pack import quantised, shades
-from reports.words.wording import plain
+from alula.geometry.linkage.placement import Placement
+from alula.loads.case.case import Case
+from alula.loads.case.forks import levels, outer_link
+from alula.loads.case.layers import on_one_axis, slab
+from alula.loads.records.applied import LineLoad, PointLoad
+from alula.loads.records.springs import Attachment, LineSpring
+from alula.loads.states.actions import stated_loads
+from alula.reports.figures.figures import COLOURS
+from alula.reports.outlines.assembly import LAYERS
+from alula.reports.turnable.bodies import PlateBody, plate_body
+from alula.reports.turnable.pack import quantised, shades
+from alula.reports.words.wording import plain
 
 Real = NDArray[np.float64]
 

@@ -6,19 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import Quantity, Subject, by_nearness, overall
-from fea.motion.along import spread_poses
-from fea.motion.envelope_result import EnvelopeResult, StressAlong
-from fea.outcomes.result import CheckResult
-from geometry.base.errors import CaseError
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.placement import Placement
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.states.case_motion import CaseMotion, drive_angles
-from reports.tables.record import worst_load_case
-from reports.turnable.linkage import Along, Poses, Values, linkage_record
-from reports.words.wording import band, checks_of, fixed, number
+from alula.fea.common.verdict import Quantity, Subject, by_nearness, overall
+from alula.fea.motion.along import spread_poses
+from alula.fea.motion.envelope_result import EnvelopeResult, StressAlong
+from alula.fea.outcomes.result import CheckResult
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.placement import Placement
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.states.case_motion import CaseMotion, drive_angles
+from alula.reports.tables.record import worst_load_case
+from alula.reports.turnable.linkage import Along, Poses, Values, linkage_record
+from alula.reports.words.wording import band, checks_of, fixed, number
 
 Real = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-FOLDER = files("reports.turnable")
+FOLDER = files("alula.reports.turnable")
 
 
 @cache

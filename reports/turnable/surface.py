@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from reports.figures.figures_worker import SMOOTH_BELOW
+from alula.reports.figures.figures_worker import SMOOTH_BELOW
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]

@@ -1,9 +1,9 @@
 """All pictures of natural frequencies, by name."""
 
-from fea.vibration.frequency_outcomes import deciding_load_case, unit
-from fea.vibration.over_motion import CaseFrequencies
-from reports.vibration.campbell import campbell_diagram
-from reports.vibration.shapes import shapes_drawing
+from alula.fea.vibration.frequency_outcomes import deciding_load_case, unit
+from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.reports.vibration.campbell import campbell_diagram
+from alula.reports.vibration.shapes import shapes_drawing
 
 
 def shapes_name(load_case: str) -> str:

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.model import FrameModel
-from fea.vibration.harmonics import in_words
-from fea.vibration.linkage_modes import LinkageModes
-from fea.vibration.modes import Mode
-from reports.sheet.canvas import Canvas
-from reports.sheet.plot import ticks
-from reports.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
-from reports.words.wording import band, plain
+from alula.fea.frame.model import FrameModel
+from alula.fea.vibration.harmonics import in_words
+from alula.fea.vibration.linkage_modes import LinkageModes
+from alula.fea.vibration.modes import Mode
+from alula.reports.sheet.canvas import Canvas
+from alula.reports.sheet.plot import ticks
+from alula.reports.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
+from alula.reports.words.wording import band, plain
 
 Real = NDArray[np.float64]
 MOST = 4

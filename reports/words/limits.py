@@ -5,8 +5,8 @@ from contextlib import contextmanager
 
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.units import parse
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import parse
 
 
 @contextmanager
@@ -29,8 +29,8 @@ def limited(threads: int, memory: str | None = None) -> Iterator[None]:
     CaseError
         For a text that is not a positive amount of memory, and less than alula holds before it solves anything.
     """
-    from fea.common import memory as process_memory
-    from fea.common.threads import bounded
+    from alula.fea.common import memory as process_memory
+    from alula.fea.common.threads import bounded
 
     with bounded(threads), process_memory.limited(None if memory is None else _enough(memory)):
         yield
@@ -38,7 +38,7 @@ def limited(threads: int, memory: str | None = None) -> Iterator[None]:
 
 def _enough(memory: str) -> float:
     """Return a limit [bytes] that leaves something beside the libraries."""
-    from fea.common.memory import with_libraries
+    from alula.fea.common.memory import with_libraries
 
     limit, held = _bytes(memory), with_libraries()
     if limit <= held:

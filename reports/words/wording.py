@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
-from loads.text.caveat import Caveat, Heading
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
+from alula.loads.text.caveat import Caveat, Heading
 
 if TYPE_CHECKING:
-    from fea.outcomes.result import CheckResult, SectionComparison
+    from alula.fea.outcomes.result import CheckResult, SectionComparison
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _ROUNDING = 1e-12

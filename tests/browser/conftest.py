@@ -11,7 +11,7 @@ import pytest
 import solved
 import wing_with_solid
 
-from fea.solid.stress import stress_field
+from alula.fea.solid.stress import stress_field
 
 
 def pytest_collection_modifyitems(items):
@@ -52,7 +52,7 @@ def written() -> WrittenPage:
 def _written() -> WrittenPage:
     from tempfile import TemporaryDirectory
 
-    from reports.page.folder import write_report
+    from alula.reports.page.folder import write_report
 
     result = wing_with_solid.result()
     with TemporaryDirectory() as folder:

@@ -14,7 +14,7 @@ from typing import Any
 
 import atheris
 
-with atheris.instrument_imports(include=["geometry", "loads", "tomllib"]):
+with atheris.instrument_imports(include=["alula.geometry", "alula.loads", "tomllib"]):
     from fuzz import targets
 
 from fuzz import grammar, guard, mutate

@@ -15,18 +15,18 @@ from fuzz.guard import watched
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.units import EXAMPLES, parse
-from loads.case.case import Case
-from loads.case.case_file import built_in_cases, read_case, read_companion, validate
-from loads.case.part_points import KINDS
-from loads.exchange.exchange import case_of_linkage
-from loads.sources.claim import Claim, read_printed
-from loads.sources.expression import Path as NamePath
-from loads.sources.expression import evaluate
-from loads.sources.quantity import Value
-from loads.text.entries import known_keys
-from loads.text.explain import sentence
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import EXAMPLES, parse
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import built_in_cases, read_case, read_companion, validate
+from alula.loads.case.part_points import KINDS
+from alula.loads.exchange.exchange import case_of_linkage
+from alula.loads.sources.claim import Claim, read_printed
+from alula.loads.sources.expression import Path as NamePath
+from alula.loads.sources.expression import evaluate
+from alula.loads.sources.quantity import Value
+from alula.loads.text.entries import known_keys
+from alula.loads.text.explain import sentence
 
 LONGEST_SENTENCE = 6000
 """Characters: a sentence may list names, but never the file."""
@@ -36,12 +36,12 @@ _FILE = _FOLDER / "case.toml"
 
 def starter() -> str:
     """Return the text of the starter case: the smallest valid one."""
-    return files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
+    return files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
 
 
 def seeds() -> dict[str, str]:
     """Return the text of every valid case there is."""
-    folder = files("loads.cases")
+    folder = files("alula.loads.cases")
     return {name: folder.joinpath(f"{name}.toml").read_text(encoding="utf-8") for name in built_in_cases()}
 
 
@@ -98,7 +98,7 @@ def case_tables(tables: dict[str, Any]) -> bool:
 
 def override(text: str) -> bool:
     """Any text behind ``--set``."""
-    from loads.case import case_file
+    from alula.loads.case import case_file
 
     tables = starter_tables()
     with watched():
@@ -177,8 +177,8 @@ def companion(text: str) -> bool:
 
 def varied(text: str) -> bool:
     """Any text as the values of an entry that a study varies, and as the expression of one that is linked."""
-    from loads.plans.axis import axis
-    from loads.plans.derived import derived_value
+    from alula.loads.plans.axis import axis
+    from alula.loads.plans.derived import derived_value
 
     accepted = False
     with watched():

@@ -97,10 +97,10 @@ def test_a_few_inputs_of_every_kind(tmp_path: Path) -> None:
 UNKNOWN = """
 import tomllib
 from fuzz import guard
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_text, validate
-from loads.plans.plan import StudyPlan
-from loads.text.entries import known_keys
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_text, validate
+from alula.loads.plans.plan import StudyPlan
+from alula.loads.text.entries import known_keys
 tables = tomllib.loads(read_text("ornithopter")[0])
 known_keys(StudyPlan, ())  # pydantic imports what it needs for schemas with the first of them
 guard.install()

@@ -6,9 +6,9 @@ import pytest
 from edited_cases import edited
 from pydantic_core import PydanticCustomError
 
-from geometry.base.errors import CaseError
-from geometry.base.units import parse
-from loads.case.case_file import read_case, read_companion, read_text
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import parse
+from alula.loads.case.case_file import read_case, read_companion, read_text
 
 
 def test_percent_was_taken_for_an_angle() -> None:

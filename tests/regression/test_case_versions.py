@@ -15,11 +15,11 @@ from typing import Any
 
 import pytest
 
-from fea.check.run import check_case
-from geometry.base.errors import CaseError
-from geometry.base.version import CASE_SCHEMA_VERSION, RESULT_SCHEMA_VERSION
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.geometry.base.errors import CaseError
+from alula.geometry.base.version import CASE_SCHEMA_VERSION, RESULT_SCHEMA_VERSION
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 HERE = Path(__file__).parent
 FORMAT_1 = json.loads((HERE / "case_format_1.json").read_text(encoding="utf-8"))
@@ -64,7 +64,7 @@ def test_a_case_of_0_1_means_what_it_meant(name):
 
     Its links lay in one plane; today's say in which layer. What stands still beside a motion with a speed says so.
     """
-    folder = files("loads.cases")
+    folder = files("alula.loads.cases")
     file = folder / ("four-bar.toml" if name == "starter" else f"{name}.toml")
     tables = tomllib.loads(file.read_text(encoding="utf-8"))
     if name == "starter":

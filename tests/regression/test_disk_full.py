@@ -9,9 +9,9 @@ from pathlib import Path
 import programs
 import pytest
 
-from geometry.base.child import run as run_child
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.parts.part import Bar, Body, Pin
+from alula.geometry.base.child import run as run_child
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.parts.part import Bar, Body, Pin
 
 resource = pytest.importorskip("resource")
 BODY = Body(
@@ -140,7 +140,7 @@ def test_a_folder_that_may_not_be_written(tmp_path: Path, parent: str, own: str)
 
 def test_memory_that_runs_out_is_status_4(tmp_path: Path) -> None:
     code = (
-        "import reports.commands.cli as c, fea.check.run as run\n"
+        "import alula.reports.commands.cli as c, alula.fea.check.run as run\n"
         "def f(*a, **k): raise MemoryError\nrun.check_case = f\nc.main()"
     )
     command = [sys.executable, "-c", code, *programs.BEAM]

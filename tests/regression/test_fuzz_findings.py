@@ -5,10 +5,10 @@ import tomllib
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from geometry.linkage.closure import LoopClosure
-from loads.case.case_file import read_case, read_text, validate
-from loads.sources.claim import read_printed
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.closure import LoopClosure
+from alula.loads.case.case_file import read_case, read_text, validate
+from alula.loads.sources.claim import read_printed
 
 WING = "owl-wing-flight"
 

@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 from imported_case import STEP
 
-from geometry.base import kernel_child
-from geometry.base.errors import CannotRunError
-from geometry.imported.read import part_facts
-from geometry.meshing import mesh, mesh_worker
-from geometry.parts.step import ImportedPart
-from loads.case.case_file import read_case
+from alula.geometry.base import kernel_child
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.imported.read import part_facts
+from alula.geometry.meshing import mesh, mesh_worker
+from alula.geometry.parts.step import ImportedPart
+from alula.loads.case.case_file import read_case
 
 WIRE = "Could not fix wire in surface 12"
 

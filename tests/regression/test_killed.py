@@ -91,11 +91,11 @@ import itertools, signal
 os.fsync = lambda descriptor: None
 sys.path.insert(0, TESTS)
 import programs
-from fea.check.run import check_case
-from loads.case.case_file import read_case
-from reports.page import html
-from reports.page import pictures
-from reports.page.folder import write_report
+from alula.fea.check.run import check_case
+from alula.loads.case.case_file import read_case
+from alula.reports.page import html
+from alula.reports.page import pictures
+from alula.reports.page.folder import write_report
 result = check_case(read_case("four-bar-synthesis"), name="starter", fidelity="beam")
 drawn = pictures.draw_pictures(result)
 page = html.render(result, drawn[0])
@@ -140,7 +140,7 @@ def test_a_report_killed_at_any_time_is_whole_or_not_there(tmp_path: Path) -> No
 
 def starter(folder: Path) -> str:
     """Write the starter case, the smallest that ships, and return its path."""
-    text = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
+    text = files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     (folder / "case.toml").write_text(text, encoding="utf-8")
     return str(folder / "case.toml")
 
@@ -204,8 +204,8 @@ CALCULIX = """
 import signal
 import sys
 from pathlib import Path
-from fea.calculix import program as calculix
-from geometry.base import child
+from alula.fea.calculix import program as calculix
+from alula.geometry.base import child
 def end(number, frame):
     child.stop_all()
     raise KeyboardInterrupt
@@ -238,9 +238,9 @@ def test_calculix_ends_with_the_run(tmp_path: Path, number: signal.Signals) -> N
 NATIVE = """
 import hashlib, threading
 from concurrent.futures import ThreadPoolExecutor
-import reports.commands.ending as ending
-from geometry.base import child
-from geometry.base.tidying import scratch_folder
+import alula.reports.commands.ending as ending
+from alula.geometry.base import child
+from alula.geometry.base.tidying import scratch_folder
 def native():
     sleeper = child.start([sys.executable, "-c", "import time; time.sleep(100)"])
     print(sleeper.pid, flush=True)
@@ -306,8 +306,8 @@ def test_interrupted_while_it_writes(tmp_path: Path) -> None:
 def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Path) -> None:
     """Exceptions in callbacks and destructors are ignored; the earlier result must not be replaced all the same."""
     text = (
-        "import signal, reports.commands.ending\n"
-        "reports.commands.ending.end_cleanly_on_signals()\n"
+        "import signal, alula.reports.commands.ending\n"
+        "alula.reports.commands.ending.end_cleanly_on_signals()\n"
         "def swallowing(folder):\n"
         "    fill('new')(folder)\n"
         "    try:\n"
@@ -326,7 +326,7 @@ def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Pa
 def test_an_interruption_in_a_destructor_prints_no_traceback(tmp_path: Path) -> None:
     """Python told of it with "Exception ignored in ..." before the one sentence; other faults there are still told."""
     text = (
-        "import signal, reports.commands.ending\n"
+        "import signal, alula.reports.commands.ending\n"
         "class Fragile:\n"
         "    def __init__(self, act): self.act = act\n"
         "    def __del__(self): self.act()\n"
@@ -334,7 +334,7 @@ def test_an_interruption_in_a_destructor_prints_no_traceback(tmp_path: Path) -> 
         "    Fragile(lambda: 1 // 0)\n"
         "    Fragile(lambda: signal.raise_signal(signal.SIGTERM))\n"
         "    raise SystemExit(0)\n"
-        "reports.commands.ending.run(app)\n"
+        "alula.reports.commands.ending.run(app)\n"
     )
     done = programs.script(text)
     assert done.returncode == 130

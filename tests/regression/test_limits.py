@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.frame.case_statics import solve_case_statics
-from geometry.base.errors import CaseError
-from loads.case.case_file import LARGEST_FILE, read_case, validate
-from loads.case.case_rules import MOST_RESULTS
-from loads.states.case_motion import solve_case_motion
-from reports.tables.record import as_json
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import LARGEST_FILE, read_case, validate
+from alula.loads.case.case_rules import MOST_RESULTS
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.tables.record import as_json
 
 OWL = "owl-wing-static"
 HOLES = '{count=%d,diameter="1 mm",first="40 mm",last="60 mm",along="z"}'
@@ -82,8 +82,8 @@ def test_the_ends_of_what_is_read_are_borne_by_all_that_solves(changes: dict[str
 
 def _starter(changes: dict[str, str]) -> dict[str, Any]:
     """Tables of the starter with a material of its own and a motion under inertia; the changes by their paths."""
-    tables = tomllib.loads(files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
-    card = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))[
+    tables = tomllib.loads(files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
+    card = tomllib.loads(files("alula.geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))[
         "pla-fdm-xy"
     ]
     for entry in ("youngs_modulus_range", "sustained_modulus"):  # which the changed modulus would contradict
@@ -138,7 +138,7 @@ def test_load_cases_times_links() -> None:
 
 def _row_of_four_bars(count: int) -> dict[str, Any]:
     """Tables of so many four-bars on one base, bonded, so that no drive is needed: three moving links each."""
-    tables = tomllib.loads(files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads(files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
     links, joints = {"base": tables["links"]["base"]}, {}
     for i in range(count):
         names = {name: f"{name}{i}" for name in ("crank", "coupler", "rocker")} | {"base": "base"}

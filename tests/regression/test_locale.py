@@ -11,7 +11,7 @@ import programs
 import pytest
 import solved
 
-from reports.tables.record import as_json
+from alula.reports.tables.record import as_json
 
 NAME = "Flügel – Prothese, 3. Versuch's"
 
@@ -24,7 +24,7 @@ def test_a_path_with_spaces_and_letters_beyond_ascii(tmp_path: Path, german: dic
         folder.mkdir(parents=True)
     shutil.copy(programs.ROOT / "loads" / "cases" / "four-bar-synthesis.toml", case)
     comma = "import locale; locale.setlocale(locale.LC_ALL, ''); assert locale.str(0.5) == '0,5'; " if german else ""
-    code = comma + "from reports.commands.cli import main; main()"
+    code = comma + "from alula.reports.commands.cli import main; main()"
     command = [sys.executable, "-c", code, "check", str(case), "--fidelity", "beam", "-o", str(out)]
     done = subprocess.run(
         command, env=programs.environment(scratch, **german), capture_output=True, text=True, timeout=300, check=False
@@ -77,8 +77,8 @@ def test_decimal_comma_in_the_mesher(tmp_path: Path, german: dict[str, str]) -> 
         "import locale; locale.setlocale(locale.LC_ALL, '')\n"
         "from pathlib import Path\n"
         "import sys\n"
-        "from loads.case.case_file import read_case\n"
-        "from geometry.meshing.mesh import COARSE, export_step, mass_properties, mesh_body\n"
+        "from alula.loads.case.case_file import read_case\n"
+        "from alula.geometry.meshing.mesh import COARSE, export_step, mass_properties, mesh_body\n"
         "body = read_case('four-bar-synthesis').body('a')\n"
         "export_step({'a': body}, Path(sys.argv[1]))\n"
         "print(repr(mass_properties(body).volume), len(mesh_body(body, COARSE).cells))\n"

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from geometry.base.errors import CannotRunError
-from geometry.base.system_libraries import advice
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.parts.part import Body, Pin, Tube
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.system_libraries import advice
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.parts.part import Body, Pin, Tube
 
 FAULT = "libGLU.so.1: cannot open shared object file: No such file or directory"
 

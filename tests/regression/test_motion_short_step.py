@@ -7,8 +7,8 @@ step by which two estimates may differ fell below rounding when the step itself 
 import numpy as np
 import pytest
 
-from geometry.linkage.motion import solve_motion
-from loads.case.case_file import read_case
+from alula.geometry.linkage.motion import solve_motion
+from alula.loads.case.case_file import read_case
 
 
 @pytest.mark.parametrize("by", [1e-16, -3e-16, 1e-15, 1e-14, -1e-13, 1e-12, 1e-10, -1e-8])

@@ -11,14 +11,14 @@ import pytest
 import typer
 
 import alula
-from fea.study.store import Store
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, read_text, validate
-from loads.plans.plan import plan_of
-from loads.plans.variants import Variants
-from loads.text.nesting import DEEPEST
-from reports.commands.cli import app
-from reports.notebook.check_report import CheckReport
+from alula.fea.study.store import Store
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, read_text, validate
+from alula.loads.plans.plan import plan_of
+from alula.loads.plans.variants import Variants
+from alula.loads.text.nesting import DEEPEST
+from alula.reports.commands.cli import app
+from alula.reports.notebook.check_report import CheckReport
 
 CASE = "four-bar-synthesis"
 DOTS = ".".join(["a"] * 500)

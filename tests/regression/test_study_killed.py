@@ -14,11 +14,11 @@ import pytest
 import studies
 from edited_cases import PLANAR
 
-from fea.study.store import Store
-from fea.study.study import Study
-from geometry.base.errors import AlulaError
-from loads.plans.plan import plan_of
-from loads.plans.variants import Variants
+from alula.fea.study.store import Store
+from alula.fea.study.study import Study
+from alula.geometry.base.errors import AlulaError
+from alula.loads.plans.plan import plan_of
+from alula.loads.plans.variants import Variants
 
 PLAN = {"case": "four-bar-synthesis", "analysis": "motion", "mass": False, "set": {"layer_spacing": "0 mm"}}
 COMMAND = (sys.executable, "-m", "alula", "study", "four-bar-synthesis", "--analysis", "motion", "--no-mass")

@@ -11,7 +11,7 @@ import programs
 import pytest
 import rocker_case
 
-from reports.commands import ending
+from alula.reports.commands import ending
 
 STATICS = ("statics", "owl-wing-static")
 """It prints letters beyond ASCII."""
@@ -69,8 +69,8 @@ def test_a_home_that_cannot_be_written(tmp_path: Path) -> None:
     assert list(scratch.iterdir()) == []
     # One folder for all processes: children that are killed left theirs.
     text = (
-        "from reports.commands import ending\n"
-        "from geometry.base import child\n"
+        "from alula.reports.commands import ending\n"
+        "from alula.geometry.base import child\n"
         "ending.run(lambda: print(child.environment()['MPLCONFIGDIR']))\n"
     )
     environment = programs.environment(**settings)
@@ -127,7 +127,7 @@ def test_a_current_folder_that_is_gone(tmp_path: Path) -> None:
 
 def test_names_beyond_ascii_in_a_locale_of_ascii(tmp_path: Path) -> None:
     """gmsh was handed a path that is no UTF-8 for Python there; a link's own file cannot be named (both status 4)."""
-    text = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
+    text = files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     for old, new in (("links.rocker", 'links."Ärmel"'), ('"rocker"', '"Ärmel"'), ("rocker =", '"Ärmel" =')):
         text = text.replace(old, new)
     (tmp_path / "größe.toml").write_text(text, encoding="utf-8")

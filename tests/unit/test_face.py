@@ -1,9 +1,8 @@
-"""``alula.py``: what a script and a notebook call, and its docstrings' examples."""
+"""``alula``: what a script and a notebook call, and its docstrings' examples."""
 
 import doctest
 import importlib
 import io
-import os
 import shutil
 import subprocess
 import sys
@@ -17,18 +16,24 @@ import pytest
 from PIL import Image
 
 import alula
-from fea.common.verdict import Verdict
-from fea.study.engine import Engine
-from fea.study.numbers import VariantNumber, VariantResult
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, read_text, validate
+from alula.fea.common.verdict import Verdict
+from alula.fea.study.engine import Engine
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, read_text, validate
 
 OWL = "owl-wing-static"
 TUBE = "parts.tube.outer_diameter"
 
 
 @pytest.mark.parametrize(
-    "module", ["alula", "loads.case.revisable", "reports.notebook.claims_report", "reports.notebook.motion_report"]
+    "module",
+    [
+        "alula",
+        "alula.loads.case.revisable",
+        "alula.reports.notebook.claims_report",
+        "alula.reports.notebook.motion_report",
+    ],
 )
 def test_examples_of_docstrings(module):
     found = doctest.testmod(importlib.import_module(module))
@@ -36,28 +41,11 @@ def test_examples_of_docstrings(module):
     assert found.failed == 0
 
 
-@pytest.mark.parametrize(
-    "mine", ["geometry.py", "loads.py", "fea.py", "reports.py", "geometry/__init__.py", "geometry/mine.py"]
-)
-def test_a_file_of_the_users_that_is_in_the_way_is_named(mine, tmp_path):
-    """Python finds what stands beside a script first; its modules were missing then, in whichever function asked."""
-    file = tmp_path / mine
-    file.parent.mkdir(exist_ok=True)
-    file.write_text("MINE = 1")
-    found = tmp_path / mine.partition("/")[0]
-    told = f"'{found}' is in the way of alula's own package '{found.stem}'; rename it, or move it to a folder of which"
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-
-    def run(*arguments):
-        command = [sys.executable, *arguments]
-        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-
-    caught = "try:\n  import alula\nexcept ImportError as error:\n  print(type(error).__name__, error)"
-    assert run("-c", caught).stdout.startswith(f"ShadowedError {told}")
-    command = run("-m", "alula", "cases")
-    assert (command.returncode, command.stdout) == (2, "")
-    assert command.stderr.startswith(f"alula: {told}")
-    assert command.stderr.count("\n") == 1
+@pytest.mark.parametrize("room", ["geometry", "loads", "fea", "reports"])
+def test_a_bare_room_is_not_imported_and_no_module_is_loaded_twice(room):
+    with pytest.raises(ImportError, match=f"is alula.{room}"):
+        importlib.import_module(room)
+    assert not [name for name in sys.modules if name.partition(".")[0] == room]
 
 
 def test_the_version_is_that_of_the_project():
@@ -192,7 +180,7 @@ def test_a_size_is_found_and_told(monkeypatch):
         return future
 
     engine = Engine(submit=submit, capacity=lambda: 4)
-    monkeypatch.setattr("fea.study.compute.engine_for", lambda *_, **__: nullcontext(engine))
+    monkeypatch.setattr("alula.fea.study.compute.engine_for", lambda *_, **__: nullcontext(engine))
     found = alula.size(OWL, {TUBE: "4 mm..8 mm"}, step="1 mm", fidelity="beam")
     assert (found.passing, found.failing) == ({TUBE: "6 mm"}, {TUBE: "5 mm"})
     rows = {row[TUBE]: row for row in found.table()}

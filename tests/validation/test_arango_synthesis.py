@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.mechanisms.synthesis import driven, synthesise
+from alula.geometry.mechanisms.synthesis import driven, synthesise
 
 THETA, PSI = np.radians([0, 20, 5]), np.radians([30, 110, 130])
 

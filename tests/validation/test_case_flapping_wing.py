@@ -7,17 +7,17 @@ import pytest
 import solved
 from edited_cases import PLANAR
 
-from fea.check.run import check_case
-from fea.common.source import COUPLES
-from fea.common.verdict import Verdict
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import freedom
-from loads.case.case_file import read_case
-from loads.states.actions import acting_loads, placed
-from loads.states.case_motion import solve_case_motion
-from loads.states.masses import laden_masses, part_masses
-from loads.statics.statics import solve_statics
-from reports.tables.mechanism import design_lines, design_of
+from alula.fea.check.run import check_case
+from alula.fea.common.source import COUPLES
+from alula.fea.common.verdict import Verdict
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import freedom
+from alula.loads.case.case_file import read_case
+from alula.loads.states.actions import acting_loads, placed
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.masses import laden_masses, part_masses
+from alula.loads.statics.statics import solve_statics
+from alula.reports.tables.mechanism import design_lines, design_of
 
 PUBLISHED = {
     "flapping-wing-reference": (1.9474, 39.085, 21.962),

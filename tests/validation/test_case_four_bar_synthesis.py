@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from edited_cases import tight_pins
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from geometry.linkage.motion import solve_motion
-from loads.case.case_file import read_case
-from loads.states.case_motion import solve_case_motion
-from reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.geometry.linkage.motion import solve_motion
+from alula.loads.case.case_file import read_case
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
 
 
 @pytest.fixture(scope="module")

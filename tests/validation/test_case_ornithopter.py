@@ -7,20 +7,20 @@ import pytest
 from edited_cases import PLANAR
 from motion_poses import kinetostatics
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.motion.link_history import link_histories
-from fea.whole.motor import motor_outcomes
-from geometry.base.errors import CaseError
-from geometry.linkage.pose import freedom
-from geometry.mechanisms.ornithopter import OrnithopterRules, variants
-from loads.case.case_file import read_case
-from loads.records.applied import PartMass
-from loads.states.actions import acting_loads, placed
-from loads.states.case_motion import solve_case_motion
-from loads.states.masses import laden_masses, part_masses
-from loads.statics.statics import solve_statics
-from reports.motion.record import record
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.motion.link_history import link_histories
+from alula.fea.whole.motor import motor_outcomes
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.pose import freedom
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules, variants
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import PartMass
+from alula.loads.states.actions import acting_loads, placed
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.masses import laden_masses, part_masses
+from alula.loads.statics.statics import solve_statics
+from alula.reports.motion.record import record
 
 RPM = math.pi / 30.0
 

@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 import solved
 
-from fea.claims.audit import Finding
+from alula.fea.claims.audit import Finding
 
 HOLDS, NOT_HOLD, NOT_FOLLOW = Finding.HOLDS, Finding.DOES_NOT_HOLD, Finding.DOES_NOT_FOLLOW
 MISSING = Finding.CANNOT_BE_REDERIVED

@@ -1,9 +1,9 @@
 """A tube with a transverse hole in bending, converged, beside the handbook's factor.
 
 The handbook: Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chart 4.107 and its fit
-(``fea.beam.holes.tube_hole_factors``), on the gross section's bending stress M D/(2 I), the hole opening at the extreme
-fibre. Ours: an eighth of the tube by two planes of symmetry and one of antisymmetry, the bending stress M z/I on the
-end, largest principal stress anywhere.
+(``alula.fea.beam.holes.tube_hole_factors``), on the gross section's bending stress M D/(2 I), the hole opening at the
+extreme fibre. Ours: an eighth of the tube by two planes of symmetry and one of antisymmetry, the bending stress M z/I
+on the end, largest principal stress anywhere.
 
 The difference: −4 to +2 %, either side of the handbook's curves, which are fits to photoelastic tests (H. T. Jessop,
 C. Snell, I. M. Allison, The stress concentration factors in cylindrical tubes with transverse circular holes,
@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from solid_problems import Problem, block, even, graded, joined
 
-from fea.beam.holes import tube_hole_factors
+from alula.fea.beam.holes import tube_hole_factors
 
 E, NU, OUTER, LENGTH = 2900.0, 0.38, 2.5, 12.0
 

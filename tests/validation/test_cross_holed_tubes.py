@@ -14,7 +14,7 @@ tube five diameters long by its planes of symmetry, mapped blocks about the hole
     8/6, 1.6 mm    tension   3.302, 3.302                3.397, 3.402                        3.47
     8/6, 1.6 mm    bending   3.099, 3.086                3.149, 3.137                        3.18
 
-The handbook (``fea.beam.holes``) has fits to photoelastic tests, of large holes up to some 10 % high.
+The handbook (``alula.fea.beam.holes``) has fits to photoelastic tests, of large holes up to some 10 % high.
 """
 
 import math
@@ -22,11 +22,11 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam.holes import tube_hole_factors
-from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.refine.refinement import START, Effort, LinkTask, refine_links
-from fea.solid.stress import stress_field
-from geometry.parts.part import Body, HoleRow, Pin, Tube
+from alula.fea.beam.holes import tube_hole_factors
+from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from alula.fea.refine.refinement import START, Effort, LinkTask, refine_links
+from alula.fea.solid.stress import stress_field
+from alula.geometry.parts.part import Body, HoleRow, Pin, Tube
 
 NU, TRUST = 0.38, 0.005
 """The truths may be off by this share, as the two programs differ."""

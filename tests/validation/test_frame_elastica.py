@@ -8,10 +8,10 @@ from euler_column import euler_load
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.stability import buckling_factor
-from geometry.parts.part import rectangle, ring
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.geometry.parts.part import rectangle, ring
 
 ROD = ring(0.5, 0.25)
 E, NU, LENGTH = 1e4, 0.3, 100.0

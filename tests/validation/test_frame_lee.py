@@ -9,10 +9,10 @@ test/referenceData/LeeFrameDeadLoad): displacement of the loaded point down and 
 import numpy as np
 import pytest
 
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.equilibrium_path import NoEquilibriumError
-from geometry.parts.part import rectangle
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.geometry.parts.part import rectangle
 
 DOWN = [(4.0306, 4.9238), (11.325, 10.487), (34.384, 17.026)]
 SIDE = [(0.45486, 6.2357), (4.8272, 13.251), (12.551, 17.002)]

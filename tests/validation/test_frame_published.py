@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame.linear import solve_frame
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from geometry.parts.part import Section, rectangle, ring
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from alula.geometry.parts.part import Section, rectangle, ring
 
 PLANE = frozenset({"uz", "rx", "ry"})
 

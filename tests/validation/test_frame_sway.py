@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.stability import buckling_factor
-from geometry.parts.part import Section
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.geometry.parts.part import Section
 
 YOUNG, HEIGHT, WIDTH, INERTIA = 2400.0, 100.0, 150.0, 3.0
 PLANE = frozenset({"uz", "rx", "ry"})

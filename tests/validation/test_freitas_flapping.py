@@ -11,7 +11,7 @@ from importlib import resources
 
 import pytest
 
-from geometry.mechanisms.flapping import FlappingWing
+from alula.geometry.mechanisms.flapping import FlappingWing
 
 MISPRINTS = {
     ("5", "10", "ground_d_mm"): 24.274,  # printed 24.7, the value of row 20 of the same table
@@ -24,7 +24,7 @@ MISPRINTS = {
 
 
 def rows():
-    text = resources.files("loads.cases").joinpath("flapping-wing-tables.csv").read_text(encoding="utf-8")
+    text = resources.files("alula.loads.cases").joinpath("flapping-wing-tables.csv").read_text(encoding="utf-8")
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 

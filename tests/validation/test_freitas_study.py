@@ -12,10 +12,10 @@ import pytest
 import studies
 from solved import shared
 
-from fea.study.store import Store
-from fea.study.study import Study
-from loads.plans.plan import read_plan
-from loads.plans.variants import Variants
+from alula.fea.study.store import Store
+from alula.fea.study.study import Study
+from alula.loads.plans.plan import read_plan
+from alula.loads.plans.variants import Variants
 
 pytestmark = pytest.mark.converged
 
@@ -33,7 +33,7 @@ WRONG = {("5.13", "oscillation"), ("5.16", "phase lag"), ("5.16", "oscillation")
 
 
 def _rows():
-    text = resources.files("loads.cases").joinpath("flapping-wing-tables.csv").read_text(encoding="utf-8")
+    text = resources.files("alula.loads.cases").joinpath("flapping-wing-tables.csv").read_text(encoding="utf-8")
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.mechanisms.ornithopter import OrnithopterRules, variants
-from geometry.mechanisms.wing_drive import WingDrive
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules, variants
+from alula.geometry.mechanisms.wing_drive import WingDrive
 
 RPM_150 = 150 * 2 * math.pi / 60
 

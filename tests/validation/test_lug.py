@@ -28,7 +28,7 @@ import numpy as np
 import pytest
 from solid_problems import Problem, block, even, graded, joined
 
-from loads.records.bearing import NARROW, WIDE
+from alula.loads.records.bearing import NARROW, WIDE
 
 E, NU, DIAMETER, THICKNESS, PULL = 200_000.0, 0.3 / 1.3, 2.0, 0.2, 1.0
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from closed_forms import four_bar_motion, slider_crank_motion
 
-from geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.fourbar import FourBar
 
 FOUR_BAR = FourBar(a=40, b=120, c=80, d=100)
 THETA2 = math.radians(40)

@@ -7,17 +7,17 @@ import pytest
 import solved
 from edited_cases import PLANAR
 
-from fea.check.anchor import wrenches_on_ground
-from fea.check.run import check_case
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.frame.case_statics import solve_case_statics
-from fea.refine.refinement import START
-from geometry.base.errors import CaseError
-from geometry.meshing.mesh import mesh_body
-from loads.case.case_file import read_case
-from loads.records.aero import air_loads
-from loads.states.masses import part_mass
+from alula.fea.check.anchor import wrenches_on_ground
+from alula.fea.check.run import check_case
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.refine.refinement import START
+from alula.geometry.base.errors import CaseError
+from alula.geometry.meshing.mesh import mesh_body
+from alula.loads.case.case_file import read_case
+from alula.loads.records.aero import air_loads
+from alula.loads.states.masses import part_mass
 
 AIRBORNE = ("owl-wing-flight", "owl-wing-braking")
 ALL = (*AIRBORNE, "owl-wing-closed", "owl-wing-static")

@@ -13,12 +13,12 @@ import math
 import numpy as np
 import pytest
 
-from geometry.linkage.pose import Pose
-from loads.case.case import Case
-from loads.case.case_file import read_case, read_companion
-from loads.sources.published_statics import StaticsAudit, audit, read_matrix
-from loads.states.actions import acting_loads
-from loads.statics.statics import Reactions, solve_statics
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, read_companion
+from alula.loads.sources.published_statics import StaticsAudit, audit, read_matrix
+from alula.loads.states.actions import acting_loads
+from alula.loads.statics.statics import Reactions, solve_statics
 
 # Published unknowns R (section 3.9), N and N m, to four decimals.
 PUBLISHED = {

@@ -19,13 +19,13 @@ import numpy as np
 import pytest
 import rocker_case
 
-from fea.check.run import check_case
-from fea.common.source import SourceKind
-from fea.common.verdict import CheckOutcome, Quantity
-from fea.elements.quadrature import surface_quadrature
-from fea.outcomes.result import CheckResult
-from fea.solid.bore_motion import mean_motion
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.solid.bore_motion import mean_motion
+from alula.loads.case.case_file import validate
 
 CLAMPED = 3.2264
 """Of the tube [mm]."""

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.check.run import check_case
-from fea.common.source import SourceKind
-from fea.common.verdict import CheckOutcome, Quantity, Verdict
-from fea.outcomes.result import LoadCaseResult
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
+from alula.fea.outcomes.result import LoadCaseResult
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 STATED = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
 

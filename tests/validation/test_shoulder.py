@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.refine.refinement import START, Effort, LinkTask, refine_links
-from geometry.bodies.body_rules import check_body
-from geometry.parts.part import Bar, Body, Pin, PlainEnd, Ring
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.fea.refine.refinement import START, Effort, LinkTask, refine_links
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.parts.part import Bar, Body, Pin, PlainEnd, Ring
 
 WIDE, NARROW, RADIUS, THICKNESS, PULL, LENGTH, STEP = 16.0, 8.0, 1.5, 4.0, 100.0, 90.0, 50.0
 

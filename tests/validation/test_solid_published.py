@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import isostatic_supports, rigid_motions
-from fea.solid.stress import stress_field, von_mises
-from fea.solvers.solve import factorise
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import isostatic_supports, rigid_motions
+from alula.fea.solid.stress import stress_field, von_mises
+from alula.fea.solvers.solve import factorise
 
 
 def solved(space, load, fixed, E, nu):

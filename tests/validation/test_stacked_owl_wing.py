@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-import fea.frame.equations
-import fea.frame.system
-from fea.beam.cut_free import link_loads
-from fea.frame.build import build_frame
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame
-from fea.frame.sharing import hinges_tried, sharings
-from loads.case.case import Case
-from loads.states.actions import stated_loads
+import alula.fea.frame.equations
+import alula.fea.frame.system
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.sharing import hinges_tried, sharings
+from alula.loads.case.case import Case
+from alula.loads.states.actions import stated_loads
 
 LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
 TWO, FOUR = (-1, 0, 0, 1, 0, 1), (0, 0, 1, 2, 3, 2)
@@ -56,16 +56,16 @@ def largest_stress(frame: LinkageFrame, solution: FrameSolution, link: str) -> f
 
 @pytest.fixture
 def no_shear(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    with_shear = fea.frame.system.flexibility
+    with_shear = alula.fea.frame.system.flexibility
 
     def flexibility(*of: object) -> tuple[float, ...]:
         along, _, _, twist, about_y, about_z = with_shear(*of)  # type: ignore[arg-type]
         return along, 0.0, 0.0, twist, about_y, about_z
 
-    monkeypatch.setattr(fea.frame.system, "flexibility", flexibility)
-    fea.frame.equations._known.cache_clear()
+    monkeypatch.setattr(alula.fea.frame.system, "flexibility", flexibility)
+    alula.fea.frame.equations._known.cache_clear()
     yield
-    fea.frame.equations._known.cache_clear()
+    alula.fea.frame.equations._known.cache_clear()
 
 
 @pytest.mark.usefixtures("no_shear")

@@ -8,10 +8,10 @@ middle plane, and the mean motions of bores A and B part by 0.03725 mm.
 import numpy as np
 import pytest
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.quadrature import surface_quadrature
-from fea.refine.refinement import START, Effort, LinkTask, refine_links
-from geometry.parts.part import Body, Pin, Plate, Ring
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.refine.refinement import START, Effort, LinkTask, refine_links
+from alula.geometry.parts.part import Body, Pin, Plate, Ring
 
 PLACES = {"A": (0.0, 0.0, 5.0, 14.0), "B": (60.0, 0.0, 4.0, 12.0), "C": (22.0, 34.0, 6.0, 16.0)}
 """x, y, hole and eye [mm]."""

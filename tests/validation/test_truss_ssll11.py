@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
-from geometry.parts.part import ring
+from alula.fea.frame.linear import FrameSolution, solve_frame
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from alula.geometry.parts.part import ring
 
 PLANE = frozenset({"uz", "rx", "ry"})
 

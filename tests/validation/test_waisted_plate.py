@@ -10,9 +10,9 @@ import math
 import numpy as np
 import pytest
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.refine.refinement import START, Effort, LinkTask, refine_links
-from geometry.parts.part import Body, Pin, Plate
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.refine.refinement import START, Effort, LinkTask, refine_links
+from alula.geometry.parts.part import Body, Pin, Plate
 
 FORCE, THICKNESS, HALF, RADIUS = 100.0, 3.0, 1.5, 20.0
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, LineLoad, PointLoad
-from fea.beam.theory import internal_forces
-from geometry.parts.part import rectangle
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, LineLoad, PointLoad
+from alula.fea.beam.theory import internal_forces
+from alula.geometry.parts.part import rectangle
 
 SECTION = rectangle(7.0, 3.0)
 number = st.floats(-10, 10).map(lambda v: round(v, 3))

@@ -12,13 +12,13 @@ import pytest
 from scipy.optimize import brentq
 from vibrating_frames import DENSITY, LENGTH, POISSON, YOUNG, eigenvalues, frequencies, rectangle, straight
 
-from fea.frame.model import ALL_DOFS
-from fea.nonlinear.corotational import subdivide
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import buckling_factor, stiffness_parts
-from fea.vibration.linkage_modes import frame_modes
-from fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass
-from fea.vibration.modes import frequency
+from alula.fea.frame.model import ALL_DOFS
+from alula.fea.nonlinear.corotational import subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import buckling_factor, stiffness_parts
+from alula.fea.vibration.linkage_modes import frame_modes
+from alula.fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass
+from alula.fea.vibration.modes import frequency
 
 SLENDER = rectangle(0.5, 0.8)
 HINGED = {"ux", "uy", "uz", "rx", "ry"}

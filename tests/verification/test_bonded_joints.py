@@ -5,12 +5,12 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fea.check.run import check_case
-from fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.states.actions import acting_loads
-from loads.states.case_motion import solve_case_motion
+from alula.fea.check.run import check_case
+from alula.fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.case_motion import solve_case_motion
 
 HEIGHT, WIDTH = 120.0, 150.0
 BAR = {"shape": "bar", "material": "aluminium-6061-t6", "width": "6 mm", "thickness": "4 mm", "fillet_radius": "1 mm"}

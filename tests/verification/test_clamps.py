@@ -8,26 +8,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.buckling.buckling import column
+from alula.fea.buckling.solid_holding import solid_holding
+from alula.fea.check.run import check_case
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.elements.mouth import mouth_motion
+from alula.fea.elements.quadrature import SurfaceQuadrature
+from alula.fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces, solved_frame
+from alula.fea.links.clamp_edge import EDGE, edge_stress
+from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.outcomes.unchecked import unchecked
+from alula.fea.tolerance.analysis import tolerance_case
+from alula.fea.vibration.link_modes import link_modes
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.actions import acting_loads
 from docs.extensions.examples import FOLDER
-from fea.beam.cut_free import link_loads
-from fea.buckling.buckling import column
-from fea.buckling.solid_holding import solid_holding
-from fea.check.run import check_case
-from fea.common.source import SourceKind
-from fea.common.verdict import Quantity, Verdict
-from fea.elements.mouth import mouth_motion
-from fea.elements.quadrature import SurfaceQuadrature
-from fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces, solved_frame
-from fea.links.clamp_edge import EDGE, edge_stress
-from fea.links.link_by_hand import link_by_hand
-from fea.motion.envelope import envelope_case
-from fea.nonlinear.large_displacement import examine
-from fea.outcomes.unchecked import unchecked
-from fea.tolerance.analysis import tolerance_case
-from fea.vibration.link_modes import link_modes
-from geometry.base.errors import CannotRunError, CaseError
-from loads.case.case_file import validate
-from loads.states.actions import acting_loads
 
 FORCE, FREE, HELD = 100.0, 180.0, 20.0
 OUTER, INNER = 20.0, 16.0

@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import check_beam
-from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.bodies.body import hand_section
-from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
-from geometry.parts.part import Body, Disc, Pin
-from loads.records.applied import BodyForce, PartMass
-from loads.records.bearing import NARROW
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import check_beam
+from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.bodies.body import hand_section
+from alula.geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
+from alula.geometry.parts.part import Body, Disc, Pin
+from alula.loads.records.applied import BodyForce, PartMass
+from alula.loads.records.bearing import NARROW
 
 E, NU, RHO, OMEGA, HOLE, RADIUS = 2500.0, 0.38, 1.2e-9, 2000.0, 2.0, 10.0
 

@@ -8,17 +8,17 @@ import pytest
 from edited_cases import edited
 from slotted_lever import slotted_lever
 
+from alula.fea.check.run import check_case
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.displacement_band import Zone, bounds, flexibility_ranges, point_bounds, zones
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import NodeLoad
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.states.actions import acting_loads
 from benchmarks.displacement_band import FORCE, Link
-from fea.check.run import check_case
-from fea.common.source import Source, SourceKind
-from fea.frame.build import build_frame
-from fea.frame.displacement_band import Zone, bounds, flexibility_ranges, point_bounds, zones
-from fea.frame.linear import solve_frame
-from fea.frame.model import NodeLoad
-from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.states.actions import acting_loads
 
 
 def two_pins(part, length: float, first: float, last: float, *holes: HoleRow) -> Body:

@@ -10,15 +10,15 @@ import pytest
 from motion_poses import kinetostatics, virtual_work
 from planar_linkages import joint, link, oscillating_cylinder, slider_crank
 
-from fea.frame.build import build_frame
-from fea.frame.linear import solve_frame
-from geometry.base.errors import CaseError
-from geometry.linkage.continuation import DeadPointError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from loads.records.applied import PartMass, PointLoad
-from loads.statics.statics import Drive, solve_statics
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linear import solve_frame
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.loads.records.applied import PartMass, PointLoad
+from alula.loads.statics.statics import Drive, solve_statics
 
 A, B, OFFSET = 40.0, 120.0, -20.0
 LINKAGE = slider_crank(A, B, OFFSET)

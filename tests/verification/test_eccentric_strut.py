@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from bars_in_layers import parallel_bars
 
-from fea.beam.cut_free import link_loads
-from fea.check.run import check_case
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.doubts.force_doubt import measures
-from fea.frame.case_statics import solve_case_statics
-from fea.links.link_by_hand import link_by_hand
-from fea.links.second_order import on_tilting_pins, second_order_loads
-from loads.case.case import Case
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.doubts.force_doubt import measures
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.links.second_order import on_tilting_pins, second_order_loads
+from alula.loads.case.case import Case
 
 WIDE, THICK, LONG, BESIDE = 16.0, 3.0, 100.0, 10.0
 """Of the coupler, 10 mm beside crank and rocker in one layer [mm]."""

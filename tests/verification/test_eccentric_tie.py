@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import check_beam
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
-from fea.elements.space import DisplacementSpace, displacement_space
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.tractions.traction import pin_traction
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.bar import Bar
-from geometry.parts.part import Body, Pin
-from loads.records.bearing import NARROW, WIDE
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import check_beam
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
+from alula.fea.elements.space import DisplacementSpace, displacement_space
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.tractions.traction import pin_traction
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.bar import Bar
+from alula.geometry.parts.part import Body, Pin
+from alula.loads.records.bearing import NARROW, WIDE
 
 PULL, WIDTH, THICK, LENGTH = 12.0, 5.0, 2.5, 50.0
 BODY = Body(

@@ -25,7 +25,7 @@ from motion_poses import (
     wing_pose,
 )
 
-from geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.motion import solve_motion
 
 SPEED = 12.0
 TURNING = {

@@ -8,18 +8,18 @@ import solid_meshes
 from scipy.optimize import minimize
 from turning_load import BODY, POSES, RHO, L, history
 
-from fea.elements.space import displacement_space
-from fea.motion.layer_envelope import layer_envelopes
-from fea.motion.link_envelope import link_motion
-from fea.solid.layers import Layers
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.superposition.peaks import largest_stress
-from fea.superposition.unit_loads import TRANSFERS, unit_loads
-from fea.superposition.unit_solutions import solve_units
-from geometry.materials.material import Fatigue, library
-from geometry.meshing.mirror import mirrored
-from loads.records.bearing import NARROW, WIDE
+from alula.fea.elements.space import displacement_space
+from alula.fea.motion.layer_envelope import layer_envelopes
+from alula.fea.motion.link_envelope import link_motion
+from alula.fea.solid.layers import Layers
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.superposition.peaks import largest_stress
+from alula.fea.superposition.unit_loads import TRANSFERS, unit_loads
+from alula.fea.superposition.unit_solutions import solve_units
+from alula.geometry.materials.material import Fatigue, library
+from alula.geometry.meshing.mirror import mirrored
+from alula.loads.records.bearing import NARROW, WIDE
 
 MATERIAL = library()["pvc-u"]
 E, NU = MATERIAL.youngs_modulus, MATERIAL.poissons_ratio

@@ -7,13 +7,13 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, history
 
-from fea.elements.space import displacement_space
-from fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_motion
-from fea.refine.level import level_of
-from fea.refine.link_series import precision
-from fea.refine.refinement import MeshRecord, RefinedSolid
-from fea.solid.solution import solve_solid
-from geometry.materials.material import library
+from alula.fea.elements.space import displacement_space
+from alula.fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_motion
+from alula.fea.refine.level import level_of
+from alula.fea.refine.link_series import precision
+from alula.fea.refine.refinement import MeshRecord, RefinedSolid
+from alula.fea.solid.solution import solve_solid
+from alula.geometry.materials.material import library
 
 MATERIAL = library()["pvc-u"]
 

@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR
 
-from fea.common.link_loads import LinkLoads
-from fea.elements.space import displacement_space
-from fea.motion.link_envelope import link_motion
-from fea.motion.link_history import link_histories
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.superposition.unit_loads import unit_loads
-from fea.superposition.unit_solutions import solve_units
-from geometry.base.errors import CaseError
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from loads.case.case_file import read_case
-from loads.records.bearing import NARROW, WIDE
-from loads.states.case_motion import solve_case_motion
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.elements.space import displacement_space
+from alula.fea.motion.link_envelope import link_motion
+from alula.fea.motion.link_history import link_histories
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.superposition.unit_loads import unit_loads
+from alula.fea.superposition.unit_solutions import solve_units
+from alula.geometry.base.errors import CaseError
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.loads.case.case_file import read_case
+from alula.loads.records.bearing import NARROW, WIDE
+from alula.loads.states.case_motion import solve_case_motion
 
 LINK, LAWS = "lever-right", (WIDE, NARROW)
 EXACT = 5e-3

@@ -8,14 +8,14 @@ import pytest
 import solid_meshes
 from known_solutions import NU, E
 
-from fea.common.link_loads import EndLoad, LinkLoads
-from fea.refine.convergence import grid_convergence
-from fea.refine.error_estimate import estimate_error
-from fea.refine.level import level_of
-from fea.refine.link_series import CHORD
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from loads.records.bearing import WIDE
+from alula.fea.common.link_loads import EndLoad, LinkLoads
+from alula.fea.refine.convergence import grid_convergence
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.refine.level import level_of
+from alula.fea.refine.link_series import CHORD
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.loads.records.bearing import WIDE
 
 FINEST = (32, 8, 4)
 SERIES = ((8, 2, 1), (16, 4, 2), (24, 6, 3), FINEST)

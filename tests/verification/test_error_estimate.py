@@ -6,9 +6,9 @@ import pytest
 import solid_meshes
 from known_solutions import NU, E
 
-from fea.elements.elasticity import jacobians, reference_basis
-from fea.refine.error_estimate import energy_density, estimate_error
-from fea.solid.stress import stress_field
+from alula.fea.elements.elasticity import jacobians, reference_basis
+from alula.fea.refine.error_estimate import energy_density, estimate_error
+from alula.fea.solid.stress import stress_field
 
 DEGREE = 5
 

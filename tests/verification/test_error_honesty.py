@@ -9,15 +9,15 @@ import pytest
 import solid_meshes
 from validation.test_cook import plane_stress
 
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.common.source import CONTACT
-from fea.common.verdict import Verdict
-from fea.refine.error_estimate import energy_factor
-from fea.refine.level import level_of
-from fea.refine.link_series import Eye, energy_errors, precision
-from fea.refine.refinement import Effort
-from fea.solid.solution import solve_solid
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.fea.common.source import CONTACT
+from alula.fea.common.verdict import Verdict
+from alula.fea.refine.error_estimate import energy_factor
+from alula.fea.refine.level import level_of
+from alula.fea.refine.link_series import Eye, energy_errors, precision
+from alula.fea.refine.refinement import Effort
+from alula.fea.solid.solution import solve_solid
+from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE
 
 
 def slender(length):

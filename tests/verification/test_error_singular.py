@@ -6,10 +6,10 @@ import arm_case
 import pytest
 from arm_case import checked
 
-from fea.check.run import effort_of
-from fea.common.verdict import Verdict
-from fea.refine.refinement import Effort
-from geometry.base.errors import CaseError
+from alula.fea.check.run import effort_of
+from alula.fea.common.verdict import Verdict
+from alula.fea.refine.refinement import Effort
+from alula.geometry.base.errors import CaseError
 
 
 @pytest.mark.parametrize(

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from euler_column import euler_load
 
-from fea.beam.column_factor import AxialForce, column_factors
-from fea.buckling.buckling import beyond_strength
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.frame.linear import solve_frame
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
-from fea.nonlinear.stability import buckling_factor
-from geometry.parts.part import Section
-from loads.case.case_file import validate
+from alula.fea.beam.column_factor import AxialForce, column_factors
+from alula.fea.buckling.buckling import beyond_strength
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.geometry.parts.part import Section
+from alula.loads.case.case_file import validate
 
 STRUT = """
 schema_version = 1
@@ -194,7 +194,7 @@ minimum = 3.0
 
 def test_the_rocker_of_the_starter_in_warm_pvc_does_not_buckle():
     """80 mm between its pins and 40 mm beyond them; pushed more between them than beyond."""
-    tables = tomllib.loads(files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads(files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
     tables["parts"]["bar"]["material"] = "pvc-u"
     tables["conditions"] = {"duration": "10000 h", "temperature": "35 degC"}
     tables["large_displacement"] = "off"

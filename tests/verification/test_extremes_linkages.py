@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from planar_linkages import four_bar
 
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.continuation import DeadPointError, Track
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.grashof import classify
-from geometry.mechanisms.synthesis import synthesise
-from loads.case.case_file import read_case
-from loads.records.applied import PointLoad
-from loads.statics.statics import Drive, solve_statics
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.continuation import DeadPointError, Track
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.grashof import classify
+from alula.geometry.mechanisms.synthesis import synthesise
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import PointLoad
+from alula.loads.statics.statics import Drive, solve_statics
 
 DRIVE = Drive(link="crank", joint="A")
 

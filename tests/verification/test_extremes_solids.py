@@ -13,21 +13,21 @@ import slender_tube
 from known_solutions import NU, kirsch, solved
 from solid_meshes import bar, box, ring
 
-from fea.check.run import check_case
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import isostatic_supports
-from fea.frame.linear import solve_frame
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from fea.refine.error_estimate import estimate_error
-from fea.solid.solution import LARGEST_POISSON_RATIO, solve_solid
-from fea.solid.stress import stress_field
-from fea.solvers.solve import factorise
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.parts.part import Section
-from loads.records.bearing import WIDE
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import isostatic_supports
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.solid.solution import LARGEST_POISSON_RATIO, solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.solvers.solve import factorise
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.parts.part import Section
+from alula.loads.records.bearing import WIDE
 
 
 def pulled(nu, **options):
@@ -201,7 +201,7 @@ def test_a_slender_tube_through_the_whole_program(ratio):
 
 
 def test_poissons_ratio_beyond_the_boundary_is_refused_before_anything_is_meshed(monkeypatch):
-    monkeypatch.setattr("fea.refine.refinement.mesh_body", lambda *a, **k: pytest.fail("meshed"))
-    monkeypatch.setattr("fea.solid.solution.LARGEST_POISSON_RATIO", 0.3)
+    monkeypatch.setattr("alula.fea.refine.refinement.mesh_body", lambda *a, **k: pytest.fail("meshed"))
+    monkeypatch.setattr("alula.fea.solid.solution.LARGEST_POISSON_RATIO", 0.3)
     with pytest.raises(CaseError, match=r"poissons_ratio: it is 0\.38"):
         check_case(arm_case.arm(), fidelity="solid")

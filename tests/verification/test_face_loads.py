@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from imported_case import imported_case
 
-from fea.beam.cut_free import link_loads
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.frame.case_statics import solve_case_statics
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.tractions.traction import wrench_density
-from geometry.base.errors import CaseError
-from geometry.meshing.mesh import COARSE, mesh_body
-from loads.case.case_file import read_case
-from loads.records.bearing import WIDE
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.tractions.traction import wrench_density
+from alula.geometry.base.errors import CaseError
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.loads.case.case_file import read_case
+from alula.loads.records.bearing import WIDE
 
 STRIP = '{ O4 = ["0 mm", "0 mm"], B = ["50.8 mm", "0 mm"] }'
 """Of 76.2 by 25.4 by 6.35 mm, with bores of 6.35 mm, 50.8 mm apart."""

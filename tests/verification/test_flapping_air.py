@@ -8,19 +8,19 @@ import pytest
 import slotted_cases
 from edited_cases import edited
 
-from fea.frame.case_statics import solve_case_statics
-from geometry.base.errors import CaseError
-from geometry.linkage.placement import Placement
-from loads.case.case import Case
-from loads.case.case_file import read_case, validate
-from loads.records.applied import LineLoad, PointLoad
-from loads.records.flapping import Wing
-from loads.records.load_case import LoadCase
-from loads.states.case_motion import solve_case_motion
-from loads.states.flapping import PIECES, flapping_loads, in_air
-from loads.states.kinetostatics import work
-from reports.motion.air_figures import air_figures
-from reports.tables.loads import air_lines, motion_air_record
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.placement import Placement
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.applied import LineLoad, PointLoad
+from alula.loads.records.flapping import Wing
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.flapping import PIECES, flapping_loads, in_air
+from alula.loads.states.kinetostatics import work
+from alula.reports.motion.air_figures import air_figures
+from alula.reports.tables.loads import air_lines, motion_air_record
 
 RHO, C_N, L, C = 1.2e-12, 2.0, 300.0, 80.0  # tonne/mm^3, -, mm, mm
 AIR = {"density": "1.2 kg/m^3", "normal_coefficient": C_N, "added_mass": False}

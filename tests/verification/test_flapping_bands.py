@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.beam.cut_free import link_loads
-from fea.check.run import check_case
-from fea.common.convex import least_of_convex
-from fea.common.source import SourceKind
-from fea.common.verdict import Verdict
-from fea.doubts.force_doubt import measures
-from fea.motion.buckling_history import factors_over_motion
-from fea.motion.envelope import _Envelope
-from fea.motion.link_history import link_histories
-from fea.motion.loosened import column_growth, joint_growth, otherwise
-from fea.whole.motor import motor_outcomes
-from loads.case.case import Case
-from loads.states.case_motion import solve_case_motion
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.convex import least_of_convex
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import Verdict
+from alula.fea.doubts.force_doubt import measures
+from alula.fea.motion.buckling_history import factors_over_motion
+from alula.fea.motion.envelope import _Envelope
+from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.loosened import column_growth, joint_growth, otherwise
+from alula.fea.whole.motor import motor_outcomes
+from alula.loads.case.case import Case
+from alula.loads.states.case_motion import solve_case_motion
 
 WINGS = [
     f'{{ link = "lever-{side}", at = "W", span = ["6 mm", "66 mm"], chord = "30 mm" }}' for side in ("right", "left")

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from imported_case import imported_case
 
-from fea.beam.details import details
-from fea.check.run import check_case
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.outcomes.pins import fork_pin_stress, pin_stress, stress_of
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.base.errors import CaseError
-from geometry.bodies.features import Ring
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from loads.case.case_file import read_case, validate
-from loads.records.bearing import NARROW
-from loads.states.clearance import clearance
-from loads.states.masses import part_mass
+from alula.fea.beam.details import details
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.outcomes.pins import fork_pin_stress, pin_stress, stress_of
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import Ring
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.bearing import NARROW
+from alula.loads.states.clearance import clearance
+from alula.loads.states.masses import part_mass
 
 GAP, CHEEK, WIDTH, DEPTH, PIN = 3.0, 2.5, 10.0, 20.0, 4.0
 CUBE = {"material": "aluminium-6061-t6", "fillet_radius": "1 mm"}

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from geometry.linkage.linkage import Joint, Link, Linkage
-from geometry.linkage.pose import solve_pose
-from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.ornithopter import OrnithopterRules
+from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.pose import solve_pose
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules
 
 
 def mm(*values: float) -> tuple[str, str]:

@@ -8,7 +8,7 @@ from closed_forms import four_bar_motion, slider_crank_motion
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.fourbar import FourBar
 
 lengths = st.floats(0.05, 20.0)
 angles = st.floats(-math.pi, math.pi)

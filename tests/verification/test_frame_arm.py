@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fea.frame.build import build_frame
-from fea.frame.linear import solve_frame
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.records.applied import PointLoad
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linear import solve_frame
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.records.applied import PointLoad
 
 SIDE, ARM, FORCE = 60.0, 40.0, 2.0
 CASE = {

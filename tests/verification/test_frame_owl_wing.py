@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame.linear import solve_frame
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
-from fea.nonlinear.corotational import solve_large_displacement
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import ring
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import ring
 
 TUBE = ring(5.0, 2.5)
 PIN = ALL_DOFS - {"rz"}

@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, PointLoad
-from fea.beam.theory import internal_forces
-from fea.frame.linear import solve_frame
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
-from geometry.parts.part import Section, rectangle, ring
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.theory import internal_forces
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
+from alula.geometry.parts.part import Section, rectangle, ring
 
 E, NU = 2400.0, 0.35
 BAR = rectangle(6.0, 2.0)

@@ -22,19 +22,19 @@ from slotted_cases import (
     slider_crank,
 )
 
-from fea.frame.build import build_frame
-from fea.frame.joint_forces import PINNED_FRAME, joint_forces
-from fea.frame.linear import solve_frame
-from fea.frame.model import FrameModel, Guide
-from fea.nonlinear.corotational import solve_large_displacement, subdivide
-from fea.nonlinear.corotational_element import guide_gap
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.large_displacement import examine
-from geometry.base.errors import CannotRunError
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.records.applied import PointLoad
-from loads.statics.statics import solve_statics
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.joint_forces import PINNED_FRAME, joint_forces
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import FrameModel, Guide
+from alula.fea.nonlinear.corotational import solve_large_displacement, subdivide
+from alula.fea.nonlinear.corotational_element import guide_gap
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.large_displacement import examine
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import PointLoad
+from alula.loads.statics.statics import solve_statics
 
 
 def bent_cylinder() -> Case:

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fea.frame.model import FrameElement, FrameModel
-from fea.nonlinear.corotational_element import CorotationalElements
-from geometry.parts.part import rectangle
+from alula.fea.frame.model import FrameElement, FrameModel
+from alula.fea.nonlinear.corotational_element import CorotationalElements
+from alula.geometry.parts.part import rectangle
 
 MODEL = FrameModel(
     nodes=np.array([[0.0, 0, 0], [88, 10, 5]]),
@@ -61,7 +61,7 @@ def test_rigid_motion_strains_nothing(rigid: np.ndarray, shift: np.ndarray) -> N
 
 
 def test_tangent_at_rest_is_the_linear_stiffness() -> None:
-    from fea.frame.system import FrameSystem, natural_deformations, natural_flexibility
+    from alula.fea.frame.system import FrameSystem, natural_deformations, natural_flexibility
 
     rest = np.zeros((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1))
     e, length = MODEL.elements[0], MODEL.length(0)

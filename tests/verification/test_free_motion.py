@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from tilting_pins import LOOSE, TIGHT, checked, four_bar, place_of, rigid_motion
 
-from fea.check.run import check_case
-from fea.common.verdict import CheckOutcome, Verdict
-from fea.frame.joint_forces import solved_frame
-from fea.outcomes.free_motion import FreeMotion, free_motion
-from loads.case.case import Case
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.frame.joint_forces import solved_frame
+from alula.fea.outcomes.free_motion import FreeMotion, free_motion
+from alula.loads.case.case import Case
 
 LIMIT = {"type": "displacement", "at": "P", "maximum": "2 mm"}
 LEVER = """

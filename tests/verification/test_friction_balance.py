@@ -9,30 +9,30 @@ import slotted_cases
 from edited_cases import edited
 from programs import inside
 
-from fea.beam.cut_free import link_loads
-from fea.check.anchor import anchor_loads
-from fea.check.run import check_case
-from fea.frame.case_statics import solve_case_statics
-from fea.frame.rubbing import presses_of
-from fea.motion.envelope import envelope_case
-from fea.nonlinear.large_displacement import examine
-from fea.tolerance.states import Sampler
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Link
-from loads.case.case import Case
-from loads.case.case_file import read_case, validate
-from loads.case.joint_rules import check_friction
-from loads.case.toleranced import toleranced
-from loads.records.applied import FrictionLoad, at_poses, shifted
-from loads.records.load_case import LoadCase
-from loads.records.motion_spec import MotionSpec
-from loads.states.case_motion import solve_case_motion
-from loads.states.drive_work import efficiency
-from loads.states.kinetostatics import torque_by_virtual_work
-from loads.states.play import play_of
-from loads.states.rubbing import at_one_pose, each_direction
-from loads.statics.friction import friction_wrenches
-from loads.statics.statics import Drive
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.anchor import anchor_loads
+from alula.fea.check.run import check_case
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.frame.rubbing import presses_of
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.tolerance.states import Sampler
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Link
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.case.joint_rules import check_friction
+from alula.loads.case.toleranced import toleranced
+from alula.loads.records.applied import FrictionLoad, at_poses, shifted
+from alula.loads.records.load_case import LoadCase
+from alula.loads.records.motion_spec import MotionSpec
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.drive_work import efficiency
+from alula.loads.states.kinetostatics import torque_by_virtual_work
+from alula.loads.states.play import play_of
+from alula.loads.states.rubbing import at_one_pose, each_direction
+from alula.loads.statics.friction import friction_wrenches
+from alula.loads.statics.statics import Drive
 
 STARTER = "tests/unit/loads/four-bar-laden.toml"
 PINS = [f"joints.{name}.friction=0.3" for name in ("O2", "A", "B", "O4")]

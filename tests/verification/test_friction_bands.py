@@ -9,22 +9,22 @@ import pytest
 from edited_cases import PLANAR, edited
 from numpy.typing import NDArray
 
-from fea.check.run import check_case
-from fea.common.source import SourceKind
-from fea.common.verdict import Quantity, Verdict
-from fea.frame.case_statics import solve_case_statics, with_ends
-from fea.frame.joint_forces import JointForces
-from fea.frame.rubbing import at_end, bore_presses
-from fea.motion.loosened import column_growth, joint_growth, otherwise
-from fea.whole.motor import motor_outcomes
-from fea.whole.rubbed_motion import rubbed_motion, work_between
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.case.joint_rules import rubbing_joints
-from loads.records.applied import FrictionLoad
-from loads.states.rubbing import pose_friction
-from loads.statics.statics import solve_statics
+from alula.fea.check.run import check_case
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.frame.case_statics import solve_case_statics, with_ends
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.frame.rubbing import at_end, bore_presses
+from alula.fea.motion.loosened import column_growth, joint_growth, otherwise
+from alula.fea.whole.motor import motor_outcomes
+from alula.fea.whole.rubbed_motion import rubbed_motion, work_between
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.records.applied import FrictionLoad
+from alula.loads.states.rubbing import pose_friction
+from alula.loads.statics.statics import solve_statics
 
 PINS = ("O2", "A", "B")
 
@@ -232,7 +232,7 @@ def test_friction_that_swings_about_what_it_settles_at_is_no_lock(monkeypatch: p
         def pressed(case: Case, found: JointForces, end: str = "stated") -> dict[str, NDArray[np.float64]]:
             return {name: np.array([press(found)]) for name in rubbing_joints(case)}
 
-        monkeypatch.setattr("fea.frame.rubbing.presses_of", pressed)
+        monkeypatch.setattr("alula.fea.frame.rubbing.presses_of", pressed)
         return float(solve_case_statics(case).reactions["push"].drive_torque)
 
     plain, doubled = torque(lambda found: 1.0), torque(lambda found: 2.0)

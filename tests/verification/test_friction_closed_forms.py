@@ -7,12 +7,12 @@ import pytest
 from planar_linkages import four_bar, joint, link
 from scipy.optimize import brentq
 
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from loads.records.applied import PointLoad, at_poses
-from loads.statics.friction import Friction, solve_friction
-from loads.statics.statics import Drive, assemble
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.loads.records.applied import PointLoad, at_poses
+from alula.loads.statics.friction import Friction, solve_friction
+from alula.loads.statics.statics import Drive, assemble
 
 
 def force(on: str, at: str, *components: float) -> PointLoad:

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 import slotted_cases
 
-from fea.frame.case_statics import solve_case_statics
-from fea.frame.rubbing import bore_presses, presses_of
-from fea.whole.rubbed_motion import rubbed_motion
-from geometry.bodies.features import Ring
-from loads.case.case_file import read_case
-from loads.records.load_case import LoadCase
-from loads.records.motion_spec import MotionSpec
-from loads.statics.friction import friction_wrenches
-from loads.statics.pressing import pressing
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.frame.rubbing import bore_presses, presses_of
+from alula.fea.whole.rubbed_motion import rubbed_motion
+from alula.geometry.bodies.features import Ring
+from alula.loads.case.case_file import read_case
+from alula.loads.records.load_case import LoadCase
+from alula.loads.records.motion_spec import MotionSpec
+from alula.loads.statics.friction import friction_wrenches
+from alula.loads.statics.pressing import pressing
 
 RADIUS, PIN, GUIDE = 2.25, 0.12, 0.15
 

@@ -9,16 +9,16 @@ import rocker_case
 from held_ground import POISSON, THICKNESS, WIDTH, E, L, bracket
 from scipy.optimize import brentq
 
-from fea.beam.cut_free import link_loads
-from fea.check.run import check_case
-from fea.common.verdict import Quantity, Subject
-from fea.frame.case_statics import solve_case_statics
-from fea.motion.envelope import envelope_case
-from fea.motion.link_history import link_histories
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.states.case_motion import solve_case_motion
-from loads.states.masses import part_mass
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Subject
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.motion.link_history import link_histories
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.masses import part_mass
 
 ALONG, ACROSS = 1.2, 1.6
 """Of the force on the bar, which the strut pushes [N]."""

@@ -7,22 +7,22 @@ import pytest
 import rocker_case
 from imported_case import imported_case, strut_case
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import check_beam
-from fea.check.run import check_case
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.outcomes.compare import compare_sections
-from fea.outcomes.limits import layers_of
-from fea.solid.layers import Layers
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.tractions.traction import bore_middle, pin_traction
-from geometry.meshing.mesh import COARSE, MeshSettings, export_step, mesh_body
-from loads.case.case_file import read_case
-from loads.records.bearing import WIDE
-from loads.states.masses import part_mass
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import check_beam
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.outcomes.compare import compare_sections
+from alula.fea.outcomes.limits import layers_of
+from alula.fea.solid.layers import Layers
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.tractions.traction import bore_middle, pin_traction
+from alula.geometry.meshing.mesh import COARSE, MeshSettings, export_step, mesh_body
+from alula.loads.case.case_file import read_case
+from alula.loads.records.bearing import WIDE
+from alula.loads.states.masses import part_mass
 
 NAMED = 'bores = { O4 = "bore 2", B = "bore 1" }'
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from tilting_pins import LOOSE, checked, four_bar, rigid_motion
 
-from fea.check.run import check_case
-from fea.common.verdict import CheckOutcome, Quantity, Verdict
-from fea.frame.joint_forces import solved_frame
-from fea.whole.layer_gaps import Raised, overlaps
-from loads.states.actions import acting_loads
-from loads.states.clearance import assembly
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
+from alula.fea.frame.joint_forces import solved_frame
+from alula.fea.whole.layer_gaps import Raised, overlaps
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.clearance import assembly
 
 CHECKS = {"c": {"type": "clearance"}, "far": {"type": "clearance", "minimum": "10 mm"}}
 

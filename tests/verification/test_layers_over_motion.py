@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR, edited
 
-from fea.beam.cut_free import link_loads
-from fea.frame.joint_forces import joint_forces
-from fea.motion.layered import with_couples
-from loads.records.applied import chosen
-from loads.states.case_motion import solve_case_motion
-from loads.states.dead_point_reach import pose_at
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.frame.joint_forces import joint_forces
+from alula.fea.motion.layered import with_couples
+from alula.loads.records.applied import chosen
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.dead_point_reach import pose_at
 
 LAYERS = [f"links.{name}.layer={layer}" for name, layer in zip("dabc", (0, 1, 2, 1), strict=True)]
 SHARED = ['layer_spacing="40 mm"', "motion.poses=5"]

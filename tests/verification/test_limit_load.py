@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.check.run import check_case
-from fea.common.verdict import LINKAGE, Verdict
-from fea.elements.space import displacement_space
-from fea.solid.condensation import condense
-from fea.study.numbers import of_check, of_motion
-from geometry.materials.material import library
-from geometry.meshing.mesh import MeshSettings, mesh_bodies
-from loads.case.case_file import validate
-from loads.records.check_spec import DisplacementCheck
-from loads.states.case_motion import solve_case_motion
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import LINKAGE, Verdict
+from alula.fea.elements.space import displacement_space
+from alula.fea.solid.condensation import condense
+from alula.fea.study.numbers import of_check, of_motion
+from alula.geometry.materials.material import library
+from alula.geometry.meshing.mesh import MeshSettings, mesh_bodies
+from alula.loads.case.case_file import validate
+from alula.loads.records.check_spec import DisplacementCheck
+from alula.loads.states.case_motion import solve_case_motion
 
 BAR = {
     "shape": "bar",

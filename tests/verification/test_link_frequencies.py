@@ -10,22 +10,22 @@ import solid_meshes
 from rocker_case import TOML
 from slotted_lever import slotted_lever
 
-from fea.calculix import program as calculix
-from fea.calculix.frequencies import calculix_frequencies
-from fea.elements.mass import consistent_mass
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import rigid_motions
-from fea.tractions.traction import wrench_density
-from fea.vibration.link_holding import HeldPlace, LinkHolding, link_holding
-from fea.vibration.link_solid import LinkSolid, modes_on, refined_modes
-from fea.vibration.mass_matrix import body_mass
-from fea.vibration.rigid_regions import RigidRegion
-from fea.vibration.solid_modes import CarriedOn, solid_modes
-from geometry.base.errors import CannotRunError
-from geometry.meshing.mesh import COARSE, mass_properties, mesh_body
-from loads.case.case_file import read_case, validate
-from loads.records.carried import CarriedBody, CarriedSpread
+from alula.fea.calculix import program as calculix
+from alula.fea.calculix.frequencies import calculix_frequencies
+from alula.fea.elements.mass import consistent_mass
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.tractions.traction import wrench_density
+from alula.fea.vibration.link_holding import HeldPlace, LinkHolding, link_holding
+from alula.fea.vibration.link_solid import LinkSolid, modes_on, refined_modes
+from alula.fea.vibration.mass_matrix import body_mass
+from alula.fea.vibration.rigid_regions import RigidRegion
+from alula.fea.vibration.solid_modes import CarriedOn, solid_modes
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.carried import CarriedBody, CarriedSpread
 
 E, NU, RHO = 3000.0, 0.3, 1.2e-9
 needs_ccx = pytest.mark.skipif(calculix.installed() is None, reason="CalculiX (ccx) is not on PATH")

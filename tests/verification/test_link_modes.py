@@ -10,15 +10,15 @@ from rocker_case import TOML
 from slotted_cases import quick_return
 from slotted_lever import slotted_lever
 
-from fea.vibration.link_frame import link_frame
-from fea.vibration.link_holding import link_holding
-from fea.vibration.link_modes import link_modes
-from fea.vibration.linkage_modes import divide
-from fea.vibration.mass_matrix import mass_matrix
-from fea.vibration.over_motion import case_frequencies
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, validate
-from loads.states.masses import laden_masses, part_mass
+from alula.fea.vibration.link_frame import link_frame
+from alula.fea.vibration.link_holding import link_holding
+from alula.fea.vibration.link_modes import link_modes
+from alula.fea.vibration.linkage_modes import divide
+from alula.fea.vibration.mass_matrix import mass_matrix
+from alula.fea.vibration.over_motion import case_frequencies
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.states.masses import laden_masses, part_mass
 
 
 @pytest.mark.parametrize(

@@ -7,17 +7,17 @@ import pytest
 from edited_cases import PLANAR
 from scipy.optimize import brentq
 
-from fea.check.run import check_case
-from fea.common.verdict import LINKAGE, Verdict
-from fea.frame.build import build_frame
-from fea.nonlinear import stability
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.equilibrium_path import NoEquilibriumError
-from fea.nonlinear.stability import buckling_factor
-from loads.case.case import Case
-from loads.case.case_file import read_case, validate
-from loads.records.applied import PointLoad
-from loads.states.actions import stated_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import LINKAGE, Verdict
+from alula.fea.frame.build import build_frame
+from alula.fea.nonlinear import stability
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.applied import PointLoad
+from alula.loads.states.actions import stated_loads
 
 HEIGHT, WIDTH = 120.0, 90.0
 

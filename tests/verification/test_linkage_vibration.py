@@ -15,22 +15,22 @@ from materials import SOURCED_ENTRIES
 from scipy.linalg import eigh
 from vibrating_frames import DENSITY, LENGTH, POISSON, YOUNG, eigenvalues, rectangle, straight
 
-from fea.common.source import SourceKind
-from fea.frame.build import build_frame
-from fea.frame.case_statics import solve_case_statics
-from fea.frame.displacement_band import Zone
-from fea.frame.linear import solve_frame
-from fea.frame.model import ALL_DOFS, PIN_DOFS, FrameElement, FrameModel, Support, Tie
-from fea.nonlinear.corotational import subdivide
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import stiffness_parts
-from fea.vibration import flexibility_doubt
-from fea.vibration.linkage_modes import divide, frame_modes
-from fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass, mass_matrix
-from fea.vibration.over_motion import FINE, case_frequencies
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, validate
-from loads.states.masses import laden_masses, part_masses
+from alula.fea.common.source import SourceKind
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.frame.displacement_band import Zone
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import ALL_DOFS, PIN_DOFS, FrameElement, FrameModel, Support, Tie
+from alula.fea.nonlinear.corotational import subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import stiffness_parts
+from alula.fea.vibration import flexibility_doubt
+from alula.fea.vibration.linkage_modes import divide, frame_modes
+from alula.fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass, mass_matrix
+from alula.fea.vibration.over_motion import FINE, case_frequencies
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.states.masses import laden_masses, part_masses
 
 STOUT, SLIM = rectangle(4.0, 3.0), rectangle(0.5, 0.5)
 STIFF = f"""

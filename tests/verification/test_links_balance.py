@@ -7,10 +7,10 @@ gave the joint forces.
 import numpy as np
 import pytest
 
-from fea.motion.layered import with_couples
-from fea.motion.link_history import link_histories
-from loads.case.case_file import read_case
-from loads.states.case_motion import solve_case_motion
+from alula.fea.motion.layered import with_couples
+from alula.fea.motion.link_history import link_histories
+from alula.loads.case.case_file import read_case
+from alula.loads.states.case_motion import solve_case_motion
 
 CASES = {
     "owl-wing-static": [],

@@ -23,12 +23,12 @@ from motion_poses import (
 )
 from planar_linkages import joint, link
 
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from loads.records.applied import PartMass
-from loads.states.actions import inertia_loads
-from loads.statics.momentum import linkage_momentum, on_ground
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.loads.records.applied import PartMass
+from alula.loads.states.actions import inertia_loads
+from alula.loads.statics.momentum import linkage_momentum, on_ground
 
 TURNING = {
     "four-bar": four_bar_pose,

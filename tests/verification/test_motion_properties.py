@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from motion_poses import drive_of, forces_of, kinetostatics, masses_of, virtual_work, weights_of
 from planar_linkages import OPEN_WING, four_bar, joint, link, six_bar
 
-from geometry.base.errors import CaseError
-from geometry.linkage.continuation import DeadPointError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.motion import Motion, solve_motion
-from geometry.linkage.pose import solve_pose
-from geometry.mechanisms.fourbar import FourBar
-from loads.records.applied import PartMass, PointLoad
-from loads.statics.statics import Drive
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.loads.records.applied import PartMass, PointLoad
+from alula.loads.statics.statics import Drive
 
 RANGE = np.radians(np.linspace(228.15, 130.0, 25))
 factors = st.floats(0.93, 1.07)

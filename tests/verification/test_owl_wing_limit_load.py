@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from fea.frame.build import build_frame
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.equilibrium_path import NoEquilibriumError
-from loads.case.case_file import read_case
-from loads.records.applied import PointLoad
-from loads.statics.statics import Drive
+from alula.fea.frame.build import build_frame
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import PointLoad
+from alula.loads.statics.statics import Drive
 
 EI = 2400.0 * np.pi / 64.0 * (5.0**4 - 2.5**4)
 WEIGHT = 0.25

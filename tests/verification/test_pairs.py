@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 from bars_in_layers import TEXT
 
-from fea.beam.cut_free import link_loads
-from fea.check.run import check_case
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.common.plates import pair_forces, plates
-from fea.frame.build import build_frame
-from fea.frame.linear import solve_frame
-from fea.outcomes.bearing import pressing
-from fea.outcomes.pins import stress_at
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.case.layers import slab
-from loads.records.applied import BodyForce, LineLoad, PartMass, shifted
-from loads.states.actions import stated_loads
-from loads.states.masses import laden_masses, part_mass, part_masses, rough_masses
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.fea.common.plates import pair_forces, plates
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linear import solve_frame
+from alula.fea.outcomes.bearing import pressing
+from alula.fea.outcomes.pins import stress_at
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.case.layers import slab
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass, shifted
+from alula.loads.states.actions import stated_loads
+from alula.loads.states.masses import laden_masses, part_mass, part_masses, rough_masses
 
 PLATE, WIDTH, PIN, APART, EYE = 2.5, 10.0, 4.0, 8.0, 2.0
 BAR = {"shape": "bar", "material": "aluminium-6061-t6", "fillet_radius": "1 mm", "width": f"{WIDTH} mm"}

@@ -11,9 +11,9 @@ from mesh_measures import volumes_and_moments
 from scipy.integrate import quad
 from skfem import Basis, ElementTetP2, Functional, MeshTet2
 
-from geometry.meshing.element_geometry import triangle_areas
-from geometry.meshing.mesh import COARSE, mass_properties, mesh_body
-from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from alula.geometry.meshing.element_geometry import triangle_areas
+from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 LENGTH = 20.0
 PINS = (Pin(name="A", x=0.0, y=0.0, diameter=1.5), Pin(name="B", x=LENGTH, y=0.0, diameter=1.5))

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam.pin_between import largest_between
-from geometry.bodies.features import Ring
+from alula.fea.beam.pin_between import largest_between
+from alula.geometry.bodies.features import Ring
 
 EYE = Ring(diameter=8.0, low=-2.0, high=2.0)
 
@@ -23,7 +23,7 @@ def test_an_even_pressure_in_the_second_eye_makes_a_cantilever_of_the_pin() -> N
     force, rise = 10.0, 5.0
     wrench = np.array([6.0, 8.0, 0.0, 0.0, 0.0, 0.0])
     moment, shear = largest_between((EYE, EYE), rise, about_first(wrench, rise), wrench)
-    # Along the first eye, from the face inwards: V = F (1 - x/t)(1 - 6 a x/t²), a = rise (``fea.outcomes.pins``).
+    # Along the first eye, from the face inwards: V = F (1 - x/t)(1 - 6 a x/t²), a = rise (``alula.fea.outcomes.pins``).
     x = np.linspace(0.0, 4.0, 200001)
     v = force * (1.0 - x / 4.0) * (1.0 - 6.0 * rise * x / 16.0)
     inside = force * (1.0 + 2.0) + np.cumsum(v) * (x[1] - x[0])

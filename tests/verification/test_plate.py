@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from mesh_measures import volumes_and_moments
 
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.elements.space import displacement_space
-from fea.tractions.load_vectors import LoadVectors
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.body_rules import check_body
-from geometry.meshing.mesh import mass_properties, mesh_body, reentrant_edges
-from geometry.meshing.mesh_settings import COARSE
-from geometry.parts.part import Bar, Pin, PlainEnd, Plate, Ring
-from loads.records.bearing import WIDE
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.fea.elements.space import displacement_space
+from alula.fea.tractions.load_vectors import LoadVectors
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.meshing.mesh import mass_properties, mesh_body, reentrant_edges
+from alula.geometry.meshing.mesh_settings import COARSE
+from alula.geometry.parts.part import Bar, Pin, PlainEnd, Plate, Ring
+from alula.loads.records.bearing import WIDE
 
 T = 3.0
 

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from planar_linkages import OPEN_WING, deg, four_bar, quick_return, six_bar, slider_crank
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.play import LooseJoints
-from geometry.linkage.pose import Pose, solve_pose
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.records.applied import PointLoad
-from loads.states.play import Displaced, Play, held_rows, play_of
-from loads.statics.statics import Drive, solve_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.play import LooseJoints
+from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.records.applied import PointLoad
+from alula.loads.states.play import Displaced, Play, held_rows, play_of
+from alula.loads.statics.statics import Drive, solve_statics
 
 PLAY = {"A": 0.1, "B": 0.2, "C": 0.3, "D": 0.05}
 

@@ -14,22 +14,22 @@ from edited_cases import edited
 from numpy.typing import NDArray
 from rocker_case import TOML
 
-from fea.beam.cut_free import link_loads
-from fea.common.source import SourceKind
-from fea.doubts.force_doubt import measures
-from fea.motion.envelope import envelope_case
-from fea.motion.loosened import joint_growth, loosened
-from fea.refine.refinement import Effort
-from fea.whole.motor import motor_outcomes
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.states.case_motion import CaseMotion, solve_case_motion
-from loads.states.dead_point_reach import pose_at
-from loads.states.loose_motion import LooseMotion, loose_motion
-from reports.motion.csv_tables import write_tables
-from reports.motion.play import drive_line, motion_play_record, play_lines
-from reports.motion.record import record
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.source import SourceKind
+from alula.fea.doubts.force_doubt import measures
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.motion.loosened import joint_growth, loosened
+from alula.fea.refine.refinement import Effort
+from alula.fea.whole.motor import motor_outcomes
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import CaseMotion, solve_case_motion
+from alula.loads.states.dead_point_reach import pose_at
+from alula.loads.states.loose_motion import LooseMotion, loose_motion
+from alula.reports.motion.csv_tables import write_tables
+from alula.reports.motion.play import drive_line, motion_play_record, play_lines
+from alula.reports.motion.record import record
 
 Real = NDArray[np.float64]
 A, B, C, D = 40.0, 120.0, 80.0, 100.0

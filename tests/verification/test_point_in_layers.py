@@ -13,13 +13,13 @@ from dataclasses import replace
 import pytest
 from bars_in_layers import four_bars
 
-from fea.check.run import check_case
-from fea.common.source import COUPLES
-from fea.common.verdict import CheckOutcome, Quantity, Verdict
-from fea.outcomes.point_displacement import PointDisplacement
-from geometry.bodies.section import ring
-from loads.case.case import Case
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.source import COUPLES
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
+from alula.fea.outcomes.point_displacement import PointDisplacement
+from alula.geometry.bodies.section import ring
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 
 HEIGHT, LONG, ALONG, ACROSS = 10.0, 100.0, 20.0, 2.0
 ARM = f"""

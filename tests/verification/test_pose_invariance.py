@@ -8,8 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from planar_linkages import OPEN_WING, four_bar, six_bar
 
-from geometry.base.errors import CaseError
-from geometry.linkage.pose import CLOSED, Pose, solve_pose
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.pose import CLOSED, Pose, solve_pose
 
 LENGTHS = st.floats(20.0, 200.0)
 ANGLES = st.floats(-math.pi, math.pi)

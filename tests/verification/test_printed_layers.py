@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fea.check.run import check_case
-from fea.common.verdict import Quantity, Verdict
-from fea.refine.refinement import Effort
-from fea.solid.stress import stress_field
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.refine.refinement import Effort
+from alula.fea.solid.stress import stress_field
+from alula.loads.case.case_file import validate
 
 FORCE, WIDTH, THICKNESS = 60.0, 8.0, 5.0
 ANGLE = np.radians(30.0)

@@ -7,16 +7,16 @@ import pytest
 import random_parts
 from scipy.spatial import ConvexHull
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.body_rules import check_body
-from geometry.bodies.features import Pin, Ring
-from geometry.imported.read import part_facts
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.parts.plate import Plate
-from geometry.parts.step import StepPart
-from geometry.placement.match import Wanted
-from geometry.placement.placed_body import placed_body
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.bodies.features import Pin, Ring
+from alula.geometry.imported.read import part_facts
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.parts.plate import Plate
+from alula.geometry.parts.step import StepPart
+from alula.geometry.placement.match import Wanted
+from alula.geometry.placement.placed_body import placed_body
 
 FEW, MANY = [0, 1], range(2, 40)
 

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from tilting_pins import checked, four_bar
 
-from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
-from fea.frame.build import build_frame
-from fea.nonlinear.equilibrium_path import EquilibriumPath
-from fea.nonlinear.stability import stiffness_parts
-from fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
-from fea.vibration.link_modes import link_modes
-from fea.vibration.linkage_modes import SUBDIVISIONS, divide, frame_modes
-from fea.vibration.mass_matrix import mass_matrix
-from fea.vibration.modes import frequency
-from fea.vibration.running_holes import running_holes, with_hinges
-from geometry.linkage.linkage import Joint
-from loads.case.case import Case
-from loads.states.masses import part_masses
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Verdict
+from alula.fea.frame.build import build_frame
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import stiffness_parts
+from alula.fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
+from alula.fea.vibration.link_modes import link_modes
+from alula.fea.vibration.linkage_modes import SUBDIVISIONS, divide, frame_modes
+from alula.fea.vibration.mass_matrix import mass_matrix
+from alula.fea.vibration.modes import frequency
+from alula.fea.vibration.running_holes import running_holes, with_hinges
+from alula.geometry.linkage.linkage import Joint
+from alula.loads.case.case import Case
+from alula.loads.states.masses import part_masses
 
 PLASTIC = {"youngs_modulus": "2500 MPa", "poissons_ratio": 0.36, "yield_strength": "50 MPa"}
 TURNING = {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", "-0.001 N"]}], "speed": "1200 rpm"}

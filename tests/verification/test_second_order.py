@@ -7,21 +7,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fea.beam.column_factor import Stretch
-from fea.beam.cut_beam import curving_forces
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import internal_forces
-from fea.check.run import check_case
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.common.verdict import Verdict
-from fea.links.second_order import Bend, between_stations, on_its_pins
-from fea.motion.buckling_history import with_second_order
-from fea.motion.link_history import link_histories
-from geometry.bodies.cut_section import CutSection
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.records.applied import LineLoad
-from loads.states.case_motion import solve_case_motion
+from alula.fea.beam.column_factor import Stretch
+from alula.fea.beam.cut_beam import curving_forces
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import internal_forces
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.fea.common.verdict import Verdict
+from alula.fea.links.second_order import Bend, between_stations, on_its_pins
+from alula.fea.motion.buckling_history import with_second_order
+from alula.fea.motion.link_history import link_histories
+from alula.geometry.bodies.cut_section import CutSection
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.records.applied import LineLoad
+from alula.loads.states.case_motion import solve_case_motion
 
 L, EI = 100.0, 1e4
 EULER = math.pi**2 * EI / L**2

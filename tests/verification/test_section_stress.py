@@ -12,9 +12,9 @@ import pytest
 from skfem import Basis, ElementQuad2, ElementTriP2, LinearForm, MeshQuad, MeshTri, condense, solve
 from skfem.models.poisson import laplace
 
-from fea.beam.piecewise import Piecewise
-from fea.beam.section_stress import equivalent_bound, equivalent_stress, rim_shear, section_stress
-from geometry.parts.part import rectangle, ring
+from alula.fea.beam.piecewise import Piecewise
+from alula.fea.beam.section_stress import equivalent_bound, equivalent_stress, rim_shear, section_stress
+from alula.geometry.parts.part import rectangle, ring
 
 SECTIONS = {
     "tall": rectangle(10.0, 2.5),

@@ -12,20 +12,20 @@ import pytest
 from scipy.spatial import QhullError
 from tilting_pins import PLA, loaded
 
-from fea.beam.cut_free import link_loads
-from fea.check.solid_frame import with_solids
-from fea.common.convex import outermost
-from fea.doubts.force_doubt import sharing_doubt, ways_borne
-from fea.frame.case_statics import CaseStatics, solve_case_statics
-from fea.frame.joint_forces import JointForces
-from fea.frame.thrust import thrusts
-from fea.links.solid_result import link_task
-from fea.refine.refinement import START, Effort, RefinedSolid, refine_links
-from fea.solid.solution import SolidSolution, solve_solid
-from fea.solid.stress import stress_field
-from fea.superposition.solid_shares import solid_shares
-from geometry.meshing.mesh import mesh_body
-from loads.case.case import Case
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.solid_frame import with_solids
+from alula.fea.common.convex import outermost
+from alula.fea.doubts.force_doubt import sharing_doubt, ways_borne
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.frame.thrust import thrusts
+from alula.fea.links.solid_result import link_task
+from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
+from alula.fea.solid.solution import SolidSolution, solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.superposition.solid_shares import solid_shares
+from alula.geometry.meshing.mesh import mesh_body
+from alula.loads.case.case import Case
 
 OWN = frozenset({("B", "coupler"), ("O4", "base")})
 """Of the rocker's own pins the way under which it bears most."""
@@ -84,7 +84,7 @@ def test_the_corners_of_the_hull_bear_the_most():
     few = sharing_doubt(case, "l", forces, statics.loads["l"])
     assert len(ways_borne(case, "l", "rocker", forces, statics.loads["l"])) < len(forces.sharings)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fea.doubts.force_doubt.outermost", lambda points: np.arange(len(points)))
+        patch.setattr("alula.fea.doubts.force_doubt.outermost", lambda points: np.arange(len(points)))
         every = sharing_doubt(case, "l", forces, statics.loads["l"])
     assert few.stress.keys() == every.stress.keys() == set(case.checked_links)
     for link, share in every.stress.items():

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from fea.check.run import check_case
-from fea.outcomes.result import CheckResult
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.states.case_motion import solve_case_motion
+from alula.fea.check.run import check_case
+from alula.fea.outcomes.result import CheckResult
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import solve_case_motion
 
 LENGTH, WIDTH, THICKNESS, FORCE, YOUNG, SHEAR = 60.0, 8.0, 4.0, 2.0, 2500.0, 2500.0 / 2.72
 SERVO = """

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.meshing.element_geometry import triangle_areas
-from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
-from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd
+from alula.geometry.meshing.element_geometry import triangle_areas
+from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
+from alula.geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd
 
 T = 3.0
 

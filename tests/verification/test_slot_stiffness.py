@@ -12,19 +12,19 @@ import numpy as np
 import pytest
 from slotted_lever import slotted_lever
 
-from fea.beam.column_factor import AxialForce, Stretch, column_factors
-from fea.beam.cut_free import beam_loads, link_loads
-from fea.beam.deflection import deflection
-from fea.beam.flanks import flanks_of
-from fea.beam.theory import internal_forces
-from fea.buckling.buckling import link_factors
-from fea.frame.build import build_frame
-from fea.frame.linear import solve_frame
-from fea.frame.model import Support
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.stability import buckling_factor
-from loads.states.actions import acting_loads
-from loads.statics.statics import solve_statics
+from alula.fea.beam.column_factor import AxialForce, Stretch, column_factors
+from alula.fea.beam.cut_free import beam_loads, link_loads
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.flanks import flanks_of
+from alula.fea.beam.theory import internal_forces
+from alula.fea.buckling.buckling import link_factors
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import Support
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.loads.states.actions import acting_loads
+from alula.loads.statics.statics import solve_statics
 
 WIDE, HIGH, THICK, SLOT = 9.9, 10.0, 5.0, 4.0
 FIRST, LAST, TIP = 11.0, 51.0, 80.0

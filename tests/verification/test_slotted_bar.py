@@ -9,17 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.deflection import deflection
-from fea.beam.details import Detail, details, net_section
-from fea.beam.flanks import flanks_of
-from fea.beam.theory import BeamCheck, check_beam
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.solid.solution import SolidSolution, solve_solid
-from fea.solid.stress import StressField, stress_field
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.part import Bar, Body, Pin
-from loads.records.bearing import NARROW, WIDE, PressureLaw
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.details import Detail, details, net_section
+from alula.fea.beam.flanks import flanks_of
+from alula.fea.beam.theory import BeamCheck, check_beam
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.solid.solution import SolidSolution, solve_solid
+from alula.fea.solid.stress import StressField, stress_field
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.geometry.parts.part import Bar, Body, Pin
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
 
 E, NU, FORCE, SLOT, WIDTH, EYE, T = 2000.0, 0.38, 10.0, 16.0, 4.0, 8.0, 4.0
 PART = Bar(

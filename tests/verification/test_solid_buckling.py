@@ -9,16 +9,16 @@ import pytest
 import solid_meshes
 from euler_column import euler_load
 
-from fea.check.run import check_case
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.common.verdict import LINKAGE, Quantity, Subject
-from fea.refine.link_buckling import link_buckling
-from fea.solid.buckling_factor import BucklingProblem
-from fea.solid.solution import solve_solid
-from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.part import Body, Pin, Plate, Ring
-from loads.case.case_file import validate
-from loads.records.bearing import WIDE
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.fea.common.verdict import LINKAGE, Quantity, Subject
+from alula.fea.refine.link_buckling import link_buckling
+from alula.fea.solid.buckling_factor import BucklingProblem
+from alula.fea.solid.solution import solve_solid
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.geometry.parts.part import Body, Pin, Plate, Ring
+from alula.loads.case.case_file import validate
+from alula.loads.records.bearing import WIDE
 
 E = 2000.0
 X, Y, Z, TURN_X, TURN_Y, TURN_Z = range(6)

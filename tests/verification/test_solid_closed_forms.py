@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.elements.quadrature import volume_quadrature
-from fea.elements.space import displacement_space
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.parts.part import Tube
-from loads.records.applied import BodyForce, PartMass
-from loads.records.bearing import WIDE
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.fea.elements.quadrature import volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.parts.part import Tube
+from alula.loads.records.applied import BodyForce, PartMass
+from alula.loads.records.bearing import WIDE
 
 E, NU = 2900.0, 0.38
 

@@ -9,11 +9,11 @@ import pytest
 import solid_meshes
 from known_solutions import law
 
-from fea.elements.elasticity import assemble_stiffness, jacobians, lame_constants, reference_basis
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import displacement_space
-from fea.solid.stress import stress_field
-from fea.solvers.solve import factorise
+from alula.fea.elements.elasticity import assemble_stiffness, jacobians, lame_constants, reference_basis
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.solid.stress import stress_field
+from alula.fea.solvers.solve import factorise
 
 E, NU = 2900.0, 0.38
 A, WAVE = np.array([1.0, -0.6, 0.8]) * 1e-2, np.array([0.9, 0.5, -0.7])

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.meshing.mesh import mesh_body
-from geometry.meshing.mesh_settings import COARSE
-from geometry.parts.part import Body, Pin, PlainEnd, Tube
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.meshing.mesh import mesh_body
+from alula.geometry.meshing.mesh_settings import COARSE
+from alula.geometry.parts.part import Body, Pin, PlainEnd, Tube
 
 E, NU, RHO = 2900.0, 0.38, 1.2e-9
 FORCE, TIP, SPAN = 0.25, 77.5, 30.0

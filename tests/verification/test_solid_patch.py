@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.solid.solution import solve_free
-from fea.solid.stress import stress_field
-from fea.solvers.solve import factorise
-from geometry.meshing.mirror import mirrored
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.solid.solution import solve_free
+from alula.fea.solid.stress import stress_field
+from alula.fea.solvers.solve import factorise
+from alula.geometry.meshing.mirror import mirrored
 
 E, NU = 2900.0, 0.38
 SLOPE = np.array([[1.0, 0.4, -0.2], [0.1, -0.5, 0.3], [0.0, 0.2, 0.7]]) * 1e-3

@@ -8,9 +8,9 @@ import pytest
 from scipy.optimize import brentq
 from sprung_cases import CROWN, FOUR_BAR, HANG, LEVER, case_of, stands
 
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.states.case_motion import solve_case_motion
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import solve_case_motion
 
 TURN = {"joint": "O", "stiffness": "300 N*mm/rad"}
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fea.check.linkage_numbers import left_stops
-from fea.frame.build import build_frame
-from fea.frame.case_statics import solve_case_statics
-from fea.nonlinear.corotational import subdivide
-from fea.nonlinear.equilibrium_path import EquilibriumPath, State
-from fea.nonlinear.large_displacement import examine
-from fea.nonlinear.stability import linkage_factor
-from loads.case.case_file import validate
+from alula.fea.check.linkage_numbers import left_stops
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.nonlinear.corotational import subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, State
+from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.nonlinear.stability import linkage_factor
+from alula.loads.case.case_file import validate
 
 ARM = """
 schema_version = 1

@@ -10,11 +10,11 @@ import pytest
 from edited_cases import PLANAR, tight_pins
 from golden import STARTERS
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.frame.case_statics import solve_case_statics
-from loads.case.case_file import read_case
-from loads.statics.statics import Reactions
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.loads.case.case_file import read_case
+from alula.loads.statics.statics import Reactions
 
 
 def statics(name: str, *overrides: str) -> dict[str, Reactions]:

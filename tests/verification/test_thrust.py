@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
 
-from fea.frame.case_statics import solve_case_statics
-from fea.frame.joint_forces import JointForces
-from fea.frame.thrust import thrusts
-from loads.case.case import Case
-from loads.case.case_file import validate
-from reports.tables.frames import thrust_line
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.frame.thrust import thrusts
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.reports.tables.frames import thrust_line
 
 LEVER = """
 schema_version = 1

@@ -13,16 +13,16 @@ import numpy as np
 import pytest
 from tilting_pins import ALUMINIUM, PLA, loaded
 
-import fea.frame.sharing
-from fea.beam.cut_free import beam_loads, link_loads
-from fea.beam.theory import internal_forces
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.frame.case_statics import CaseStatics, solve_case_statics
-from fea.frame.sharing import choices, hinges_tried
-from fea.frame.thrust import thrusts
-from loads.case.case import Case
-from loads.statics.statics import Reactions
+import alula.fea.frame.sharing
+from alula.fea.beam.cut_free import beam_loads, link_loads
+from alula.fea.beam.theory import internal_forces
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.frame.sharing import choices, hinges_tried
+from alula.fea.frame.thrust import thrusts
+from alula.loads.case.case import Case
+from alula.loads.statics.statics import Reactions
 
 WIDTH, THICKNESS = 8.0, 4.0
 PRESSED = {"O2": ("crank",), "A": ("crank",), "B": ("rocker",), "O4": ("rocker",)}
@@ -114,8 +114,8 @@ def test_a_search_finds_the_ends_of_all_states(monkeypatch):
     case = loaded(PLA, ["0 N", "-1 N"])
     statics = solve_case_statics(case)
     every = statics.forces["l"].sharings
-    monkeypatch.setattr(fea.frame.sharing, "MOST_STATES", 0)
-    searched = fea.frame.sharing.sharings(statics.forces["l"].frame)
+    monkeypatch.setattr(alula.fea.frame.sharing, "MOST_STATES", 0)
+    searched = alula.fea.frame.sharing.sharings(statics.forces["l"].frame)
     linkage, pins = case.linkage, tuple(case.joints)
     assert {one.hinges for one in searched} <= set(hinges_tried(linkage, pins))
     assert len(choices(linkage, pins)) == 4

@@ -1,7 +1,8 @@
 """Toggles that snap through: the linear frame's factors, the deformed shape and the verdict against closed forms.
 
 Two bars of half-span 50 mm push a lever of 100 mm, built in by the drive. With a lever of stiffness k and bars that
-keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in ``fea.nonlinear.stability``.
+keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in
+``alula.fea.nonlinear.stability``.
 """
 
 import math
@@ -13,26 +14,26 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, Quantity, Verdict
-from fea.frame.build import build_frame
-from fea.frame.case_statics import solve_case_statics
-from fea.motion.envelope import _Envelope
-from fea.motion.linkage_history import linkage_outcomes, over_motion
-from fea.nonlinear.equilibrium_path import NoEquilibriumError
-from fea.nonlinear.softened import followed
-from fea.nonlinear.stability import SNAP, growth
-from fea.outcomes.result import LoadCaseResult
-from fea.sizing.changes import _change, changes, rounded
-from fea.study.numbers import of_motion
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
-from loads.states.case_motion import solve_case_motion
-from reports.words.changes import change_sentences
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.motion.envelope import _Envelope
+from alula.fea.motion.linkage_history import linkage_outcomes, over_motion
+from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.fea.nonlinear.softened import followed
+from alula.fea.nonlinear.stability import SNAP, growth
+from alula.fea.outcomes.result import LoadCaseResult
+from alula.fea.sizing.changes import _change, changes, rounded
+from alula.fea.study.numbers import of_motion
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.words.changes import change_sentences
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """
@@ -459,7 +460,7 @@ def test_a_change_that_fails_when_it_is_tried_is_not_told(monkeypatch: pytest.Mo
     force = 3.0 * limit_load(toggle(-1.0, 5.0), 5.0)
     plain = _change
     monkeypatch.setattr(
-        "fea.sizing.changes._change",
+        "alula.fea.sizing.changes._change",
         lambda result, check: replace(
             (found := plain(result, check)),
             load=1.3 * found.load,
@@ -471,7 +472,7 @@ def test_a_change_that_fails_when_it_is_tried_is_not_told(monkeypatch: pytest.Mo
     assert again.load * again.material.needed == pytest.approx(1.0, rel=0.03)
     for case in (toggle(-force * again.load, 5.0), changed(toggle(-force, 5.0), again.material.needed)):
         assert linkage(case)[2][0].verdict is Verdict.PASS
-    monkeypatch.setattr("fea.sizing.changes.TRIES", 1)
+    monkeypatch.setattr("alula.fea.sizing.changes.TRIES", 1)
     none = changes(replace(result))[0]
     assert (none.load, none.material, none.refuted) == (None, None, True)
     assert "with none within reach does it pass" in " ".join(change_sentences(none, result))

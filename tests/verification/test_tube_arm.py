@@ -6,13 +6,13 @@ import tomllib
 
 import pytest
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.refine.refinement import Effort
-from geometry.base.errors import CaseError
-from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
-from geometry.parts.part import Body, Pin, Tube
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.refine.refinement import Effort
+from alula.geometry.base.errors import CaseError
+from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
+from alula.geometry.parts.part import Body, Pin, Tube
+from alula.loads.case.case_file import validate
 
 OUTER, INNER, WIDTH, THICK, PIN, UP = 10.0, 7.0, 6.0, 4.0, 3.0, 18.0
 CASE = f"""

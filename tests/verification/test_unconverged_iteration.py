@@ -7,12 +7,12 @@ import arm_case
 import pytest
 import rocker_case
 
-from fea.check.run import check_case
-from fea.motion.envelope import envelope_case
-from fea.refine.refinement import Effort
-from fea.solvers import solve, two_level
-from geometry.base.errors import CannotRunError
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.refine.refinement import Effort
+from alula.fea.solvers import solve, two_level
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.case.case_file import validate
 
 
 @pytest.fixture

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, slider_crank
 
-from geometry.base.errors import CaseError
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.pose import Pose, solve_pose
-from loads.records.applied import PointLoad
-from loads.statics.statics import Drive, solve_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.loads.records.applied import PointLoad
+from alula.loads.statics.statics import Drive, solve_statics
 
 
 def random_six_bar(rng: np.random.Generator) -> Linkage:

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.frame.case_statics import solve_case_statics
-from fea.motion.link_history import link_histories
-from loads.case.case_file import read_case
-from loads.states.case_motion import solve_case_motion
-from loads.states.masses import laden_masses, part_masses
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.motion.link_history import link_histories
+from alula.loads.case.case_file import read_case
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.masses import laden_masses, part_masses
 
 LADEN = str(Path(__file__).parents[1] / "unit" / "loads" / "four-bar-laden.toml")
 RANGE = 'motion={range=["40 deg", "60 deg"], poses=3}'

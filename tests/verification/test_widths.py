@@ -10,21 +10,21 @@ from rocker_case import TOML as ROCKER
 from scipy.optimize import brentq
 from scipy.special import jv, yv
 
-from fea.beam.column_factor import AxialForce, column_factors
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, PointLoad
-from fea.beam.theory import check_beam
-from fea.buckling.holding import columns
-from fea.frame.build import build_frame
-from fea.frame.linear import solve_frame
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.body_rules import check_body
-from geometry.meshing.mesh import mass_properties, mesh_body
-from geometry.meshing.mesh_settings import COARSE
-from geometry.parts.part import Bar, Pin, PlainEnd
-from loads.case.case_file import validate
-from loads.records.applied import PointLoad as Acting
+from alula.fea.beam.column_factor import AxialForce, column_factors
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.theory import check_beam
+from alula.fea.buckling.holding import columns
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.linear import solve_frame
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.meshing.mesh import mass_properties, mesh_body
+from alula.geometry.meshing.mesh_settings import COARSE
+from alula.geometry.parts.part import Bar, Pin, PlainEnd
+from alula.loads.case.case_file import validate
+from alula.loads.records.applied import PointLoad as Acting
 
 T, L, E, NU = 4.0, 90.0, 2400.0, 0.35
 TAPER = ((0.0, 16.0), (L, 8.0))

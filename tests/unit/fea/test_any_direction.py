@@ -7,13 +7,13 @@ import pytest
 from edited_cases import edited
 from materials import with_material
 
-from fea.check.run import check_case
-from fea.common.source import SourceKind
-from fea.common.verdict import Quantity, Verdict
-from fea.outcomes.limits import layer_limit
-from fea.solid.layers import in_worst_direction, on_plane
-from geometry.materials.material import library
-from geometry.materials.printable import is_printed, is_solid_stock
+from alula.fea.check.run import check_case
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.outcomes.limits import layer_limit
+from alula.fea.solid.layers import in_worst_direction, on_plane
+from alula.geometry.materials.material import library
+from alula.geometry.materials.printable import is_printed, is_solid_stock
 
 PLA = library()["pla-fdm-xy"]
 

@@ -7,12 +7,12 @@ from edited_cases import edited
 from materials import with_material
 
 import alula
-from fea.check.run import check_case
-from fea.common.verdict import Quantity, Verdict
-from fea.frame.build import build_frame
-from fea.outcomes.unchecked import Topic, caveats
-from geometry.base.errors import CaseError
-from geometry.materials.material import library
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.frame.build import build_frame
+from alula.fea.outcomes.unchecked import Topic, caveats
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.material import library
 
 FOUR_BAR = "four-bar"
 IN_PVC = ('parts.bar.material="pvc-u"',)

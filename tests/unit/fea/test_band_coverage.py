@@ -4,10 +4,10 @@ import json
 
 import pytest
 
+from alula.fea.refine import convergence
 from benchmarks.coverage import END, PAGE, RESULTS, SETS, START, table
 from benchmarks.coverage_parts import drawn
 from benchmarks.coverage_table import judged
-from fea.refine import convergence
 
 KEPT = {what: json.loads((RESULTS / f"coverage-{what}.json").read_text()) for what in ("series", "truth")}
 

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from fea.common.band import Band
-from fea.common.verdict import Sense, Verdict
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Sense, Verdict
 
 
 def test_what_is_unknown_decides_nothing():

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, LineLoad, PointLoad
-from fea.beam.theory import check_beam, internal_forces, section_stress, uniform_cantilever
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import rectangle, ring
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, LineLoad, PointLoad
+from alula.fea.beam.theory import check_beam, internal_forces, section_stress, uniform_cantilever
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import rectangle, ring
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)

@@ -1,7 +1,7 @@
 import pytest
 
-from fea.beam.holes import net_tension, tube_hole_factors
-from geometry.base.errors import CannotRunError
+from alula.fea.beam.holes import net_tension, tube_hole_factors
+from alula.geometry.base.errors import CannotRunError
 
 
 def test_eye_under_its_pin() -> None:

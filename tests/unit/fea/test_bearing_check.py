@@ -5,13 +5,13 @@ import pytest
 from arm_case import ARM, BAR
 from edited_cases import edited
 
-from fea.check.run import check_case
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import Verdict
-from fea.outcomes.bearing import weakest_eye
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import Verdict
+from alula.fea.outcomes.bearing import weakest_eye
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
 
 
 def bearing(lines, force=-2.0):

@@ -6,13 +6,13 @@ from importlib.resources import files
 
 import pytest
 
-from fea.check.run import check_case
-from fea.frame.joint_forces import joint_forces
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.states.actions import acting_loads
+from alula.fea.check.run import check_case
+from alula.fea.frame.joint_forces import joint_forces
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.actions import acting_loads
 
-STARTER = files("loads") / "cases" / "four-bar.toml"
+STARTER = files("alula.loads") / "cases" / "four-bar.toml"
 LENGTH = 200.0
 POST = {
     "shape": "bar",

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import rigid_motions
-from fea.solid.bore_motion import flexibility, mean_motion, work
-from fea.solid.solution import solve_free, solve_solid
-from fea.solid.virtual_work import virtual_work
-from fea.tractions.traction import wrench_density
-from geometry.meshing.mirror import mirrored
+from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.solid.bore_motion import flexibility, mean_motion, work
+from alula.fea.solid.solution import solve_free, solve_solid
+from alula.fea.solid.virtual_work import virtual_work
+from alula.fea.tractions.traction import wrench_density
+from alula.geometry.meshing.mirror import mirrored
 
 E, NU = 2900.0, 0.38
 PLACES = {"bore:A": np.zeros(3), "bore:B": np.array([20.0, 0.0, 0.0])}

@@ -8,19 +8,19 @@ import pytest
 from edited_cases import PLANAR
 from rocker_case import TOML
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import BeamCheck, check_beam, internal_forces
-from fea.buckling.buckling import ColumnFactors, column, worst_column
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.common.scatter import Scatter
-from fea.motion import envelope_outcomes
-from fea.motion.buckling_history import axial_compression, factors_over_motion
-from fea.motion.link_history import link_histories
-from geometry.bodies.body import hand_section
-from loads.case.case import Case
-from loads.case.case_file import read_case, validate
-from loads.records.applied import LineLoad
-from loads.states.case_motion import solve_case_motion
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import BeamCheck, check_beam, internal_forces
+from alula.fea.buckling.buckling import ColumnFactors, column, worst_column
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.common.scatter import Scatter
+from alula.fea.motion import envelope_outcomes
+from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
+from alula.fea.motion.link_history import link_histories
+from alula.geometry.bodies.body import hand_section
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.applied import LineLoad
+from alula.loads.states.case_motion import solve_case_motion
 
 CASES = [
     ("owl-wing-static", [PLANAR, "motion.poses=7", 'motion.range=["228.15 deg", "200 deg"]']),

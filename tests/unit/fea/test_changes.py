@@ -7,19 +7,19 @@ import pytest
 from edited_cases import PLANAR
 from solved import by_hand
 
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.source import CONTACT, PIN_PRESSURE, TORQUE_TRANSFER, Source, SourceKind, distinct, widest
-from fea.common.verdict import Quantity, Verdict
-from fea.frame.displacement_band import shares_of_work
-from fea.links.solid_result import _width
-from fea.sizing.changes import _change, changes, rounded
-from fea.sizing.size_range import _entry, _taken, size_range
-from fea.sizing.tried import Trials
-from geometry.materials.family import most_of_family
-from geometry.materials.material import library
-from loads.case.case_file import read_case
-from reports.words.wording import headline, named
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.source import CONTACT, PIN_PRESSURE, TORQUE_TRANSFER, Source, SourceKind, distinct, widest
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.frame.displacement_band import shares_of_work
+from alula.fea.links.solid_result import _width
+from alula.fea.sizing.changes import _change, changes, rounded
+from alula.fea.sizing.size_range import _entry, _taken, size_range
+from alula.fea.sizing.tried import Trials
+from alula.geometry.materials.family import most_of_family
+from alula.geometry.materials.material import library
+from alula.loads.case.case_file import read_case
+from alula.reports.words.wording import headline, named
 
 THICK = {
     "parts.bar.thickness": "8 mm",

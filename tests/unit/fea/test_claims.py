@@ -9,14 +9,14 @@ import solved
 from edited_cases import PLANAR
 from pydantic import ValidationError
 
-import fea.check.run
-import fea.claims.data
-from fea.claims.audit import Finding, Names, check_claim
-from fea.claims.sources import check_claims
-from geometry.base.errors import CaseError
-from geometry.mechanisms.ornithopter import motors
-from loads.case.case_file import read_case
-from loads.sources.claim import (
+import alula.fea.check.run
+import alula.fea.claims.data
+from alula.fea.claims.audit import Finding, Names, check_claim
+from alula.fea.claims.sources import check_claims
+from alula.geometry.base.errors import CaseError
+from alula.geometry.mechanisms.ornithopter import motors
+from alula.loads.case.case_file import read_case
+from alula.loads.sources.claim import (
     CaseSystem,
     Claim,
     FlappingSystem,
@@ -27,9 +27,9 @@ from loads.sources.claim import (
     read_source,
     sources,
 )
-from loads.sources.expression import evaluate
-from loads.sources.quantity import Value
-from reports.tables.claims import as_json, as_markdown, as_text
+from alula.loads.sources.expression import evaluate
+from alula.loads.sources.quantity import Value
+from alula.reports.tables.claims import as_json, as_markdown, as_text
 
 TREE = {
     "pose": {
@@ -266,7 +266,7 @@ source = "Someone (2000)"
 
 @pytest.fixture
 def case_file(tmp_path):
-    folder = importlib.resources.files("loads.cases")
+    folder = importlib.resources.files("alula.loads.cases")
     for name in ("owl-wing-static.toml", "owl-wing-statics-exact.csv", "owl-wing-statics-printed.csv"):
         (tmp_path / name).write_text(folder.joinpath(name).read_text(encoding="utf-8"), encoding="utf-8")
     return tmp_path / "owl-wing-static.toml"
@@ -281,13 +281,13 @@ def test_claims_of_a_case_file(case_file):
 
 def test_only_what_a_claim_asks_for_is_computed(case_file, monkeypatch):
     asked = []
-    original = fea.claims.data.check_case
+    original = alula.fea.claims.data.check_case
 
     def check(case, *, fidelity, **options):
         asked.append(fidelity)
         return original(case, fidelity="beam", **options)
 
-    monkeypatch.setattr(fea.claims.data, "check_case", check)
+    monkeypatch.setattr(alula.fea.claims.data, "check_case", check)
     text = case_file.read_text(encoding="utf-8")
     case_file.write_text(text + CLAIMS, encoding="utf-8")
     check_claims(str(case_file))
@@ -320,8 +320,8 @@ def test_a_check_that_is_there_is_not_made_again(monkeypatch):
     known = solved.by_hand("owl-wing-static", PLANAR)
     heavier = solved.by_hand("owl-wing-static", PLANAR, 'load_cases.weight.forces.0.force=["0 N", "-0.5 N"]')
     sought = []
-    original = fea.check.run.examine
-    monkeypatch.setattr(fea.check.run, "examine", lambda *what: sought.append(what) or original(*what))
+    original = alula.fea.check.run.examine
+    monkeypatch.setattr(alula.fea.check.run, "examine", lambda *what: sought.append(what) or original(*what))
     found = check_claims("owl-wing-static", fidelity="beam", overrides=[PLANAR], known=known)
     assert sought == []
     by_hand = [result for result in found if result.finding is not Finding.CANNOT_BE_REDERIVED]

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.elements.space import displacement_space
-from fea.solid.condensation import condense
-from fea.solid.solution import solve_solid
-from fea.solid.virtual_work import virtual_work
-from geometry.meshing.mirror import mirrored
-from geometry.parts.part import Bar, Body, Pin
-from loads.records.applied import LineLoad
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.space import displacement_space
+from alula.fea.solid.condensation import condense
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.virtual_work import virtual_work
+from alula.geometry.meshing.mirror import mirrored
+from alula.geometry.parts.part import Bar, Body, Pin
+from alula.loads.records.applied import LineLoad
 
 E, NU = 2900.0, 0.38
 LENGTH, WIDE, THICK = 160.0, 5.0, 3.0

@@ -2,9 +2,9 @@ import math
 
 import pytest
 
-from fea.refine.convergence import grid_convergence, observed_order, williams_exponent
-from fea.refine.discretisation import discretisation_source
-from geometry.base.errors import CannotRunError
+from alula.fea.refine.convergence import grid_convergence, observed_order, williams_exponent
+from alula.fea.refine.discretisation import discretisation_source
+from alula.geometry.base.errors import CannotRunError
 
 SIZES = (1.0, 0.6, 0.4)
 SAFETY = 1.25  # Roache (1998), section 5.6

@@ -6,9 +6,9 @@ import eye_link
 import numpy as np
 import pytest
 
-from fea.beam.critical_locations import _bore, displacement_estimate
-from fea.common.link_loads import PinLoad
-from geometry.parts.part import Bar, Body, Pin
+from alula.fea.beam.critical_locations import _bore, displacement_estimate
+from alula.fea.common.link_loads import PinLoad
+from alula.geometry.parts.part import Bar, Body, Pin
 
 WIDE, THICK, HOLE = 12.0, 4.0, 3.0
 BODY = Body(

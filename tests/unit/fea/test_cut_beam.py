@@ -6,14 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fea.beam.column_factor import AxialForce, column_factors
-from fea.beam.cut_beam import beam_sections, curving_forces, cut_flexibility, cut_stress, normal_stress
-from fea.beam.deflection import deflection
-from fea.beam.loads import BeamLoads, PointLoad
-from fea.beam.theory import check_beam
-from fea.buckling.holding import columns
-from geometry.bodies.cut_section import CutSection, joined
-from geometry.bodies.section import rectangle
+from alula.fea.beam.column_factor import AxialForce, column_factors
+from alula.fea.beam.cut_beam import beam_sections, curving_forces, cut_flexibility, cut_stress, normal_stress
+from alula.fea.beam.deflection import deflection
+from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.theory import check_beam
+from alula.fea.buckling.holding import columns
+from alula.geometry.bodies.cut_section import CutSection, joined
+from alula.geometry.bodies.section import rectangle
 
 LENGTH = 100.0
 STATIONS = LENGTH * (np.arange(16) + 0.5) / 16.0

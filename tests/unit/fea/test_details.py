@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.details import details, flank_moments, net_section, remarks
-from fea.beam.theory import check_beam
-from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd, rectangle
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.details import details, flank_moments, net_section, remarks
+from alula.fea.beam.theory import check_beam
+from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from alula.geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd, rectangle
 
 BAR = Bar(
     shape="bar",

@@ -5,12 +5,12 @@ from known_solutions import law, tensor
 from skfem import Basis, ElementVector
 from skfem.models.elasticity import linear_elasticity
 
-from fea.common import memory
-from fea.elements import elasticity
-from fea.elements.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants
-from fea.elements.space import displacement_space
-from fea.solid.stress import components
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory
+from alula.fea.elements import elasticity
+from alula.fea.elements.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants
+from alula.fea.elements.space import displacement_space
+from alula.fea.solid.stress import components
+from alula.geometry.base.errors import CannotRunError
 
 E, NU = 2900.0, 0.38
 

@@ -15,35 +15,35 @@ from edited_cases import edited
 from materials import with_material
 from result_paths import compare
 
-from fea.beam.cut_free import beam_loads, link_loads
-from fea.beam.theory import check_beam
-from fea.buckling.buckling import buckling_outcomes
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, Quantity, Verdict
-from fea.elements.space import displacement_space
-from fea.frame.case_statics import solve_case_statics
-from fea.motion import envelope
-from fea.motion import envelope_outcomes as outcomes_over_motion
-from fea.motion.envelope import envelope_case, evaluated_poses
-from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
-from fea.motion.fatigue import closed_history, missing_data, signed_stress
-from fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
-from fea.motion.link_history import link_histories
-from fea.motion.mesh_factors import MeshFactors
-from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.pins import stress_at, stress_of
-from fea.refine.refinement import START, Effort
-from fea.solid.stress import principal, stress_field, von_mises
-from fea.superposition.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
-from fea.superposition.unit_solutions import nodal_stress
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.meshing.mesh import mesh_body
-from loads.case.case_file import read_case
-from loads.records.check_spec import BearingCheck
-from loads.states.case_motion import solve_case_motion
+from alula.fea.beam.cut_free import beam_loads, link_loads
+from alula.fea.beam.theory import check_beam
+from alula.fea.buckling.buckling import buckling_outcomes
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.elements.space import displacement_space
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.motion import envelope
+from alula.fea.motion import envelope_outcomes as outcomes_over_motion
+from alula.fea.motion.envelope import envelope_case, evaluated_poses
+from alula.fea.motion.envelope_outcomes import envelope_outcomes
+from alula.fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
+from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
+from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
+from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.mesh_factors import MeshFactors
+from alula.fea.outcomes.bearing import bearing_outcome
+from alula.fea.outcomes.pins import stress_at, stress_of
+from alula.fea.refine.refinement import START, Effort
+from alula.fea.solid.stress import principal, stress_field, von_mises
+from alula.fea.superposition.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
+from alula.fea.superposition.unit_solutions import nodal_stress
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.meshing.mesh import mesh_body
+from alula.loads.case.case_file import read_case
+from alula.loads.records.check_spec import BearingCheck
+from alula.loads.states.case_motion import solve_case_motion
 
 TOML = """
 schema_version = 1
@@ -522,7 +522,7 @@ def test_what_cannot_be_enveloped_is_refused(path, tmp_path):
 
 
 def test_curves_and_record_tell_the_same(result, tmp_path):
-    from reports.commands.envelope import record, write_curves
+    from alula.reports.commands.envelope import record, write_curves
 
     write_curves(result, tmp_path / "curves.csv")
     rows = list(csv.DictReader((tmp_path / "curves.csv").read_text(encoding="utf-8").splitlines()))
@@ -559,8 +559,8 @@ def test_stress_along_a_link_is_that_of_its_field(result):
 
 
 def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch):
-    from reports.commands.envelope import write_envelope
-    from reports.figures import figures
+    from alula.reports.commands.envelope import write_envelope
+    from alula.reports.figures import figures
 
     monkeypatch.setattr(figures, "plots_of", lambda scenes, points: ({}, ("no renderer",)))
     told = []
@@ -580,7 +580,7 @@ def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch
 
 
 def test_the_page_says_why_a_check_is_open_what_is_not_checked_and_lists_the_worst_link_first(result):
-    from reports.page.motion_pages import envelope_headline, envelope_page, worst_poses
+    from alula.reports.page.motion_pages import envelope_headline, envelope_page, worst_poses
 
     strong = result.links["rocker"]
     weak = {name: replace(one, safety_factor=one.safety_factor.times(0.5)) for name, one in strong.load_cases.items()}
@@ -603,7 +603,7 @@ def test_console_names_link_angle_and_verdict(result):
 
     from rich.console import Console
 
-    from reports.commands.envelope import print_envelope
+    from alula.reports.commands.envelope import print_envelope
 
     stream = StringIO()
     print_envelope(result, Console(file=stream, width=80))
@@ -615,7 +615,7 @@ def test_console_names_link_angle_and_verdict(result):
 
 
 def test_the_figure_is_drawn_over_the_coordinate_where_the_drive_turns_back(result):
-    from reports.figures.envelope_figures import abscissa
+    from alula.reports.figures.envelope_figures import abscissa
 
     angles, label = abscissa(result)
     assert label == "direction of crank (driven) [deg]"

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from fea.motion.critical import critical_nodes
-from fea.motion.fatigue import (
+from alula.fea.motion.critical import critical_nodes
+from alula.fea.motion.fatigue import (
     cycles_to_failure,
     equivalent_peak,
     fatigue_life,
@@ -16,8 +16,8 @@ from fea.motion.fatigue import (
     strength_at,
     turning_points,
 )
-from fea.superposition.peaks import ModeMeasures
-from geometry.materials.material import Fatigue, library
+from alula.fea.superposition.peaks import ModeMeasures
+from alula.geometry.materials.material import Fatigue, library
 
 PVC = library()["pvc-u"]
 RESIN = library()["resin-405nm"]

@@ -6,14 +6,14 @@ from dataclasses import replace
 import eye_link
 import pytest
 
-from fea.beam.calibration import calibrations
-from fea.beam.critical_locations import critical_locations, shoulder_factors
-from fea.check.run import check_case
-from fea.links.fidelity import decide, decided_by_hand, hand_bands
-from fea.refine.refinement import START, Effort
-from geometry.parts.part import HoleRow
-from loads.case.case_file import read_case
-from loads.records.bearing import CONTACT_SHORTFALL
+from alula.fea.beam.calibration import calibrations
+from alula.fea.beam.critical_locations import critical_locations, shoulder_factors
+from alula.fea.check.run import check_case
+from alula.fea.links.fidelity import decide, decided_by_hand, hand_bands
+from alula.fea.refine.refinement import START, Effort
+from alula.geometry.parts.part import HoleRow
+from alula.loads.case.case_file import read_case
+from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 
 def decided(limit):

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.elements.space import displacement_space
-from fea.superposition.unit_loads import TRANSFERS, unit_loads
-from fea.tractions.load_vectors import LoadVectors
-from geometry.meshing.mesh import mesh_body
-from geometry.meshing.mesh_settings import COARSE
-from geometry.parts.part import Bar, Body, Pin, Ring
-from geometry.solids.solid_model import scaled
-from loads.records.bearing import WIDE
+from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from alula.fea.elements.space import displacement_space
+from alula.fea.superposition.unit_loads import TRANSFERS, unit_loads
+from alula.fea.tractions.load_vectors import LoadVectors
+from alula.geometry.meshing.mesh import mesh_body
+from alula.geometry.meshing.mesh_settings import COARSE
+from alula.geometry.parts.part import Bar, Body, Pin, Ring
+from alula.geometry.solids.solid_model import scaled
+from alula.loads.records.bearing import WIDE
 
 L, TORQUE, THRUST = 30.0, 6.0, 4.0
 NO_RING = Ring(diameter=0.0, low=-2.0, high=2.0)

@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame.linear import solve_frame
-from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import rectangle, ring
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import rectangle, ring
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)
@@ -217,18 +217,18 @@ def test_unloaded_frame_rests() -> None:
 
 def test_forces_that_do_not_balance_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """A factor that leaves out a part of the element's answer: the whole frame no longer balances."""
-    import fea.frame.equations
+    import alula.fea.frame.equations
 
-    wrong = fea.frame.equations.natural_deformations(60.0) * (1.0 + 1e-7)
-    monkeypatch.setattr(fea.frame.equations, "natural_deformations", lambda length: wrong)
-    fea.frame.equations._known.cache_clear()
+    wrong = alula.fea.frame.equations.natural_deformations(60.0) * (1.0 + 1e-7)
+    monkeypatch.setattr(alula.fea.frame.equations, "natural_deformations", lambda length: wrong)
+    alula.fea.frame.equations._known.cache_clear()
     with pytest.raises(CannotRunError, match=r"leave .* of the load unbalanced"):
         solve_frame(CANTILEVER)
-    fea.frame.equations._known.cache_clear()
+    alula.fea.frame.equations._known.cache_clear()
 
 
 def test_frames_that_differ_in_their_loads_alone_share_one_factorisation() -> None:
-    from fea.frame.equations import equations_of
+    from alula.fea.frame.equations import equations_of
 
     first = equations_of(CANTILEVER)
     spread = element(0, 1, section=BAR, load_first=np.array([0.1, 0.2, 0.0]))

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fea.frame.linear import solve_frame
-from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
-from fea.nonlinear.corotational import solve_large_displacement, subdivide
-from fea.nonlinear.stability import buckling_factor
-from geometry.base.errors import CannotRunError
-from geometry.parts.part import rectangle, ring
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
+from alula.fea.nonlinear.corotational import solve_large_displacement, subdivide
+from alula.fea.nonlinear.stability import buckling_factor
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.parts.part import rectangle, ring
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.elements.space import displacement_space, upper_half
-from fea.elements.supports import half_supports, rigid_motions
-from fea.solid import solution
-from fea.solid.solution import solve_free, solve_solid
-from fea.solid.stress import stress_field
-from geometry.base.errors import CannotRunError
-from geometry.meshing.mirror import mirrored
-from loads.records.applied import BodyForce, PartMass
-from loads.records.bearing import NARROW
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.fea.elements.space import displacement_space, upper_half
+from alula.fea.elements.supports import half_supports, rigid_motions
+from alula.fea.solid import solution
+from alula.fea.solid.solution import solve_free, solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.mirror import mirrored
+from alula.loads.records.applied import BodyForce, PartMass
+from alula.loads.records.bearing import NARROW
 
 E, NU, RHO, L = 2900.0, 0.38, 1.2e-9, 20.0
 MATERIAL = {"E": E, "nu": NU, "density": RHO, "line": ("bore:A", "bore:B"), "threads": 1, "laws": (NARROW,)}
@@ -46,7 +46,7 @@ def mesh():
 
 @pytest.fixture(scope="module")
 def loads(mesh):
-    from fea.elements.quadrature import volume_quadrature
+    from alula.fea.elements.quadrature import volume_quadrature
 
     volume = volume_quadrature(displacement_space(mesh))
     measured = (volume.measure, volume.centroid)

@@ -12,12 +12,12 @@ import pytest
 from frequency_cases import LEVER, cantilever, lever
 from slotted_cases import piston_entries
 
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.verdict import LINKAGE, Quantity, Verdict
-from fea.sizing.changes import _change
-from fea.vibration import over_motion
-from fea.vibration.frequency_outcomes import (
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.sizing.changes import _change
+from alula.fea.vibration import over_motion
+from alula.fea.vibration.frequency_outcomes import (
     asked_frequencies,
     deciding_load_case,
     frequency_outcomes,
@@ -27,12 +27,12 @@ from fea.vibration.frequency_outcomes import (
     lowest_sentence,
     most_moved,
 )
-from fea.vibration.harmonics import meetings
-from fea.vibration.over_motion import _least_between, lowest_pose
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from reports.words.changes import change_sentences
-from reports.words.wording import headline
+from alula.fea.vibration.harmonics import meetings
+from alula.fea.vibration.over_motion import _least_between, lowest_pose
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.reports.words.changes import change_sentences
+from alula.reports.words.wording import headline
 
 
 @cache
@@ -260,7 +260,7 @@ def test_a_solid_decides_on_a_link_that_its_beams_leave_open(monkeypatch):
         modes = (replace(own.modes[0], frequency=Band(value=closed, low=0.99 * closed, high=1.01 * closed)),)
         return replace(own, model="solid", modes=modes)
 
-    known, room = found(), "fea.vibration.frequency_outcomes"
+    known, room = found(), "alula.fea.vibration.frequency_outcomes"
     monkeypatch.setattr(f"{room}.link_modes", by_solid)
     monkeypatch.setattr(f"{room}.case_frequencies", lambda case, **options: replace(known, case=case))
     assert asked_frequencies(lever(), solids=True) is not None

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fea.beam.holed_tube import holed_tube_stress
-from geometry.bodies.section import ring
+from alula.fea.beam.holed_tube import holed_tube_stress
+from alula.geometry.bodies.section import ring
 
 
 def on_grid(outer, inner, diameter, offset, forces, n=2001):

@@ -7,22 +7,22 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR, edited
 
-from fea.beam.cut_free import beam_loads
-from fea.beam.theory import internal_forces
-from fea.check.run import check_case
-from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
-from fea.common.verdict import LINKAGE, Verdict
-from fea.frame.build import build_frame
-from fea.frame.case_statics import solve_case_statics
-from fea.frame.joint_forces import joint_forces
-from fea.nonlinear.corotational import solve_large_displacement
-from fea.nonlinear.deformed_links import balanced, bent, in_slots
-from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, examine, span
-from fea.nonlinear.softened import PATH_SUBDIVISIONS
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.parts.part import Pin
-from loads.case.case_file import read_case
-from loads.states.actions import acting_loads
+from alula.fea.beam.cut_free import beam_loads
+from alula.fea.beam.theory import internal_forces
+from alula.fea.check.run import check_case
+from alula.fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
+from alula.fea.common.verdict import LINKAGE, Verdict
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.frame.joint_forces import joint_forces
+from alula.fea.nonlinear.corotational import solve_large_displacement
+from alula.fea.nonlinear.deformed_links import balanced, bent, in_slots
+from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, examine, span
+from alula.fea.nonlinear.softened import PATH_SUBDIVISIONS
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.parts.part import Pin
+from alula.loads.case.case_file import read_case
+from alula.loads.states.actions import acting_loads
 
 HELD_AT_GF = ('drive.link="GF"', 'drive.joint="G"')
 
@@ -67,7 +67,7 @@ def test_the_limits_are_five_percent_of_the_span_and_ten_times_the_load(monkeypa
     """Of the largest load that is stated; the least one has no part in it."""
     assert (LARGE, LEAST_FACTOR) == (0.05, 10.0)
     for name, value in limit.items():
-        monkeypatch.setattr(f"fea.nonlinear.large_displacement.{name}", value)
+        monkeypatch.setattr(f"alula.fea.nonlinear.large_displacement.{name}", value)
     stated = (*HELD_AT_GF, f"load_cases.weight.scatter=[0.6,{largest}]")
     one, _ = examined(under([0, -0.01], *stated))
     for share, state in ((0.99, "small"), (1.01, "deformed")):
@@ -135,7 +135,7 @@ def test_an_elastic_answer_beyond_the_strength_says_that_it_is_void():
 
 def test_the_drive_torque_keeps_its_axis_where_the_driven_link_tilts(monkeypatch):
     """Pushed out of the plane the driven link leaves the axis of the torque: taken about its own z, 5 % is missing."""
-    monkeypatch.setattr("fea.nonlinear.deformed_links.LARGEST_SHIFT", 0.01)
+    monkeypatch.setattr("alula.fea.nonlinear.deformed_links.LARGEST_SHIFT", 0.01)
     case = read_case("owl-wing-braking")
     statics = solve_case_statics(case, "owl-wing-braking")
     found = examine(case, "complete", statics.forces["complete"], statics.loads["complete"])

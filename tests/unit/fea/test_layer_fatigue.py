@@ -6,14 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fea.common.band import Band
-from fea.common.verdict import Verdict
-from fea.motion.envelope_outcomes import layer_fatigue_outcomes
-from fea.motion.envelope_result import LayerEnvelope, LayerFatigue
-from fea.motion.layer_envelope import _lacking
-from fea.motion.layer_fatigue import LayerCycle, critical_layer, smallest_circle
-from fea.solid.layers import Layers
-from geometry.materials.material import Fatigue, library
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Verdict
+from alula.fea.motion.envelope_outcomes import layer_fatigue_outcomes
+from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue
+from alula.fea.motion.layer_envelope import _lacking
+from alula.fea.motion.layer_fatigue import LayerCycle, critical_layer, smallest_circle
+from alula.fea.solid.layers import Layers
+from alula.geometry.materials.material import Fatigue, library
 
 RNG = np.random.default_rng(11)
 TURN = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)

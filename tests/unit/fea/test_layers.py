@@ -8,20 +8,20 @@ import pytest
 from mesh_states import state
 from scipy.spatial.transform import Rotation
 
-from fea.common.band import Band
-from fea.common.scatter import layer_scatter
-from fea.common.verdict import Verdict
-from fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
-from fea.motion.envelope_result import LayerEnvelope
-from fea.outcomes.layer_stress import LayerStress
-from fea.outcomes.layers import layer_outcomes
-from fea.outcomes.limits import layer_limit, layer_limits, layers_of
-from fea.solid.layers import Layers, best_directions, build_directions, on_plane
-from fea.solid.stress import von_mises
-from fea.superposition.peaks import ModeMeasures, largest_stress
-from geometry.base.errors import CaseError
-from geometry.materials.material import library
-from loads.case.case_file import read_case
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import layer_scatter
+from alula.fea.common.verdict import Verdict
+from alula.fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
+from alula.fea.motion.envelope_result import LayerEnvelope
+from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.layers import layer_outcomes
+from alula.fea.outcomes.limits import layer_limit, layer_limits, layers_of
+from alula.fea.solid.layers import Layers, best_directions, build_directions, on_plane
+from alula.fea.solid.stress import von_mises
+from alula.fea.superposition.peaks import ModeMeasures, largest_stress
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.material import library
+from alula.loads.case.case_file import read_case
 
 RNG = np.random.default_rng(7)
 PULL = np.array([10.0, 0.0, 0.0, 0.0, 0.0, 0.0])

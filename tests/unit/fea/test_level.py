@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.refine import level
-from fea.refine.level import level_of
-from fea.refine.link_series import Eye, precision
-from fea.solid.layers import Layers
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.meshing.mirror import mirrored
+from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from alula.fea.refine import level
+from alula.fea.refine.level import level_of
+from alula.fea.refine.link_series import Eye, precision
+from alula.fea.solid.layers import Layers
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.meshing.mirror import mirrored
 
 MATERIAL = {"E": 2900.0, "nu": 0.38, "density": 1.2e-9, "line": ("bore:A", "bore:B"), "threads": 1}
 

@@ -9,17 +9,17 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from fea.common.verdict import Verdict
-from fea.sizing.candidates import Objective
-from fea.sizing.lightest import ENUMERATED, lightest, none_passes
-from fea.sizing.search import Search
-from fea.study.engine import Engine
-from fea.study.numbers import VariantNumber, VariantResult
-from fea.study.store import Store
-from geometry.base.errors import CaseError
-from loads.plans.axis import axis
-from loads.plans.plan import plan_of
-from reports.commands.lightest import print_lightest, record_of, status_of
+from alula.fea.common.verdict import Verdict
+from alula.fea.sizing.candidates import Objective
+from alula.fea.sizing.lightest import ENUMERATED, lightest, none_passes
+from alula.fea.sizing.search import Search
+from alula.fea.study.engine import Engine
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.fea.study.store import Store
+from alula.geometry.base.errors import CaseError
+from alula.loads.plans.axis import axis
+from alula.loads.plans.plan import plan_of
+from alula.reports.commands.lightest import print_lightest, record_of, status_of
 
 B, H = "parts.tube.inner_diameter", "parts.tube.outer_diameter"
 

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR
 
-from fea.frame.build import build_frame
-from fea.frame.condensed import LinkFlexibility
-from fea.frame.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
-from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import out_of_plane
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, validate
-from loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad, shifted
-from loads.states.actions import acting_loads
-from loads.statics.statics import Drive, Reactions, solve_statics
+from alula.fea.frame.build import build_frame
+from alula.fea.frame.condensed import LinkFlexibility
+from alula.fea.frame.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
+from alula.fea.frame.linear import solve_frame
+from alula.fea.frame.linkage_frame import out_of_plane
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad, shifted
+from alula.loads.states.actions import acting_loads
+from alula.loads.statics.statics import Drive, Reactions, solve_statics
 
 WING = read_case("owl-wing-static", [PLANAR])
 AE, GF = Drive(link="AE", joint="A"), Drive(link="GF", joint="G")

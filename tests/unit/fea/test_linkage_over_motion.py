@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fea.common.band import Band
-from fea.common.scatter import Scatter
-from fea.motion import linkage_history
-from fea.nonlinear.stability import SNAP
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
+from alula.fea.motion import linkage_history
+from alula.fea.nonlinear.stability import SNAP
 
 
 def test_value_and_ends_of_a_limit_load_are_each_the_least_of_all_poses_and_of_a_displacement_the_largest():

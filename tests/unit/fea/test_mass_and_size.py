@@ -11,23 +11,23 @@ import pytest
 from bars_in_layers import four_bars, parallel_bars
 from imported_case import imported_case
 
-from fea.check.run import check_case
-from fea.common.verdict import SIZES, Quantity, Verdict
-from fea.motion.envelope_outcomes import FOLLOWED
-from fea.outcomes.unchecked import unchecked
-from fea.study.numbers import of_check, of_motion
-from fea.whole.outcomes import unloaded_outcomes, whole_numbers
-from fea.whole.size import size_band, size_limits
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import read_case, validate
-from loads.records.check_spec import MassCheck, SizeCheck
-from loads.states.case_motion import solve_case_motion
-from loads.states.extent import Extent
-from loads.states.weighed import Weighed
-from reports.page.html import render
-from reports.tables.data import change_records
-from reports.tables.record import result_record
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import SIZES, Quantity, Verdict
+from alula.fea.motion.envelope_outcomes import FOLLOWED
+from alula.fea.outcomes.unchecked import unchecked
+from alula.fea.study.numbers import of_check, of_motion
+from alula.fea.whole.outcomes import unloaded_outcomes, whole_numbers
+from alula.fea.whole.size import size_band, size_limits
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.records.check_spec import MassCheck, SizeCheck
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.extent import Extent
+from alula.loads.states.weighed import Weighed
+from alula.reports.page.html import render
+from alula.reports.tables.data import change_records
+from alula.reports.tables.record import result_record
 
 PLA, STEEL = 1.24e-3, 7.8e-3
 """Densities of the cards that the bars and their pins name [g/mm³]."""

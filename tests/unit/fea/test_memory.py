@@ -1,7 +1,7 @@
 import pytest
 
-from fea.common import memory
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory
+from alula.geometry.base.errors import CannotRunError
 
 
 @pytest.fixture

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.common.source import SourceKind
-from fea.common.verdict import Verdict
-from fea.whole import motor
-from fea.whole.motor import demand, largest_factor, line_share, motor_outcomes
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case
-from loads.states.case_motion import solve_case_motion
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import Verdict
+from alula.fea.whole import motor
+from alula.fea.whole.motor import demand, largest_factor, line_share, motor_outcomes
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case
+from alula.loads.states.case_motion import solve_case_motion
 
 
 def test_demand_of_a_sine() -> None:

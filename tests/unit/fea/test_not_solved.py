@@ -4,9 +4,9 @@ import tomllib
 
 import pytest
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.loads.case.case_file import validate
 
 LEVER = """
 schema_version = 1
@@ -38,7 +38,7 @@ def asked(monkeypatch):
             raise AskedError({loads.name for task in tasks.values() for loads in task.loads})
         return {}
 
-    monkeypatch.setattr("fea.links.fidelity.refine_links", refuse)
+    monkeypatch.setattr("alula.fea.links.fidelity.refine_links", refuse)
 
     def solids(fidelity, **forces):
         stated = [FORCE.format(name=name, force=force) for name, force in forces.items()]

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.outcomes.pins import stress_at, twist_of, twisted
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.states.case_motion import solve_case_motion
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.fea.motion.envelope_outcomes import envelope_outcomes
+from alula.fea.outcomes.pins import stress_at, twist_of, twisted
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import solve_case_motion
 
 LENGTH, DIAMETER = 100.0, 2.0
 BAR = {"shape": "bar", "material": "aluminium-6061-t6", "width": "10 mm", "thickness": "5 mm", "fillet_radius": "2 mm"}

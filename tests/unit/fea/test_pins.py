@@ -9,16 +9,16 @@ import pytest
 from edited_cases import PLANAR, edited
 from materials import SOURCED
 
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.verdict import Verdict
-from fea.outcomes.pins import PinStress, pin_stress, shared_stress, stress_at
-from geometry.base.errors import CaseError
-from geometry.bodies.features import Ring
-from geometry.materials.material import library
-from loads.case.case_file import read_case
-from loads.case.forks import eyes
-from loads.statics.joint_reaction import JointReaction
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Verdict
+from alula.fea.outcomes.pins import PinStress, pin_stress, shared_stress, stress_at
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import Ring
+from alula.geometry.materials.material import library
+from alula.loads.case.case_file import read_case
+from alula.loads.case.forks import eyes
+from alula.loads.statics.joint_reaction import JointReaction
 
 WING = "owl-wing-static"
 
@@ -248,9 +248,9 @@ def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_sh
     def ways(size):
         return SimpleNamespace(reactions=SimpleNamespace(joints={"B": SimpleNamespace(wrench=size)}))
 
-    monkeypatch.setattr("fea.outcomes.pins.stress_at", at)
+    monkeypatch.setattr("alula.fea.outcomes.pins.stress_at", at)
     monkeypatch.setattr(
-        "fea.outcomes.pins._stresses_between", lambda case, joint, every: [at(case, joint, one) for one in every]
+        "alula.fea.outcomes.pins._stresses_between", lambda case, joint, every: [at(case, joint, one) for one in every]
     )
     case = SimpleNamespace(linkage=SimpleNamespace(rise=lambda joint: 2.0))
     forces = SimpleNamespace(reactions=ways(2.0).reactions, sharings=[ways(2.0 * size) for size in sizes])

@@ -2,8 +2,8 @@
 
 import pytest
 
-from geometry.materials.material import Material, library
-from geometry.materials.plausible import class_of, untold, unusual
+from alula.geometry.materials.material import Material, library
+from alula.geometry.materials.plausible import class_of, untold, unusual
 
 # Published typical values, each from a maker's or standard's sheet: kg/m3, GPa, MPa yield, MPa ultimate.
 USUAL = {

@@ -8,13 +8,13 @@ import pytest
 from edited_cases import PLANAR, edited
 from rocker_case import TOML
 
-from fea.check.run import check_case
-from fea.common.source import SourceKind
-from fea.common.verdict import Verdict
-from fea.doubts import play_doubt as doubt_of_play
-from fea.outcomes.result import LoadCaseResult
-from loads.case.case_file import validate
-from reports.tables.frames import play_line, play_record
+from alula.fea.check.run import check_case
+from alula.fea.common.source import SourceKind
+from alula.fea.common.verdict import Verdict
+from alula.fea.doubts import play_doubt as doubt_of_play
+from alula.fea.outcomes.result import LoadCaseResult
+from alula.loads.case.case_file import validate
+from alula.reports.tables.frames import play_line, play_record
 
 OWL = "owl-wing-closed"
 

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.refine import refinement
-from fea.refine.convergence import grid_convergence
-from fea.refine.link_series import CasePrecision
-from fea.refine.link_task import LinkTask
-from fea.refine.refinement import START, Effort, _Link, refine_links
-from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, series_ratio
-from fea.solid.layers import Layers
-from geometry.base.errors import CannotRunError
-from geometry.meshing.mesh import ReentrantEdge
-from geometry.meshing.mirror import mirrored
-from geometry.parts.part import Bar, Body, Pin
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.refine import refinement
+from alula.fea.refine.convergence import grid_convergence
+from alula.fea.refine.link_series import CasePrecision
+from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.refinement import START, Effort, _Link, refine_links
+from alula.fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, series_ratio
+from alula.fea.solid.layers import Layers
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.mesh import ReentrantEdge
+from alula.geometry.meshing.mirror import mirrored
+from alula.geometry.parts.part import Bar, Body, Pin
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
 

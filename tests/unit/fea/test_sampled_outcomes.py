@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from arm_case import ARM, BAR
 
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.motion.buckling_history import axial_compression
-from fea.tolerance.states import Sampler
-from fea.tolerance.told import SolvedCheck, Told
-from geometry.materials.material import TOLD
-from loads.case.case_file import validate
-from loads.case.toleranced import toleranced
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.motion.buckling_history import axial_compression
+from alula.fea.tolerance.states import Sampler
+from alula.fea.tolerance.told import SolvedCheck, Told
+from alula.geometry.materials.material import TOLD
+from alula.loads.case.case_file import validate
+from alula.loads.case.toleranced import toleranced
 
 BAND = Band(value=5.0, low=4.0, high=7.0)
 

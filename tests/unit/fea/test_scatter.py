@@ -12,24 +12,24 @@ from edited_cases import edited
 from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
-from fea.buckling.linkage import linkage_outcomes
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter, strength_scatter
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import Verdict
-from fea.doubts import load_growth
-from fea.links.fidelity import decided_by_hand, hand_bands
-from fea.motion.envelope import envelope_case
-from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.nonlinear import large_displacement
-from fea.refine.refinement import Effort
-from geometry.base.errors import CaseError
-from geometry.materials.material import library
-from loads.states.case_motion import solve_case_motion
-from loads.text.shares import parse_scatter
+from alula.fea.buckling.linkage import linkage_outcomes
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter, compliance_scatter, strength_scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import Verdict
+from alula.fea.doubts import load_growth
+from alula.fea.links.fidelity import decided_by_hand, hand_bands
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.motion.envelope_outcomes import envelope_outcomes
+from alula.fea.nonlinear import large_displacement
+from alula.fea.refine.refinement import Effort
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.material import library
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.text.shares import parse_scatter
 
-STARTER = files("loads") / "cases" / "four-bar.toml"
+STARTER = files("alula.loads") / "cases" / "four-bar.toml"
 PLA = library()["pla-fdm-xy"]
 FIXED = [  # a material without any range, and without layers
     "materials.own.title=PVC", f'materials.own.density="{PLA.density * 1e12:.9g} kg/m^3"',

@@ -5,16 +5,16 @@ import pytest
 import solid_meshes
 from scipy.spatial.transform import Rotation
 
-from fea.calculix import program as calculix
-from fea.calculix import second_opinion
-from fea.calculix.program import read_dat, read_frd_stress
-from fea.calculix.second_opinion import ask, write_model
-from fea.common.link_loads import LinkLoads, PinLoad
-from fea.outcomes.opinion import Answer, SecondOpinion
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field, von_mises
-from geometry.base.errors import CannotRunError
-from loads.records.bearing import WIDE
+from alula.fea.calculix import program as calculix
+from alula.fea.calculix import second_opinion
+from alula.fea.calculix.program import read_dat, read_frd_stress
+from alula.fea.calculix.second_opinion import ask, write_model
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.outcomes.opinion import Answer, SecondOpinion
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field, von_mises
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.bearing import WIDE
 
 E, NU = 2900.0, 0.38
 needs_ccx = pytest.mark.skipif(calculix.installed() is None, reason="CalculiX (ccx) is not on PATH")

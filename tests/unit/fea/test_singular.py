@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from fea.refine.convergence import williams_exponent
-from fea.refine.singular import NEARLY, edge_distance, element_exponents, loaded_edge, sharp_peak
-from geometry.meshing.mesh import ReentrantEdge
+from alula.fea.refine.convergence import williams_exponent
+from alula.fea.refine.singular import NEARLY, edge_distance, element_exponents, loaded_edge, sharp_peak
+from alula.geometry.meshing.mesh import ReentrantEdge
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
 OTHER = ReentrantEdge(points=np.array([[5.0, 0.0, -1.0], [5.0, 0.0, 1.0]]), angle=1.2 * math.pi)

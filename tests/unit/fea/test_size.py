@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from fea.common.verdict import Verdict
-from fea.sizing.least import least_size
-from fea.sizing.search import Search
-from fea.study.engine import Engine
-from fea.study.margin import nearest
-from fea.study.numbers import VariantNumber, VariantResult
-from fea.study.store import Store
-from geometry.base.errors import CaseError
-from loads.plans.axis import axis
-from loads.plans.plan import plan_of
+from alula.fea.common.verdict import Verdict
+from alula.fea.sizing.least import least_size
+from alula.fea.sizing.search import Search
+from alula.fea.study.engine import Engine
+from alula.fea.study.margin import nearest
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.fea.study.store import Store
+from alula.geometry.base.errors import CaseError
+from alula.loads.plans.axis import axis
+from alula.loads.plans.plan import plan_of
 
 PATH = "parts.tube.outer_diameter"
 

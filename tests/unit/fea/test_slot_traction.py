@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.common.link_loads import PinLoad
-from fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
-from fea.elements.space import displacement_space
-from fea.superposition.slot_units import lagrange_weights, places_for
-from fea.tractions.slot_traction import DEGREE, slot_traction
-from geometry.base.errors import CannotRunError
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.parts.part import Bar, Body, Pin
-from loads.records.bearing import NARROW, WIDE, PressureLaw
+from alula.fea.common.link_loads import PinLoad
+from alula.fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.superposition.slot_units import lagrange_weights, places_for
+from alula.fea.tractions.slot_traction import DEGREE, slot_traction
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.parts.part import Bar, Body, Pin
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
 
 SLOT = Pin(name="S", x=6.0, y=0.0, diameter=2.1, slot=4.0, clearance=0.1)
 BODY = Body(

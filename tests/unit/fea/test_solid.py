@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import LineReference
-from fea.refine.error_estimate import energy_density
-from fea.solid import solution as solid
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from geometry.base.errors import CannotRunError
-from loads.records.applied import BodyForce, LineLoad, PartMass
-from loads.records.bearing import WIDE
+from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import LineReference
+from alula.fea.refine.error_estimate import energy_density
+from alula.fea.solid import solution as solid
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass
+from alula.loads.records.bearing import WIDE
 
 E, NU, RHO = 2900.0, 0.38, 1.2e-9
 L = 20.0

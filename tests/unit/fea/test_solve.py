@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common import mkl
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.space import displacement_space
-from fea.elements.supports import isostatic_supports
-from fea.solvers.direct import PardisoFactor
-from fea.solvers.solve import available_methods, factorise
-from fea.solvers.solved import ENERGY_TARGET, refined, sampled_error
-from geometry.base.errors import CannotRunError
+from alula.fea.common import mkl
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import isostatic_supports
+from alula.fea.solvers.direct import PardisoFactor
+from alula.fea.solvers.solve import available_methods, factorise
+from alula.fea.solvers.solved import ENERGY_TARGET, refined, sampled_error
+from alula.geometry.base.errors import CannotRunError
 
 METHODS = available_methods()
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common import memory, mkl
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.space import displacement_space
-from fea.elements.supports import isostatic_supports
-from fea.solvers import solve
-from fea.solvers.solve import available_methods, direct_memory, factorise, two_level_memory
-from fea.solvers.two_level import LinearLevel
-from geometry.base.errors import CannotRunError
+from alula.fea.common import memory, mkl
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import isostatic_supports
+from alula.fea.solvers import solve
+from alula.fea.solvers.solve import available_methods, direct_memory, factorise, two_level_memory
+from alula.fea.solvers.two_level import LinearLevel
+from alula.geometry.base.errors import CannotRunError
 
 
 @pytest.fixture(scope="module")

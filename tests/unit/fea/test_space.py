@@ -7,9 +7,9 @@ import pytest
 import solid_meshes
 from skfem import Basis, ElementVector
 
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import displacement_space
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.geometry.base.errors import CannotRunError
 
 
 @pytest.mark.parametrize(("order", "curved"), [(1, False), (2, False), (2, True)])

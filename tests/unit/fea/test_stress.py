@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elements.space import displacement_space
-from fea.refine.error_estimate import energy_density
-from fea.solid.stress import extreme_principal, principal, stress_field, von_mises
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.space import displacement_space
+from alula.fea.refine.error_estimate import energy_density
+from alula.fea.solid.stress import extreme_principal, principal, stress_field, von_mises
+from alula.geometry.base.errors import CannotRunError
 
 E, NU = 2900.0, 0.38
 

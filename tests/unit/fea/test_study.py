@@ -11,15 +11,15 @@ import pytest
 import solved
 from edited_cases import PLANAR
 
-from fea.common.verdict import Verdict
-from fea.study.engine import CrashError, Engine, local_engine
-from fea.study.evaluate import Task, _folder, evaluate
-from fea.study.numbers import VariantNumber, VariantResult
-from fea.study.store import ATTEMPTS, NAME, VERSION, Store
-from fea.study.study import Study
-from geometry.base.errors import CannotRunError, CaseError
-from loads.plans.plan import plan_of
-from loads.plans.variants import Variants
+from alula.fea.common.verdict import Verdict
+from alula.fea.study.engine import CrashError, Engine, local_engine
+from alula.fea.study.evaluate import Task, _folder, evaluate
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.fea.study.store import ATTEMPTS, NAME, VERSION, Store
+from alula.fea.study.study import Study
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.plans.plan import plan_of
+from alula.loads.plans.variants import Variants
 
 CASE = "owl-wing-static"
 DIAMETER = "parts.tube.outer_diameter"
@@ -238,12 +238,12 @@ def test_workers_compute_what_a_check_computes(tmp_path):
 def test_a_file_of_an_older_version_is_brought_up_to_date_or_stays_as_it_is(tmp_path, monkeypatch):
     """Steps from version to version, all or none of them in one go; results stand, and nothing is computed again."""
     run(tmp_path, Desk(passed))
-    monkeypatch.setattr("fea.study.store.VERSION", VERSION + 2)
+    monkeypatch.setattr("alula.fea.study.store.VERSION", VERSION + 2)
     added = {
         VERSION: "ALTER TABLE results ADD COLUMN first TEXT",
         VERSION + 1: "ALTER TABLE nothing ADD COLUMN second TEXT",
     }
-    monkeypatch.setattr("fea.study.store._UPGRADES", added)
+    monkeypatch.setattr("alula.fea.study.store._UPGRADES", added)
     with pytest.raises(CannotRunError, match="nothing"):
         run(tmp_path, Desk(passed))
     added[VERSION + 1] = "ALTER TABLE results ADD COLUMN second TEXT"

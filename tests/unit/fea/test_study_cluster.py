@@ -15,15 +15,15 @@ import programs
 import pytest
 import studies
 
-from fea.study import cluster as on_cluster
-from fea.study.cluster import _require_fit, cluster_engine
-from fea.study.compute import compute_study
-from fea.study.evaluate import versions
-from fea.study.store import Store
-from fea.study.study import Study
-from geometry.base.errors import CannotRunError, CaseError
-from loads.plans.plan import plan_of
-from loads.plans.variants import Variants
+from alula.fea.study import cluster as on_cluster
+from alula.fea.study.cluster import _require_fit, cluster_engine
+from alula.fea.study.compute import compute_study
+from alula.fea.study.evaluate import versions
+from alula.fea.study.store import Store
+from alula.fea.study.study import Study
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.plans.plan import plan_of
+from alula.loads.plans.variants import Variants
 
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
 

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elements.space import displacement_space
-from fea.elements.supports import checked_supports, isostatic_supports, rigid_motions
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import checked_supports, isostatic_supports, rigid_motions
+from alula.geometry.base.errors import CannotRunError
 
 
 @pytest.mark.parametrize("angles", [(0, 0), (30, 10), (45, 45), (90, 0), (10, 80)])

@@ -4,12 +4,20 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elements.space import displacement_space
-from fea.refine.refinement import START
-from fea.refine.target_sizes import GROWTH, MOST_RATIO, SERIES_RATIO, LocalGoal, element_sizes, next_sizes, reduction
-from geometry.meshing.mesh import mesh_body
-from geometry.meshing.mirror import mirrored
-from geometry.parts.part import Bar, Body, Pin
+from alula.fea.elements.space import displacement_space
+from alula.fea.refine.refinement import START
+from alula.fea.refine.target_sizes import (
+    GROWTH,
+    MOST_RATIO,
+    SERIES_RATIO,
+    LocalGoal,
+    element_sizes,
+    next_sizes,
+    reduction,
+)
+from alula.geometry.meshing.mesh import mesh_body
+from alula.geometry.meshing.mirror import mirrored
+from alula.geometry.parts.part import Bar, Body, Pin
 
 
 @pytest.fixture(scope="module")

@@ -11,12 +11,12 @@ import pytest
 from threadpoolctl import threadpool_info
 from typer.testing import CliRunner
 
-from fea.check.run import check_case
-from fea.common.threads import VARIABLES, bounded, bounded_run
-from geometry.base import child
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case
-from reports.commands.cli import app
+from alula.fea.check.run import check_case
+from alula.fea.common.threads import VARIABLES, bounded, bounded_run
+from alula.geometry.base import child
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case
+from alula.reports.commands.cli import app
 
 
 def threads_of_libraries() -> set[int]:
@@ -72,10 +72,10 @@ def test_a_whole_run_is_bounded_by_its_keyword_or_default(options, seen):
 @pytest.mark.parametrize(
     ("stage", "arguments"),
     [
-        ("fea.check.run.solve_case_statics", ("check", "--threads", "1")),
-        ("fea.motion.envelope.rubbed_motion", ("envelope", "--threads", "1")),
-        ("fea.whole.rubbed_motion.rubbed_motion", ("motion", "--threads", "1")),
-        ("fea.claims.sources.check_claims", ("claims", "--threads", "1")),
+        ("alula.fea.check.run.solve_case_statics", ("check", "--threads", "1")),
+        ("alula.fea.motion.envelope.rubbed_motion", ("envelope", "--threads", "1")),
+        ("alula.fea.whole.rubbed_motion.rubbed_motion", ("motion", "--threads", "1")),
+        ("alula.fea.claims.sources.check_claims", ("claims", "--threads", "1")),
     ],
 )
 def test_commands_are_bounded_as_a_whole(monkeypatch, stage, arguments):
@@ -95,7 +95,9 @@ def test_commands_are_bounded_as_a_whole(monkeypatch, stage, arguments):
 
 def test_a_check_is_bounded_without_the_command(monkeypatch):
     seen = []
-    monkeypatch.setattr("fea.check.run.solve_case_statics", lambda *_: seen.append(threads_of_libraries()) or 1 / 0)
+    monkeypatch.setattr(
+        "alula.fea.check.run.solve_case_statics", lambda *_: seen.append(threads_of_libraries()) or 1 / 0
+    )
     with pytest.raises(ZeroDivisionError):
         check_case(read_case("owl-wing-static"), threads=1)
     assert seen == [{1}]

@@ -12,28 +12,28 @@ from scipy.stats import beta
 from sprung_cases import FOUR_BAR, HANG, case_of
 from sprung_cases import LEVER as LEVER_LET_GO
 
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.refine.refinement import START, Effort
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.tolerance.analysis import _drawn, tolerance_case
+from alula.fea.tolerance.link_response import link_response
+from alula.fea.tolerance.numbers import covered
+from alula.fea.tolerance.result import Probability
+from alula.fea.tolerance.states import Sampler
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.continuation import DeadPointError, follow
+from alula.geometry.linkage.driven import DrivenClosure
+from alula.geometry.linkage.sampled import assemble_samples
+from alula.geometry.materials.material import TOLD
+from alula.geometry.meshing.mesh import mesh_body
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.case.toleranced import toleranced
 from benchmarks.tolerances import direct_case
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.frame.case_statics import solve_case_statics
-from fea.refine.refinement import START, Effort
-from fea.solid.solution import solve_solid
-from fea.solid.stress import stress_field
-from fea.tolerance.analysis import _drawn, tolerance_case
-from fea.tolerance.link_response import link_response
-from fea.tolerance.numbers import covered
-from fea.tolerance.result import Probability
-from fea.tolerance.states import Sampler
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.continuation import DeadPointError, follow
-from geometry.linkage.driven import DrivenClosure
-from geometry.linkage.sampled import assemble_samples
-from geometry.materials.material import TOLD
-from geometry.meshing.mesh import mesh_body
-from loads.case.case_file import read_case, validate
-from loads.case.toleranced import toleranced
 
 LEVER = {
     "schema_version": 1,
@@ -218,7 +218,7 @@ def test_no_sample_surely_passes_what_the_nominal_check_left_open(monkeypatch):
         checks = tuple(one.left_open("why") if one.name == "strength" else one for one in own.checks)
         return replace(found, load_cases={"pull": replace(own, checks=checks)})
 
-    monkeypatch.setattr("fea.tolerance.analysis.check_case", left_open)
+    monkeypatch.setattr("alula.fea.tolerance.analysis.check_case", left_open)
     case = lever(
         tolerances={"load_cases.pull.forces.0": "10 %"},
         checks={

@@ -5,19 +5,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.refine.refinement import Effort
+from alula.fea.tolerance.analysis import tolerance_case
+from alula.fea.tolerance.numbers import covered
+from alula.fea.tolerance.sizes import SizeChange, resized, size_ends
+from alula.fea.tolerance.states import Sampler
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.loads.case.case_file import read_case
+from alula.loads.case.toleranced import toleranced
+from alula.loads.states.masses import part_masses
 from benchmarks.tolerances import direct_case
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.refine.refinement import Effort
-from fea.tolerance.analysis import tolerance_case
-from fea.tolerance.numbers import covered
-from fea.tolerance.sizes import SizeChange, resized, size_ends
-from fea.tolerance.states import Sampler
-from geometry.base.errors import AlulaError, CaseError
-from loads.case.case_file import read_case
-from loads.case.toleranced import toleranced
-from loads.states.masses import part_masses
 
 TEXT = """
 schema_version = 1

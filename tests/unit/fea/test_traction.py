@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import PinLoad
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import rigid_motions
-from fea.tractions.traction import (
+from alula.fea.common.link_loads import PinLoad
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.tractions.traction import (
     OPENING,
     body_density,
     couple_traction,
@@ -19,11 +19,11 @@ from fea.tractions.traction import (
     thrust_traction,
     wrench_density,
 )
-from geometry.base.errors import CannotRunError
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.parts.part import Body, Pin, Tube
-from loads.records.applied import BodyForce, LineLoad, PartMass
-from loads.records.bearing import NARROW, WIDE
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.parts.part import Body, Pin, Tube
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass
+from alula.loads.records.bearing import NARROW, WIDE
 
 CENTRE = np.array([20.0, 0.0, 0.0])
 

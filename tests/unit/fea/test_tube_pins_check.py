@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from slender_tube import text
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.loads.case.case_file import validate
 
 PULL, PIN, OUTER, INNER = 120.0, 2.0, 5.0, 2.5
 

@@ -6,15 +6,15 @@ import pytest
 import solid_meshes
 from scipy.sparse import csr_array
 
-from fea.elements.elasticity import assemble_stiffness
-from fea.elements.space import EDGES, displacement_space
-from fea.elements.supports import isostatic_supports, rigid_motions
-from fea.solvers import cycle, solve, two_level
-from fea.solvers.cycle import SmoothedAggregation
-from fea.solvers.direct import DirectFactor
-from fea.solvers.solve import factorise
-from fea.solvers.two_level import LinearLevel, linear_level
-from geometry.base.errors import CannotRunError
+from alula.fea.elements.elasticity import assemble_stiffness
+from alula.fea.elements.space import EDGES, displacement_space
+from alula.fea.elements.supports import isostatic_supports, rigid_motions
+from alula.fea.solvers import cycle, solve, two_level
+from alula.fea.solvers.cycle import SmoothedAggregation
+from alula.fea.solvers.direct import DirectFactor
+from alula.fea.solvers.solve import factorise
+from alula.fea.solvers.two_level import LinearLevel, linear_level
+from alula.geometry.base.errors import CannotRunError
 
 E = 2900.0
 
@@ -272,7 +272,7 @@ def test_few_flat_elements_cost_few_iterations(aggregated_from, monkeypatch):
 
 
 def test_works_without_mkl(monkeypatch):
-    from fea.common import mkl
+    from alula.fea.common import mkl
 
     K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)), columns=2)
     expected = _iterated(K, level, rhs)

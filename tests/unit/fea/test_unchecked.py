@@ -8,16 +8,16 @@ import pytest
 from frequency_cases import lever
 from materials import with_material
 
-from fea.buckling.wall import wall_stress
-from fea.check.run import check_case
-from fea.outcomes.unchecked import caveats, unchecked
-from fea.vibration.harmonics import nearest_harmonic
-from fea.vibration.over_motion import pose_frequencies
-from loads.case.case_file import validate
-from loads.records.check_spec import SustainedCheck
-from loads.text.caveat import Topic
-from reports.tables.record import result_record
-from reports.words.wording import headline
+from alula.fea.buckling.wall import wall_stress
+from alula.fea.check.run import check_case
+from alula.fea.outcomes.unchecked import caveats, unchecked
+from alula.fea.vibration.harmonics import nearest_harmonic
+from alula.fea.vibration.over_motion import pose_frequencies
+from alula.loads.case.case_file import validate
+from alula.loads.records.check_spec import SustainedCheck
+from alula.loads.text.caveat import Topic
+from alula.reports.tables.record import result_record
+from alula.reports.words.wording import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}
@@ -30,7 +30,7 @@ COLLISIONS = "collisions of links and couples of their pins (no link states a la
 
 def starter(checks, *bare):
     """The starter case with these checks, some links without part."""
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     for link in bare:
         del data["links"][link]["part"]
     data["load_cases"]["lift"]["own_weight"] = False
@@ -39,7 +39,7 @@ def starter(checks, *bare):
 
 def in_layers(checks, *bare, transfer="eye-faces"):
     """The starter case whose links lie in layers of their own, but for rocker and crank."""
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     for layer, link in enumerate(("base", "crank", "coupler", "rocker")):
         data["links"][link]["layer"] = layer if link != "rocker" else 1
     data["links"]["base"]["thickness"] = "4 mm"
@@ -132,7 +132,7 @@ def test_an_unusual_material_is_warned_of_where_it_is_used(checks, warned):
 
 def told(**tables):
     """Caveats of the starter with two load cases, by heading and topic, but for what has tests of its own."""
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     data["load_cases"]["held"] = {"own_weight": True, "speed": "0 rpm"}
     for name, more in tables.items():
         data[name] = data.get(name, {}) | more if isinstance(more, dict) else more
@@ -160,7 +160,7 @@ def test_inertia_that_is_left_out_is_told():
 
 
 def test_a_pose_in_equilibrium_has_no_inertia_and_says_so():
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     case = validate(data | {"motion": FAST, "pose": data["pose"] | {"equilibrium": True}})
     assert "inertia (the pose is found at rest, pose.equilibrium is true)" in unchecked(case)
 
@@ -179,7 +179,7 @@ def test_weight_that_is_left_out_is_told_with_its_load_cases():
 
 
 def test_what_is_assumed_of_pins_is_told_where_they_are_checked():
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     joints = {name: joint | {"pin_material": "steel-wire"} for name, joint in data["joints"].items()}
     check = {"p": {"type": "pins", "minimum": 2.0}}
     assumed = ("assumed", "material")
@@ -191,7 +191,7 @@ def test_what_is_assumed_of_pins_is_told_where_they_are_checked():
 
 
 def test_bonds_are_told():
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     bonds = {name: data["joints"][name] | {"bonded": True} for name in ("A", "B")}
     assert told(joints=bonds, motion={}) == {("not checked", "bonds"): "bonds A, B (what holds them is not judged)"}
 
@@ -200,7 +200,7 @@ def test_limits_below_one_and_large_play_are_told():
     checks = {"low": {"type": "bearing", "minimum": 0.5}, "whole": {"type": "limit-load", "minimum": 1.0}}
     found = told(checks=checks)
     assert found == {("unusual", "limit"): "checks.low.minimum = 0.5 (below 1 it lets pass what the load breaks)"}
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     loose = {name: data["joints"][name] | {"clearance": play} for name, play in (("A", "2.9 mm"), ("B", "0.3 mm"))}
     assert told(joints=loose) == {("unusual", "play"): "play of 2.9 mm at A (its pin has 3 mm)"}
 
@@ -261,7 +261,7 @@ def test_what_a_case_states_and_no_check_looks_at_is_told(tables, key, text):
 
 
 def test_a_guide_that_rubs_without_a_length_is_told():
-    data = tomllib.loads((files("loads") / "cases" / "slider-crank.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "slider-crank.toml").read_text(encoding="utf-8"))
     guide = ("assumed", "friction", "no couple on guide (no guide_length stated)")
     for length, is_told in (({}, True), ({"guide_length": "30 mm"}, False)):
         joints = data["joints"] | {"guide": data["joints"]["guide"] | length}
@@ -271,7 +271,7 @@ def test_a_guide_that_rubs_without_a_length_is_told():
 
 @pytest.mark.parametrize(("poses", "found"), [(72, "they are 5.07° apart"), (73, None)])
 def test_poses_far_apart_are_told_of_the_motion_alone(poses, found):
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     case = validate(data | {"motion": {"turn": True, "poses": poses}})
     assert [one.why for one in caveats(case, over_motion=True) if one.topic == "motion"] == ([found] if found else [])
     assert not [one for one in caveats(case) if one.topic == "motion"]
@@ -313,7 +313,7 @@ def of_topic(case, topic, *, over_motion=False):
 
 
 def of_material(material, **tables):
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     data["parts"]["bar"]["material"] = material
     del data["parts"]["bar"]["build_direction"]
     return validate({key: value for key, value in (data | tables).items() if value is not None})
@@ -367,7 +367,7 @@ def test_own_cards_of_light_materials_may_be_printed_and_creep_whatever_their_na
 
 @pytest.mark.parametrize(("wall", "told"), [("0.05 mm", ["crank, coupler, rocker"]), ("1 mm", [])])
 def test_a_wall_that_may_buckle_before_it_yields_is_told(wall, told):
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     inner = f"{12.0 - 2.0 * float(wall.split()[0]):g} mm"
     tube = {"shape": "tube", "material": "aluminium-7075-t6", "outer_diameter": "12 mm", "inner_diameter": inner}
     case = validate(data | {"parts": {"bar": tube | {"eyes": "none"}}})

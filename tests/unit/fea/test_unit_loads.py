@@ -6,17 +6,17 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, L, history
 
-from fea.common.link_loads import PinLoad
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.elements.supports import rigid_motions
-from fea.superposition.pin_units import fourier_coefficients
-from fea.superposition.unit_loads import TRANSFERS, unit_loads
-from fea.tractions.load_vectors import LoadVectors
-from fea.tractions.traction import couple_traction, pin_traction
-from geometry.base.errors import CannotRunError
-from loads.records.applied import PartMass, shifted
-from loads.records.bearing import NARROW, WIDE
+from alula.fea.common.link_loads import PinLoad
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.elements.supports import rigid_motions
+from alula.fea.superposition.pin_units import fourier_coefficients
+from alula.fea.superposition.unit_loads import TRANSFERS, unit_loads
+from alula.fea.tractions.load_vectors import LoadVectors
+from alula.fea.tractions.traction import couple_traction, pin_traction
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.records.applied import PartMass, shifted
+from alula.loads.records.bearing import NARROW, WIDE
 
 ORIGIN = np.zeros(3)
 

@@ -6,13 +6,13 @@ from importlib.resources import files
 import pytest
 from edited_cases import edited
 
-from fea.check.run import check_case
-from fea.common.verdict import Quantity, Verdict
-from fea.motion.envelope import envelope_case
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.motion.envelope import envelope_case
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
 
-STARTER = files("loads") / "cases" / "four-bar.toml"
+STARTER = files("alula.loads") / "cases" / "four-bar.toml"
 MOTION = ["motion.turn=true", "motion.poses=13"]
 PINS = 'checks.pins={type="pins", minimum=2.0}'
 

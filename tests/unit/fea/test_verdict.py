@@ -2,10 +2,10 @@ import math
 
 import pytest
 
-from fea.common.band import Band
-from fea.common.source import PIN_PRESSURE, Source, SourceKind
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
-from reports.tables.data import data
+from alula.fea.common.band import Band
+from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
+from alula.reports.tables.data import data
 
 
 def band(low: float, value: float, high: float) -> Band:

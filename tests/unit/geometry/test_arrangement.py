@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.imported.arrangement import angle_between, coaxial, link_frame, parallel_groups, viewing_frame
-from geometry.imported.facts import Bore
-from geometry.imported.read import part_facts
+from alula.geometry.imported.arrangement import angle_between, coaxial, link_frame, parallel_groups, viewing_frame
+from alula.geometry.imported.facts import Bore
+from alula.geometry.imported.read import part_facts
 
 FILES = Path(__file__).parents[2] / "data" / "step"
 

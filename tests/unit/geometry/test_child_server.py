@@ -9,12 +9,12 @@ from collections.abc import Iterator
 import programs
 import pytest
 
-from geometry.base import child, child_server
-from geometry.base.child_server import ChildEndedError, ServerPool
+from alula.geometry.base import child, child_server
+from alula.geometry.base.child_server import ChildEndedError, ServerPool
 
 SERVICE = """
 import os, sys, time
-from geometry.base.child_server import ChildService
+from alula.geometry.base.child_server import ChildService
 service = ChildService()
 def answer(request):
     print("noise of a library", flush=True)
@@ -105,9 +105,9 @@ def test_an_exception_beside_the_request_ends_the_child(pool: ServerPool) -> Non
 
 STOPPED = f"""
 import sys, threading, time
-from geometry.base import child
-from geometry.base.child_server import ServerPool
-from geometry.base.errors import CannotRunError
+from alula.geometry.base import child
+from alula.geometry.base.child_server import ServerPool
+from alula.geometry.base.errors import CannotRunError
 pool = ServerPool()
 def ask(request):
     with pool.server([sys.executable, "-c", {SERVICE!r}], child.environment(), "") as server:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from planar_linkages import four_bar, oscillating_cylinder, quick_return, scotch_yoke, six_bar, slider_crank
 
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.pose import solve_pose
+from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.pose import solve_pose
 
 LINKAGES = {
     "four-bar": four_bar(40, 120, 80, 100),

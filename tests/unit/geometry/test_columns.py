@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from geometry.imported.columns import Columns
-from geometry.imported.facts import PartSurface
-from geometry.imported.walls import Line
+from alula.geometry.imported.columns import Columns
+from alula.geometry.imported.facts import PartSurface
+from alula.geometry.imported.walls import Line
 
 
 def box(low: tuple[float, float, float], high: tuple[float, float, float], *, hollow: bool = False) -> np.ndarray:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from geometry.bodies.cut_section import CutSection, convex, joined
-from geometry.bodies.section import rectangle, ring
-from geometry.meshing.surface_section import section_of_surface
+from alula.geometry.bodies.cut_section import CutSection, convex, joined
+from alula.geometry.bodies.section import rectangle, ring
+from alula.geometry.meshing.surface_section import section_of_surface
 
 
 def box(low, high) -> CutSection:

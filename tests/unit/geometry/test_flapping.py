@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geometry.base.errors import CaseError
-from geometry.mechanisms.flapping import FlappingWing
+from alula.geometry.base.errors import CaseError
+from alula.geometry.mechanisms.flapping import FlappingWing
 
 CHOSEN = FlappingWing(crank=3, coupler=21, rocker=9, width=9.8, height=20.5)
 TURN = np.linspace(0.0, 2 * np.pi, 361)

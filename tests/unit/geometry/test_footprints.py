@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 import shapely
 
-from geometry.bodies.body import Body
-from geometry.bodies.features import Fork, Pin
-from geometry.bodies.footprint import Footprint
-from geometry.clearance.shape import Core, gaps, link_shape, meeting, nearest, overlap, pin_shape
-from geometry.imported.read import part_facts, part_surface
-from geometry.meshing.mesh import mass_properties
-from geometry.parts.bar import Bar
-from geometry.parts.disc import Disc
-from geometry.parts.plate import Plate
-from geometry.parts.shadow import shadows
-from geometry.parts.tube import Tube
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.features import Fork, Pin
+from alula.geometry.bodies.footprint import Footprint
+from alula.geometry.clearance.shape import Core, gaps, link_shape, meeting, nearest, overlap, pin_shape
+from alula.geometry.imported.read import part_facts, part_surface
+from alula.geometry.meshing.mesh import mass_properties
+from alula.geometry.parts.bar import Bar
+from alula.geometry.parts.disc import Disc
+from alula.geometry.parts.plate import Plate
+from alula.geometry.parts.shadow import shadows
+from alula.geometry.parts.tube import Tube
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "step"
 FLAT: dict[str, tuple[Any, dict[str, Any], tuple[Pin, ...]]] = {

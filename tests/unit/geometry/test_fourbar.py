@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from geometry.mechanisms.fourbar import FourBar
+from alula.geometry.base.errors import CaseError
+from alula.geometry.mechanisms.fourbar import FourBar
 
 CRANK_ROCKER = FourBar(a=40, b=120, c=80, d=100)
 TRIPLE_ROCKER = FourBar(a=6, b=3, c=5, d=7.5)

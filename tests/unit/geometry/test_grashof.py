@@ -1,6 +1,6 @@
 import pytest
 
-from geometry.mechanisms.grashof import classify
+from alula.geometry.mechanisms.grashof import classify
 
 
 @pytest.mark.parametrize(

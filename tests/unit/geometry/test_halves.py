@@ -9,10 +9,10 @@ import pytest
 from lopsided_part import Lopsided
 from mesh_measures import volumes_and_moments
 
-from geometry.meshing.mesh import COARSE, mesh_body
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.disc import Disc
-from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.disc import Disc
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 WHOLE = dataclasses.replace(COARSE, halves=False)
 

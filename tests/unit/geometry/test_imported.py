@@ -10,11 +10,11 @@ import pytest
 from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
-from geometry.base import kernel_child
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.imported import read
-from geometry.imported.facts import Bore
-from geometry.imported.read import part_facts
+from alula.geometry.base import kernel_child
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.imported import read
+from alula.geometry.imported.facts import Bore
+from alula.geometry.imported.read import part_facts
 
 FILES = Path(__file__).parents[2] / "data" / "step"
 STAND = Rotation.from_rotvec(np.radians(50.0) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))

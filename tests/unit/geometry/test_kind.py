@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from strip_part import Strip
 
-from fea.beam.calibration import uncalibrated
-from geometry.base.errors import CaseError
-from geometry.bodies.body import Body
-from geometry.bodies.body_rules import check_body
-from geometry.bodies.features import Pin
-from geometry.meshing.mesh import COARSE, mesh_body
+from alula.fea.beam.calibration import uncalibrated
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import Body
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.bodies.features import Pin
+from alula.geometry.meshing.mesh import COARSE, mesh_body
 
 STRIP = Strip(shape="strip", material="pla", width="10 mm", thickness="3 mm", overhang="6 mm")
 HOLES = tuple(Pin(name=name, x=x, y=0.0, diameter=4.0) for name, x in (("A", 0.0), ("B", 50.0)))

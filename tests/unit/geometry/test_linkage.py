@@ -4,8 +4,8 @@ import pytest
 from planar_linkages import four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Joint, Link, Linkage
 
 
 def test_mobility_of_known_linkages() -> None:

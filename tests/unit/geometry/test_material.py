@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from geometry.materials.material import Fatigue, Material, library
+from alula.geometry.materials.material import Fatigue, Material, library
 
 KNOWN = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
 CARD: dict[str, Any] = {
@@ -104,7 +104,7 @@ def test_the_pvc_of_the_owl_wing() -> None:
 
 
 def test_every_value_of_the_library_has_a_source_and_a_status() -> None:
-    cards = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))
+    cards = tomllib.loads(files("alula.geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))
     assert cards.keys() == library().keys()
     assert len(cards) >= 5
     own = {"title", "strength", "sources", "status", "fatigue"}

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from mesh_measures import shape_quality, volumes_and_moments
 
-import geometry.base.child_server
-import geometry.meshing.mesh
-from geometry.base.child_memory import allowed
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.imported.read import part_facts
-from geometry.meshing.element_geometry import TETRA_EDGES, scaled_jacobians
-from geometry.meshing.mesh import (
+import alula.geometry.base.child_server
+import alula.geometry.meshing.mesh
+from alula.geometry.base.child_memory import allowed
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.imported.read import part_facts
+from alula.geometry.meshing.element_geometry import TETRA_EDGES, scaled_jacobians
+from alula.geometry.meshing.mesh import (
     COARSE,
     MeshSettings,
     export_step,
@@ -28,8 +28,8 @@ from geometry.meshing.mesh import (
     mesh_body,
     reentrant_edges,
 )
-from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 
 def tube_body(unit: float = 1.0, **changes: str) -> Body:
@@ -130,9 +130,9 @@ def test_same_input_gives_the_same_mesh_whatever_the_process_has_done(mesh: Tagg
 
 def test_one_process_serves_bodies_in_turn_and_builds_each_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ALULA_TEST", "none waits with this environment")
-    begun = geometry.base.child_server.ChildServer
+    begun = alula.geometry.base.child_server.ChildServer
     started: list[object] = []
-    monkeypatch.setattr("geometry.base.child_server.ChildServer", lambda *a: started.append(a) or begun(*a))
+    monkeypatch.setattr("alula.geometry.base.child_server.ChildServer", lambda *a: started.append(a) or begun(*a))
     volumes = [mass_properties(body).volume for body in (tube_body(), bar_body(), tube_body())]
     assert volumes[0] == volumes[2] != volumes[1]
     with pytest.raises(CannotRunError, match="memory"):
@@ -278,7 +278,7 @@ def test_flattened_elements_are_told() -> None:
 
 
 def test_fillet_that_the_kernel_cannot_make_though_the_rules_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("geometry.meshing.mesh.check_body", lambda body: None)
+    monkeypatch.setattr("alula.geometry.meshing.mesh.check_body", lambda body: None)
     with pytest.raises(CaseError, match=r"fillet_radius 20 mm does not fit .* reduce it"):
         mesh_body(bar_body("20 mm"), COARSE)
 
@@ -365,13 +365,13 @@ def _instead(script: str) -> Callable[[], list[str]]:
     ],
 )
 def test_a_crash_of_the_mesher_is_contained(monkeypatch: pytest.MonkeyPatch, script: str, message: str) -> None:
-    monkeypatch.setattr(geometry.base.kernel_child, "_command", _instead(script))
+    monkeypatch.setattr(alula.geometry.base.kernel_child, "_command", _instead(script))
     with pytest.raises(CannotRunError, match=message):
         mesh_body(bar_body(), COARSE)
 
 
 def test_an_endless_mesher_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(geometry.base.kernel_child, "_command", _instead("while True: pass"))
+    monkeypatch.setattr(alula.geometry.base.kernel_child, "_command", _instead("while True: pass"))
     with pytest.raises(CannotRunError, match=r"stopped after its time limit of 0\.5 s"):
         mesh_body(bar_body(), dataclasses.replace(COARSE, time_limit=0.5))
 

@@ -5,11 +5,11 @@ import re
 
 import pytest
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import extent, patch_span
-from geometry.bodies.body_rules import check_body
-from geometry.bodies.eyes import eye_reach
-from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import extent, patch_span
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 TUBE = Tube(
     shape="tube",

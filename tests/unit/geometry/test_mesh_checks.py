@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.base.errors import CannotRunError
-from geometry.meshing.mesh_settings import COARSE
-from geometry.meshing.mesh_target import MeshTarget
-from geometry.meshing.mesher import _checked
-from geometry.meshing.tagged_mesh import TaggedMesh
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.mesh_settings import COARSE
+from alula.geometry.meshing.mesh_target import MeshTarget
+from alula.geometry.meshing.mesher import _checked
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from mesh_measures import shape_quality, volumes_and_moments
 
-from geometry.meshing.element_geometry import TETRA_EDGES, TRIANGLE_EDGES, flatten, scaled_jacobians, triangle_areas
+from alula.geometry.meshing.element_geometry import (
+    TETRA_EDGES,
+    TRIANGLE_EDGES,
+    flatten,
+    scaled_jacobians,
+    triangle_areas,
+)
 
 CORNERS = np.array([[0.0, 0, 0], [2, 0, 0], [0, 3, 0], [0, 0, 4]])
 

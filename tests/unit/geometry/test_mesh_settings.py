@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.refine.refinement import START
-from geometry.meshing.mesh import mesh_body
-from geometry.meshing.mesh_settings import MeshSettings
-from geometry.parts.part import Body, Pin, Tube
+from alula.fea.refine.refinement import START
+from alula.geometry.meshing.mesh import mesh_body
+from alula.geometry.meshing.mesh_settings import MeshSettings
+from alula.geometry.parts.part import Body, Pin, Tube
 
 
 def test_a_factor_scales_every_size() -> None:

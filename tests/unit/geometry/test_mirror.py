@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import solid_meshes as meshes
 
-from fea.elements.quadrature import surface_quadrature, volume_quadrature
-from fea.elements.space import displacement_space
-from geometry.base.errors import CannotRunError
-from geometry.meshing.element_geometry import jacobian_coefficients, scaled_jacobians
-from geometry.meshing.mirror import mirrored
+from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.element_geometry import jacobian_coefficients, scaled_jacobians
+from alula.geometry.meshing.mirror import mirrored
 
 Z = np.array([0.0, 0.0, 1.0])
 

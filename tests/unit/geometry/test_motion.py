@@ -17,11 +17,11 @@ from motion_poses import (
 )
 from planar_linkages import four_bar
 
-from geometry.base.errors import CaseError
-from geometry.linkage.continuation import DeadPointError
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from geometry.mechanisms.fourbar import FourBar
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.geometry.mechanisms.fourbar import FourBar
 
 TURN = CRANK + np.linspace(0.0, 2.0 * math.pi, 97)
 WING = np.radians(np.linspace(228.15, 124.62, 97))

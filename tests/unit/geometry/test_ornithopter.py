@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.mechanisms.ornithopter import OrnithopterRules, motors
-from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
-from geometry.mechanisms.wing_drive import WingDrive
+from alula.geometry.base.errors import CaseError
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules, motors
+from alula.geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
+from alula.geometry.mechanisms.wing_drive import WingDrive
 
 DRIVE = OrnithopterRules().drive()
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.base.outline import BallError, gap, outline
+from alula.geometry.base.outline import BallError, gap, outline
 
 EQUAL = [(0.0, 0.0, 3.0), (20.0, 0.0, 3.0), (12.0, 15.0, 3.0)]
 TERNARY = [(0.0, 0.0, 7.0), (60.0, 0.0, 6.0), (22.0, 34.0, 8.0)]

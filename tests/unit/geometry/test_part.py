@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from geometry.bodies.eyes import flush
-from geometry.parts.part import Bar, Body, HoleRow, Part, Pin, Section, Tube
+from alula.geometry.bodies.eyes import flush
+from alula.geometry.parts.part import Bar, Body, HoleRow, Part, Pin, Section, Tube
 
 TUBE: dict[str, Any] = {
     "shape": "tube",

@@ -5,11 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from geometry.imported.facts import Bore
-from geometry.parts.step import StepPart
-from geometry.placement.fit import Wanted
-from geometry.placement.match import place, points_of_part, with_loaded_bores
+from alula.geometry.base.errors import CaseError
+from alula.geometry.imported.facts import Bore
+from alula.geometry.parts.step import StepPart
+from alula.geometry.placement.fit import Wanted
+from alula.geometry.placement.match import place, points_of_part, with_loaded_bores
 
 POINTS = {"A": (0.0, 0.0), "B": (60.0, 0.0), "C": (22.0, 34.0)}
 DIAMETERS = {"A": 5.0, "B": 4.0, "C": 6.0}

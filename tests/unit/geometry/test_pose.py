@@ -16,9 +16,9 @@ from planar_linkages import (
     slider_crank,
 )
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.pose import CLOSED, Pose, constraint_jacobian, solve_pose
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.pose import CLOSED, Pose, constraint_jacobian, solve_pose
 
 ANGLE = math.radians(40)
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from geometry.linkage.linkage import Joint, Link, Linkage
-from geometry.linkage.pose import solve_pose
-from geometry.linkage.sampled import SampledClosure, _at_dead_points, assemble_samples
-from geometry.linkage.sampled_dead_points import own_dead_point
+from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.pose import solve_pose
+from alula.geometry.linkage.sampled import SampledClosure, _at_dead_points, assemble_samples
+from alula.geometry.linkage.sampled_dead_points import own_dead_point
 
 GROUND, CRANK, COUPLER, ROCKER = 100.0, 60.0, 50.0, 40.0
 """No link turns fully [mm]."""

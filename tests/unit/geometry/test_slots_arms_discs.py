@@ -5,12 +5,12 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body import apart, extent, hand_section, reference_line
-from geometry.bodies.body_rules import check_body, check_length
-from geometry.bodies.eyes import eye_reach
-from geometry.mechanisms.ornithopter import OrnithopterRules, variants
-from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body import apart, extent, hand_section, reference_line
+from alula.geometry.bodies.body_rules import check_body, check_length
+from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.mechanisms.ornithopter import OrnithopterRules, variants
+from alula.geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
 
 BAR = Bar(
     shape="bar",

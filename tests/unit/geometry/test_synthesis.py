@@ -5,9 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from geometry.base.errors import CaseError
-from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.synthesis import DRIVES, driven, freudenstein_residual, synthesise
+from alula.geometry.base.errors import CaseError
+from alula.geometry.mechanisms.fourbar import FourBar
+from alula.geometry.mechanisms.synthesis import DRIVES, driven, freudenstein_residual, synthesise
 
 
 def pairs(bar: FourBar, phis, branch="open"):

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from geometry.base import system_libraries
+from alula.geometry.base import system_libraries
 
 
 def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:

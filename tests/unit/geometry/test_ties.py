@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam.piecewise import Piecewise
-from geometry.base.ties import first_largest, first_least, ranked
+from alula.fea.beam.piecewise import Piecewise
+from alula.geometry.base.ties import first_largest, first_least, ranked
 
 
 @pytest.mark.parametrize(

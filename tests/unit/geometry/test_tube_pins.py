@@ -6,10 +6,10 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 from scipy.integrate import quad
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body_rules import check_body
-from geometry.meshing.mesh import COARSE, mass_properties, mesh_body
-from geometry.parts.part import Body, HoleRow, Part, Pin, PlainEnd, Ring, Tube
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body
+from alula.geometry.parts.part import Body, HoleRow, Part, Pin, PlainEnd, Ring, Tube
 
 OUTER, INNER, PIN, LENGTH = 8.0, 5.0, 3.0, 40.0
 TUBE = {"shape": "tube", "material": "pvc", "outer_diameter": "8 mm", "inner_diameter": "5 mm", "eyes": "none"}

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from geometry.base import units
-from geometry.base.model import CaseModel
-from geometry.base.units import EXAMPLES, INTERNAL_UNITS, NOT_NEGATIVE, POSITIVE, parse
-from geometry.base.usual_units import CELSIUS, USUAL
+from alula.geometry.base import units
+from alula.geometry.base.model import CaseModel
+from alula.geometry.base.units import EXAMPLES, INTERNAL_UNITS, NOT_NEGATIVE, POSITIVE, parse
+from alula.geometry.base.usual_units import CELSIUS, USUAL
 
 # (dimension, text, value in alula's unit), worked out by hand from the definitions of the units.
 KNOWN = [

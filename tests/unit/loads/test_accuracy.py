@@ -1,7 +1,7 @@
 import pytest
 from pydantic_core import PydanticCustomError
 
-from loads.text.shares import parse_accuracy
+from alula.loads.text.shares import parse_accuracy
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,11 @@ import tomllib
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, read_text, validate
-from loads.records.aero import AirLoad, air_forces, air_loads, check_air, shares
-from loads.records.applied import LineLoad, PointLoad
-from loads.states.actions import acting_loads
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, read_text, validate
+from alula.loads.records.aero import AirLoad, air_forces, air_loads, check_air, shares
+from alula.loads.records.applied import LineLoad, PointLoad
+from alula.loads.states.actions import acting_loads
 
 POINTS = {"a": {"P": (0.0, 0.0), "Q": (120.0, 0.0), "M": (40.0, 0.0)}, "b": {"Q": (10.0, 0.0), "R": (90.0, 0.0)}}
 STREAM = {"speed": "22 m/s", "density": "1.225 kg/m^3", "area": "0.05 m^2"}

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.records.bearing import NARROW, WIDE, bearing_stress
+from alula.geometry.base.errors import CaseError
+from alula.loads.records.bearing import NARROW, WIDE, bearing_stress
 
 
 @pytest.mark.parametrize("law", [WIDE, NARROW])

@@ -8,14 +8,14 @@ import pytest
 from edited_cases import edited
 from materials import SOURCED
 
-from geometry.base.errors import CaseError
-from geometry.bodies.body_rules import check_body
-from geometry.linkage.pose import CLOSED
-from loads.case.case import Case
-from loads.case.case_file import read_case, read_text, validate
-from loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad
-from loads.records.load_case import vector3
-from loads.states.actions import acting_loads, needs_masses
+from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.body_rules import check_body
+from alula.geometry.linkage.pose import CLOSED
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, read_text, validate
+from alula.loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad
+from alula.loads.records.load_case import vector3
+from alula.loads.states.actions import acting_loads, needs_masses
 
 OWL = "owl-wing-static"
 

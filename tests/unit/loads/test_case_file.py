@@ -10,9 +10,9 @@ from edited_cases import edited
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import LARGEST_FILE, built_in_cases, read_case, read_companion, read_text, validate
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import LARGEST_FILE, built_in_cases, read_case, read_companion, read_text, validate
 
 OWL = "owl-wing-static"
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
-from fea.check.run import check_case
-from fea.common.verdict import Verdict
-from geometry.base.errors import CaseError
-from geometry.parts.part import Bar, Body, Plate, Ring
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.case.core import CoreCase
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.geometry.base.errors import CaseError
+from alula.geometry.parts.part import Bar, Body, Plate, Ring
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.case.core import CoreCase
 
 FOUR_BAR = """
 schema_version = 1

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.beam.cut_free import link_loads
-from fea.frame.case_statics import solve_case_statics
-from geometry.base.errors import CaseError
-from geometry.parts.part import Pin
-from loads.records.applied import PointLoad
-from loads.states.case_motion import solve_case_motion
-from loads.statics.statics import solve_statics
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.parts.part import Pin
+from alula.loads.records.applied import PointLoad
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.statics.statics import solve_statics
 
 
 def ornithopter(*settings: str):

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 
-from fea.common.verdict import Verdict
-from fea.whole.clearance import clearance_band, clearance_outcomes
-from geometry.base.errors import CaseError
-from geometry.clearance import least
-from geometry.clearance.least import Gap, _bounds, least_gap
-from geometry.clearance.shape import gaps
-from geometry.linkage.motion import solve_motion
-from loads.case.case_file import read_case
-from loads.states.clearance import along, assembly, clearance
+from alula.fea.common.verdict import Verdict
+from alula.fea.whole.clearance import clearance_band, clearance_outcomes
+from alula.geometry.base.errors import CaseError
+from alula.geometry.clearance import least
+from alula.geometry.clearance.least import Gap, _bounds, least_gap
+from alula.geometry.clearance.shape import gaps
+from alula.geometry.linkage.motion import solve_motion
+from alula.loads.case.case_file import read_case
+from alula.loads.states.clearance import along, assembly, clearance
 
 
 def test_two_parallel_bars_touch_where_their_distance_is_their_width():
@@ -113,7 +113,7 @@ def test_how_deep_two_outlines_lie_in_each_other_between_poses_is_in_the_band(po
 
 def test_where_few_poses_are_asked_how_deep_the_band_holds_those_that_are_not(monkeypatch):
     """Of thirteen poses that touch only the first is asked, where the pin lies 1.55 mm deep."""
-    monkeypatch.setattr("geometry.clearance.least._DEEPEST", 1)
+    monkeypatch.setattr("alula.geometry.clearance.least._DEEPEST", 1)
     found = swung_over_the_pin(13)
     assert found.value == pytest.approx(100.0 * math.sin(math.radians(6.0)) - 12.0, abs=0.05)
     assert found.low <= -8.0

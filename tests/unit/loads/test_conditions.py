@@ -8,16 +8,16 @@ import pytest
 from edited_cases import PLANAR, edited
 from materials import SOURCED, with_material
 
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.scatter import compliance_scatter, strength_scatter
-from fea.common.verdict import Verdict
-from fea.outcomes.judge import outcomes
-from geometry.base.errors import CaseError
-from geometry.materials.material import library
-from geometry.materials.temperature import factor_at
-from loads.records.check_spec import SustainedCheck
-from loads.records.conditions import Conditions, at_temperature, modulus_unknown, strength_unknown, under
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.scatter import compliance_scatter, strength_scatter
+from alula.fea.common.verdict import Verdict
+from alula.fea.outcomes.judge import outcomes
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.material import library
+from alula.geometry.materials.temperature import factor_at
+from alula.loads.records.check_spec import SustainedCheck
+from alula.loads.records.conditions import Conditions, at_temperature, modulus_unknown, strength_unknown, under
 
 WING = "owl-wing-static"
 PVC = library()["pvc-u"]

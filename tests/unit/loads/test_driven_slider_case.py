@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from slotted_cases import piston_entries
 
-from fea.check.anchor import anchor_loads
-from fea.check.run import check_case
-from fea.common.verdict import LINKAGE
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import validate
-from loads.states.case_motion import solve_case_motion
-from reports.commands.motion import print_motion
-from reports.motion.csv_tables import write_tables
-from reports.motion.record import record
+from alula.fea.check.anchor import anchor_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import LINKAGE
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.commands.motion import print_motion
+from alula.reports.motion.csv_tables import write_tables
+from alula.reports.motion.record import record
 
 A = 40.0
 
@@ -68,7 +68,7 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
 
 
 def test_figures_of_it_are_drawn(tmp_path) -> None:
-    from reports.motion.figures import draw_figures
+    from alula.reports.motion.figures import draw_figures
 
     draw_figures(solve_case_motion(validate(piston_entries())), tmp_path)
     assert {path.suffix for path in tmp_path.iterdir()} == {".png"}
@@ -138,14 +138,14 @@ def test_a_braked_piston_stops_where_its_energy_ends() -> None:
 
 
 def test_an_envelope_over_a_travel_is_refused() -> None:
-    from fea.motion.envelope import envelope_case
+    from alula.fea.motion.envelope import envelope_case
 
     with pytest.raises(CaseError, match=r"motion.travel: an envelope is drawn over the direction of a link"):
         envelope_case(validate(piston_entries()))
 
 
 def test_the_report_of_its_check_tells_the_travel_and_the_force() -> None:
-    from reports.page.html import render
+    from alula.reports.page.html import render
 
     result = check_case(validate(piston_entries()), fidelity="beam")
     page = render(result, {})

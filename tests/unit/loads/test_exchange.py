@@ -10,12 +10,12 @@ from pathlib import Path
 import programs
 import pytest
 
-from fea.frame.case_statics import solve_case_statics
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.exchange.pmks import read_pmks
-from loads.exchange.pylinkage import read_pylinkage
-from loads.exchange.sketch import case_text
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.exchange.pmks import read_pmks
+from alula.loads.exchange.pylinkage import read_pylinkage
+from alula.loads.exchange.sketch import case_text
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "exchange"
 """Written by pylinkage 1.3.0: ``fourbar(1, 3, 3, 4, initial_angle=0.7)``, ``slider_crank(1, 3, initial_angle=0.9)``;

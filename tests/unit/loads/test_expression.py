@@ -5,9 +5,9 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from geometry.base.errors import CaseError
-from loads.sources.expression import LONGEST, evaluate, evaluate_number
-from loads.sources.quantity import _USUAL, Value, _by_pint
+from alula.geometry.base.errors import CaseError
+from alula.loads.sources.expression import LONGEST, evaluate, evaluate_number
+from alula.loads.sources.quantity import _USUAL, Value, _by_pint
 
 LENGTHS = {("a",): Value.of(3, "mm"), ("link", "whole-wing"): Value.of(4, "cm"), ("kind",): "open"}
 

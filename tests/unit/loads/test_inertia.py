@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from motion_poses import kinetostatics
 
-from fea.beam.cut_free import beam_loads, link_loads
-from fea.beam.theory import check_beam
-from geometry.base.errors import CaseError
-from geometry.linkage.motion import solve_motion
-from loads.case.case_file import read_case
-from loads.records.applied import PartMass
-from loads.records.carried import CarriedBody, CarriedSpread, mass_of
-from loads.records.load_case import gravity
-from loads.states.actions import acting_loads, inertia_loads, placed, stated_loads
-from loads.states.masses import laden_masses, together
-from loads.statics.statics import solve_statics
+from alula.fea.beam.cut_free import beam_loads, link_loads
+from alula.fea.beam.theory import check_beam
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.motion import solve_motion
+from alula.loads.case.case_file import read_case
+from alula.loads.records.applied import PartMass
+from alula.loads.records.carried import CarriedBody, CarriedSpread, mass_of
+from alula.loads.records.load_case import gravity
+from alula.loads.states.actions import acting_loads, inertia_loads, placed, stated_loads
+from alula.loads.states.masses import laden_masses, together
+from alula.loads.statics.statics import solve_statics
 
 SPEED = 31.0
 FILE = str(Path(__file__).with_name("four-bar-laden.toml"))

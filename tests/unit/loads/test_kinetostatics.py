@@ -24,15 +24,15 @@ from motion_poses import (
 from planar_linkages import four_bar
 from rocker_case import TOML
 
-from geometry.base.errors import CaseError
-from geometry.linkage.motion import solve_motion
-from geometry.linkage.pose import solve_pose
-from loads.case.case_file import validate
-from loads.records.applied import PartMass, PointLoad
-from loads.states.case_motion import solve_case_motion
-from loads.states.dead_point_reach import way_to_dead_point
-from loads.states.kinetostatics import is_determinate
-from loads.statics.statics import Drive, solve_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.pose import solve_pose
+from alula.loads.case.case_file import validate
+from alula.loads.records.applied import PartMass, PointLoad
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.dead_point_reach import way_to_dead_point
+from alula.loads.states.kinetostatics import is_determinate
+from alula.loads.statics.statics import Drive, solve_statics
 
 TURN = CRANK + np.linspace(0.0, 2.0 * math.pi, 49)
 WING = np.radians(np.linspace(228.15, 124.62, 49))

@@ -6,12 +6,12 @@ import pytest
 from edited_cases import PLANAR
 from edited_cases import edited as edited_case
 
-from fea.frame.case_statics import solve_case_statics
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import built_in_cases, read_case, read_text
-from loads.case.layers import slab
-from loads.states.clearance import clearance
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import built_in_cases, read_case, read_text
+from alula.loads.case.layers import slab
+from alula.loads.states.clearance import clearance
 
 LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
 FOUR = [f"links.{name}.layer={layer}" for name, layer in zip(LINKS, (0, 0, 1, 2, 3, 2), strict=True)]

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import read_case, validate
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case, validate
 
 FAST = 600.0 * 3.141592653589793 / 30.0
 CARRIED = [{"link": "rocker", "at": "P", "mass": "50 kg"}]
@@ -17,7 +17,7 @@ CARRIED = [{"link": "rocker", "at": "P", "mass": "50 kg"}]
 
 def starter(motion: dict[str, Any] | None = None, pose: dict[str, Any] | None = None, **tables: Any) -> Case:
     """The starter with a second load case that stands still, as the file would state them."""
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     data["load_cases"]["held"] = {"own_weight": True, "speed": "0 rpm"}
     data["motion"] |= {"speed": "600 rpm"} | (motion or {})
     data["pose"] |= pose or {}
@@ -72,7 +72,7 @@ def test_a_carried_mass_weighs_unless_the_case_says_no() -> None:
 
 
 def in_layers(*layers: int, **tables: Any) -> Case:
-    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     for name, layer in zip(data["links"], layers, strict=True):
         data["links"][name]["layer"] = layer
     return validate(data | {"layer_spacing": "4.5 mm"} | tables)
@@ -87,7 +87,7 @@ def test_links_in_one_layer_are_looked_at_for_collisions() -> None:
 
 
 def test_neighbours_in_one_layer_are_refused() -> None:
-    from loads.states.clearance import clearance
+    from alula.loads.states.clearance import clearance
 
     with pytest.raises(CaseError, match=re.escape("they share joint A, so their eyes lie in each other")):
         clearance(in_layers(0, 0, 0, 0))

@@ -2,8 +2,8 @@
 
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case
 
 
 def test_lengths_come_from_the_links() -> None:

@@ -9,16 +9,16 @@ import pytest
 from imported_case import STEP, imported_case
 from scipy.spatial.transform import Rotation
 
-from fea.check.run import check_case
-from fea.refine.refinement import START, Effort
-from geometry.base.errors import CannotRunError, CaseError
-from geometry.imported.read import part_facts
-from geometry.meshing.element_geometry import jacobian_coefficients
-from geometry.meshing.file_mesh import read_mesh
-from geometry.meshing.mesh import export_step, mass_properties, mesh_body, reentrant_edges
-from loads.case.case_file import read_case
-from loads.exchange.part import part_entries
-from reports.commands.inspect_part import inspect_file
+from alula.fea.check.run import check_case
+from alula.fea.refine.refinement import START, Effort
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.imported.read import part_facts
+from alula.geometry.meshing.element_geometry import jacobian_coefficients
+from alula.geometry.meshing.file_mesh import read_mesh
+from alula.geometry.meshing.mesh import export_step, mass_properties, mesh_body, reentrant_edges
+from alula.loads.case.case_file import read_case
+from alula.loads.exchange.part import part_entries
+from alula.reports.commands.inspect_part import inspect_file
 
 FORMATS = {"msh": "gmsh", "vtu": "vtu", "inp": "abaqus"}
 STAND = Rotation.from_rotvec(np.radians(50.0) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))

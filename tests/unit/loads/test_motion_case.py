@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case
-from loads.states.actions import acting_loads
-from loads.states.case_motion import solve_case_motion
-from loads.states.masses import laden_masses
-from loads.statics.statics import solve_statics
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case
+from alula.loads.states.actions import acting_loads
+from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.masses import laden_masses
+from alula.loads.statics.statics import solve_statics
 
 FOUR_BAR = """
 schema_version = 1

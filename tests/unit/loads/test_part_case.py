@@ -9,14 +9,14 @@ import pytest
 import step_files
 from imported_case import STEP
 
-from fea.check.run import check_case, effort_of
-from fea.common.verdict import Verdict
-from fea.frame.case_statics import solve_case_statics
-from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, validate
-from loads.exchange.part import part_case, part_entries
-from reports.commands.inspect_part import inspect_file
-from reports.figures.drawings import _Drawing
+from alula.fea.check.run import check_case, effort_of
+from alula.fea.common.verdict import Verdict
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.exchange.part import part_case, part_entries
+from alula.reports.commands.inspect_part import inspect_file
+from alula.reports.figures.drawings import _Drawing
 
 LIGHT = ["load_cases.load.own_weight=false"]
 

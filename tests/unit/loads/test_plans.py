@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.plans.axis import axis
-from loads.plans.plan import plan_of, read_plan, table_of
-from loads.plans.points import Points
-from loads.plans.variants import Variants
+from alula.geometry.base.errors import CaseError
+from alula.loads.plans.axis import axis
+from alula.loads.plans.plan import plan_of, read_plan, table_of
+from alula.loads.plans.points import Points
+from alula.loads.plans.variants import Variants
 
 CASE = "owl-wing-static"
 DIAMETER = "parts.tube.outer_diameter"

@@ -5,12 +5,12 @@ import pytest
 from planar_linkages import joint, link, six_bar
 from pydantic import ValidationError
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.pose import Pose, solve_pose
-from loads.records.applied import PointLoad
-from loads.sources.published_statics import PublishedStatics, StaticsAudit, audit, read_matrix
-from loads.statics.statics import Drive, assemble, solve_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.loads.records.applied import PointLoad
+from alula.loads.sources.published_statics import PublishedStatics, StaticsAudit, audit, read_matrix
+from alula.loads.statics.statics import Drive, assemble, solve_statics
 
 NEAR = {"AE": 2.5, "CF": 3.5, "CH": 2.48, "ED": 3.5}
 ORDER = ("GF", "CF", "AE", "ED", "CH")

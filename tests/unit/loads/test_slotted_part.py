@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from imported_case import STEP
 
-from fea.beam.cut_free import link_loads
-from fea.elements.quadrature import surface_quadrature
-from fea.elements.space import displacement_space
-from fea.tractions.slot_traction import DEGREE, slot_traction
-from geometry.base.errors import CaseError
-from geometry.meshing.mesh import COARSE, mesh_body
-from loads.case.case_file import read_case
-from loads.records.bearing import NARROW, WIDE
-from loads.states.actions import acting_loads
-from loads.statics.statics import solve_statics
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.elements.quadrature import surface_quadrature
+from alula.fea.elements.space import displacement_space
+from alula.fea.tractions.slot_traction import DEGREE, slot_traction
+from alula.geometry.base.errors import CaseError
+from alula.geometry.meshing.mesh import COARSE, mesh_body
+from alula.loads.case.case_file import read_case
+from alula.loads.records.bearing import NARROW, WIDE
+from alula.loads.states.actions import acting_loads
+from alula.loads.statics.statics import solve_statics
 
 TOML = """
 schema_version = 1

@@ -5,7 +5,7 @@ import math
 import pytest
 from sprung_cases import CROWN, HANG, LEVER, case_of, stands
 
-from geometry.base.errors import CaseError
+from alula.geometry.base.errors import CaseError
 
 ENDS = [{"link": "base", "at": "S"}, {"link": "lever", "at": "H"}]
 LINE = {"between": ENDS, "stiffness": "0.5 N/mm", "free_length": "20 mm"}

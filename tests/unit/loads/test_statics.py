@@ -15,11 +15,11 @@ from planar_linkages import (
     slider_crank,
 )
 
-from geometry.base.errors import CaseError
-from geometry.linkage.linkage import Linkage
-from geometry.linkage.pose import Pose, constraint_jacobian, solve_pose
-from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
-from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, assemble, check_drive, solve_statics
+from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.linkage import Linkage
+from alula.geometry.linkage.pose import Pose, constraint_jacobian, solve_pose
+from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, assemble, check_drive, solve_statics
 
 AE = Drive(link="AE", joint="A")
 
@@ -79,7 +79,7 @@ def random_loads(pose: Pose, seed: int = 0) -> list[Load]:
 def unbalanced(reactions: Reactions, loads: Sequence[Load], name: str) -> tuple[np.ndarray, float, float]:
     """What is left of the forces and of the moments about the global origin on one link, and the forces' size.
 
-    Written from the cut-free link alone: nothing of ``loads.statics.statics`` but its answers is used.
+    Written from the cut-free link alone: nothing of ``alula.loads.statics.statics`` but its answers is used.
     """
     pose = reactions.pose
     total, moment, size = np.zeros(2), 0.0, 0.0

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from imported_case import imported_case
 
-from fea.beam.cut_beam import beam_sections, cut_remark
-from geometry.base.errors import AlulaError, CaseError
-from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
-from loads.case.case_file import read_case
+from alula.fea.beam.cut_beam import beam_sections, cut_remark
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
+from alula.loads.case.case_file import read_case
 
 FROM_PART = '"from-part"'
 NAMED = 'bores = { O4 = "bore 1", B = "bore 2" }'

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.case.case import Case
-from loads.case.case_file import read_case
-from loads.states.masses import part_mass, rough_masses
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_case
+from alula.loads.states.masses import part_mass, rough_masses
 
 LADEN = str(Path(__file__).parent / "four-bar-laden.toml")
 

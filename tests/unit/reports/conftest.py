@@ -5,8 +5,8 @@ import tomllib
 import pytest
 import wing_with_solid
 
-from fea.check.run import check_case
-from loads.case.case_file import validate
+from alula.fea.check.run import check_case
+from alula.loads.case.case_file import validate
 
 
 @pytest.fixture(scope="session")

@@ -6,14 +6,14 @@ import shapely
 from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 from legible import assert_legible, written
 
-from loads.states.clearance import clearance
-from loads.states.extent import extent
-from reports.outlines.assembly import LAYERS, Placed, assembly_sheet, layer_colours
-from reports.outlines.box import box_sheet
-from reports.outlines.contact import contact_sheet
-from reports.sheet.canvas import faint
-from reports.sheet.marks import Area, Stroke
-from reports.sheet.style import INK, JOINT_FORCE
+from alula.loads.states.clearance import clearance
+from alula.loads.states.extent import extent
+from alula.reports.outlines.assembly import LAYERS, Placed, assembly_sheet, layer_colours
+from alula.reports.outlines.box import box_sheet
+from alula.reports.outlines.contact import contact_sheet
+from alula.reports.sheet.canvas import faint
+from alula.reports.sheet.marks import Area, Stroke
+from alula.reports.sheet.style import INK, JOINT_FORCE
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_outlines_are_drawn_to_scale(found):
 
 
 def test_a_hole_is_cut_out_of_what_is_drawn():
-    from reports.outlines.assembly import rings
+    from alula.reports.outlines.assembly import rings
 
     square = shapely.box(0.0, 0.0, 10.0, 10.0).difference(shapely.box(4.0, 4.0, 6.0, 6.0))
     [ring] = rings(square)

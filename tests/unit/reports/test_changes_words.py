@@ -7,15 +7,15 @@ import pytest
 from html_pages import Page
 from rich.console import Console
 
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, Quantity, Verdict
-from fea.sizing.changes import MaterialChange, SizeRange, VerdictChange
-from loads.case.revisable import Origin
-from reports.page.html import render
-from reports.tables import data
-from reports.tables.console import print_result
-from reports.tables.record import result_record
-from reports.words.changes import change_sentences, change_title, size_command
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.sizing.changes import MaterialChange, SizeRange, VerdictChange
+from alula.loads.case.revisable import Origin
+from alula.reports.page.html import render
+from alula.reports.tables import data
+from alula.reports.tables.console import print_result
+from alula.reports.tables.record import result_record
+from alula.reports.words.changes import change_sentences, change_title, size_command
 
 STRONGER = MaterialChange(what="yield strength", material="pvc-paredes-2018", stated=41.4, needed=45.2001)
 

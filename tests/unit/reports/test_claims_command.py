@@ -6,9 +6,9 @@ import pytest
 import solved
 from typer.testing import CliRunner
 
-from geometry.base.errors import CaseError
-from loads.sources.expression import _FUNCTIONS
-from reports.commands.cli import app
+from alula.geometry.base.errors import CaseError
+from alula.loads.sources.expression import _FUNCTIONS
+from alula.reports.commands.cli import app
 
 
 def run(*arguments: str):
@@ -37,7 +37,7 @@ def test_strict_passes_where_nothing_is_refuted(tmp_path):
         source = "Someone (2000)"
     """
     path = tmp_path / "case.toml"
-    starter = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
+    starter = files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     path.write_text(starter + claims, encoding="utf-8")
     found = run(str(path), "--strict")
     assert found.exit_code == 0, found.output
@@ -61,7 +61,7 @@ def test_json_is_a_list_of_findings():
 
 
 def test_the_page_in_the_documentation_is_the_one_that_the_command_prints(request, monkeypatch):
-    monkeypatch.setattr("fea.claims.sources.check_all", lambda **options: solved.claims())
+    monkeypatch.setattr("alula.fea.claims.sources.check_all", lambda **options: solved.claims())
     page = (request.config.rootpath / "docs" / "claims.md").read_text(encoding="utf-8")
     assert run("--markdown").stdout == page, "make it anew: alula claims --markdown > docs/claims.md"
 
@@ -90,7 +90,7 @@ def test_mistakes_are_explained(arguments, sentence):
 def test_the_documented_claims_run(request, tmp_path):
     page = (request.config.rootpath / "docs" / "claims-format.md").read_text(encoding="utf-8")
     claims = page.split("```toml\n")[1].split("```")[0]
-    folder = files("loads.cases")
+    folder = files("alula.loads.cases")
     for name in ("owl-wing-static.toml", "owl-wing-statics-exact.csv", "owl-wing-statics-printed.csv"):
         (tmp_path / name).write_text(folder.joinpath(name).read_text(encoding="utf-8"), encoding="utf-8")
     path = tmp_path / "owl-wing-static.toml"

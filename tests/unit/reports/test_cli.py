@@ -9,7 +9,7 @@ from pathlib import Path
 import programs
 import pytest
 
-from loads.case.case_file import built_in_cases, read_case, read_companion
+from alula.loads.case.case_file import built_in_cases, read_case, read_companion
 
 
 def test_schema_is_a_json_schema() -> None:
@@ -131,12 +131,12 @@ def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: 
 
 def test_a_fault_of_the_program_is_status_4_without_traceback(tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text(
-        "import loads.case.case_file\n"
+        "import alula.loads.case.case_file\n"
         "def read_case(*args):\n    raise ZeroDivisionError('made up')\n"
-        "loads.case.case_file.read_case = read_case\n"
+        "alula.loads.case.case_file.read_case = read_case\n"
     )
     root = str(Path(__file__).parents[3])
-    code = "import sitecustomize; from reports.commands.cli import main; main()"
+    code = "import sitecustomize; from alula.reports.commands.cli import main; main()"
     for more, shown in (({}, False), ({"ALULA_TRACEBACK": "1"}, True)):
         done = subprocess.run(
             [sys.executable, "-c", code, "statics", "owl-wing-static"],
@@ -154,7 +154,7 @@ def test_a_fault_of_the_program_is_status_4_without_traceback(tmp_path: Path) ->
 
 def test_a_closed_pipe_is_no_traceback() -> None:
     root = str(Path(__file__).parents[3])
-    code = "from reports.commands.cli import main; main()"
+    code = "from alula.reports.commands.cli import main; main()"
     command = f"{sys.executable} -c '{code}' schema | head -c 10"
     done = subprocess.run(
         ["bash", "-c", command],

@@ -5,7 +5,7 @@ import pytest
 from rich.console import Console
 from solved import by_hand
 
-from reports.tables.console import print_result
+from alula.reports.tables.console import print_result
 
 
 def printed(result, width=80):

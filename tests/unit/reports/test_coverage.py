@@ -7,12 +7,12 @@ from importlib.resources import files
 import pytest
 import solved
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, Quantity
-from loads.case.case_file import read_text, validate
-from reports.page.coverage import not_covered
-from reports.page.html import render
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import LINKAGE, Quantity
+from alula.loads.case.case_file import read_text, validate
+from alula.reports.page.coverage import not_covered
+from alula.reports.page.html import render
 
 
 def told(result):
@@ -57,7 +57,7 @@ def test_buckling_is_not_called_left_out_where_it_is_judged(wing, result):
 def test_scatter_that_is_stated_is_not_called_left_out(wing, ranged, loads, words):
     tree = tomllib.loads(read_text("owl-wing-static")[0])
     if ranged:
-        cards = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))
+        cards = tomllib.loads(files("alula.geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))
         [name] = {part["material"] for part in tree["parts"].values()}
         ranges = {"strength_range": ["40 MPa", "43 MPa"], "youngs_modulus_range": ["2 GPa", "3 GPa"]}
         tree["materials"] = {"ranged": cards[name] | ranges}
@@ -128,7 +128,7 @@ def test_console_and_page_give_the_same_difference_of_hand_and_solid(result):
 
     from rich.console import Console
 
-    from reports.tables.console import print_result
+    from alula.reports.tables.console import print_result
 
     case = result.load_cases["weight"]
     near = tuple(replace(c, difference=0.0007) for c in case.links["GF"].comparisons)

@@ -7,14 +7,14 @@ import pytest
 from legible import assert_legible, written
 from PIL import Image
 
-from fea.beam.loads import BeamLoads, PointLoad
-from fea.beam.theory import check_beam
-from loads.records.load_case import LoadCase
-from reports.figures import diagrams, drawings
-from reports.sheet import plot, style
-from reports.sheet.canvas import Canvas
-from reports.sheet.labels import along, place_labels
-from reports.sheet.marks import Area, Stroke
+from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.theory import check_beam
+from alula.loads.records.load_case import LoadCase
+from alula.reports.figures import diagrams, drawings
+from alula.reports.sheet import plot, style
+from alula.reports.sheet.canvas import Canvas
+from alula.reports.sheet.labels import along, place_labels
+from alula.reports.sheet.marks import Area, Stroke
 
 
 def drawn(result, load_case="weight"):
@@ -232,7 +232,7 @@ def test_extreme_values_have_the_unit_of_their_axis(result):
 
 
 def test_the_worst_load_case_is_drawn(result):
-    from reports.page.pictures import governing_load_cases
+    from alula.reports.page.pictures import governing_load_cases
 
     assert governing_load_cases(result) == ("weight",)
     turned = {name: result.load_cases[name] for name in ("idle", "weight")}

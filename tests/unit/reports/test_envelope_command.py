@@ -49,7 +49,7 @@ def test_a_case_without_motion_is_bad_input(path: str) -> None:
 
 
 def test_too_little_memory_is_refused_before_solving_with_estimate_and_remedy(path: str, monkeypatch) -> None:
-    monkeypatch.setattr("fea.common.memory.with_libraries", lambda: 0.0)
+    monkeypatch.setattr("alula.fea.common.memory.with_libraries", lambda: 0.0)
     done = envelope(path, "--memory", "50 MB")
     assert done.returncode == 4
     assert done.stdout == ""

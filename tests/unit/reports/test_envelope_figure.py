@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fea.common.band import Band
-from fea.common.source import Source, SourceKind
-from reports.figures.envelope_figures import _panel
+from alula.fea.common.band import Band
+from alula.fea.common.source import Source, SourceKind
+from alula.reports.figures.envelope_figures import _panel
 
 ANGLES = np.linspace(0.0, 360.0, 73)
 STRENGTH = 40.0

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from geometry.base.errors import CannotRunError
-from reports.page.export import write_vtu
+from alula.geometry.base.errors import CannotRunError
+from alula.reports.page.export import write_vtu
 
 
 @pytest.fixture(scope="module")

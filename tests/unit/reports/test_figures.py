@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from reports.figures import figures
-from reports.figures import scene as scenes
-from reports.sheet import style
+from alula.reports.figures import figures
+from alula.reports.figures import scene as scenes
+from alula.reports.sheet import style
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 # Seen from outside counter-clockwise.

@@ -6,8 +6,8 @@ import re
 import pytest
 from PIL import Image
 
-from reports.figures import figures
-from reports.page.folder import report_names, write_report
+from alula.reports.figures import figures
+from alula.reports.page.folder import report_names, write_report
 
 
 @pytest.fixture

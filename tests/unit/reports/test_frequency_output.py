@@ -14,15 +14,15 @@ from legible import assert_legible, written
 from result_paths import compare
 
 import alula
-from fea.common.band import Band
-from fea.vibration.over_motion import case_frequencies
-from geometry.base.errors import CaseError
-from reports.commands.frequencies import as_json
-from reports.sheet.marks import Area, Stroke
-from reports.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
-from reports.tables.record import field_units
-from reports.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_sheet
-from reports.vibration.shapes import axis_lines, shapes_sheet
+from alula.fea.common.band import Band
+from alula.fea.vibration.over_motion import case_frequencies
+from alula.geometry.base.errors import CaseError
+from alula.reports.commands.frequencies import as_json
+from alula.reports.sheet.marks import Area, Stroke
+from alula.reports.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
+from alula.reports.tables.record import field_units
+from alula.reports.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_sheet
+from alula.reports.vibration.shapes import axis_lines, shapes_sheet
 
 
 @cache

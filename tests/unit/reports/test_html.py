@@ -5,14 +5,14 @@ from dataclasses import replace
 import pytest
 from html_pages import Page, stands_alone
 
-from fea.common.band import Band
-from fea.common.verdict import Quantity, Verdict
-from reports.page import claims_page
-from reports.page.claims_page import CLAIMS
-from reports.page.coverage import not_covered
-from reports.page.html import render
-from reports.page.pictures import diagram_name, linkage_name, stress_name
-from reports.words.wording import checks_of
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.reports.page import claims_page
+from alula.reports.page.claims_page import CLAIMS
+from alula.reports.page.coverage import not_covered
+from alula.reports.page.html import render
+from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
+from alula.reports.words.wording import checks_of
 
 PICTURES = {linkage_name("weight"): b"linkage", diagram_name("AE"): b"diagram", stress_name("GF"): b"stress"}
 

@@ -13,18 +13,18 @@ from matplotlib.image import imread
 from result_paths import compare
 from typer.testing import CliRunner
 
-from geometry.base.errors import CaseError
-from geometry.imported.read import part_facts, part_surface
-from geometry.parts.step import StepPart
-from geometry.placement.fit import Wanted
-from geometry.placement.match import place, points_of_part
-from geometry.placement.placed_body import bores_of
-from loads.exchange.part import part_entries
-from reports.commands.cli import app
-from reports.commands.inspect_part import inspect_file, record
-from reports.figures import figures
-from reports.figures.part_picture import part_picture
-from reports.sheet import style
+from alula.geometry.base.errors import CaseError
+from alula.geometry.imported.read import part_facts, part_surface
+from alula.geometry.parts.step import StepPart
+from alula.geometry.placement.fit import Wanted
+from alula.geometry.placement.match import place, points_of_part
+from alula.geometry.placement.placed_body import bores_of
+from alula.loads.exchange.part import part_entries
+from alula.reports.commands.cli import app
+from alula.reports.commands.inspect_part import inspect_file, record
+from alula.reports.figures import figures
+from alula.reports.figures.part_picture import part_picture
+from alula.reports.sheet import style
 
 FILES = Path(__file__).parents[2] / "data" / "step"
 

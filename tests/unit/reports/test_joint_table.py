@@ -9,11 +9,11 @@ import solved
 from edited_cases import PLANAR
 from typer.testing import CliRunner
 
-from fea.frame.case_statics import solve_case_statics
-from loads.case.case_file import read_case
-from reports.page.html import render
-from reports.tables.frames import shown_components
-from reports.tables.loads import weight_sentence
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.loads.case.case_file import read_case
+from alula.reports.page.html import render
+from alula.reports.tables.frames import shown_components
+from alula.reports.tables.loads import weight_sentence
 
 WING, FLIGHT = "owl-wing-static", "owl-wing-flight"
 BONDED = 'joint_model="bonded"'
@@ -59,7 +59,7 @@ def test_the_table_out_of_the_plane_holds_the_whole_wrench():
 
 
 def test_the_terminal_and_its_json_hold_them_too():
-    from reports.commands.cli import app
+    from alula.reports.commands.cli import app
 
     shown = CliRunner().invoke(app, ["statics", FLIGHT, "--set", PLANAR]).output
     assert "-0.1393) N, 0.9621 N, Mx -7.66, My -21.85 N·mm" in shown
@@ -69,7 +69,7 @@ def test_the_terminal_and_its_json_hold_them_too():
 
 def test_a_millionth_of_the_load_keeps_its_digits():
     """Forces were once printed with four decimals and torques with two, so that small mechanisms read zero."""
-    from reports.commands.cli import app
+    from alula.reports.commands.cli import app
 
     small = 'load_cases.weight.forces=[{link="CH", at="H", force=["0 N", "-2.5e-7 N"]}]'
     shown = CliRunner().invoke(app, ["statics", WING, "--set", small, "--set", PLANAR]).output

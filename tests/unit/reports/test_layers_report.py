@@ -10,16 +10,16 @@ import pytest
 from programs import ROOT
 from rich.console import Console
 
-from fea.common.band import Band
-from fea.outcomes.layer_stress import LayerStress
-from fea.solid.layers import Layers, best_directions, build_directions
-from reports.figures.build_map import _project, build_map
-from reports.page.coverage import not_covered
-from reports.page.html import render
-from reports.page.pictures import layers_name
-from reports.tables.console import print_result
-from reports.tables.layers import build_directions_of, direction
-from reports.tables.record import as_json
+from alula.fea.common.band import Band
+from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.solid.layers import Layers, best_directions, build_directions
+from alula.reports.figures.build_map import _project, build_map
+from alula.reports.page.coverage import not_covered
+from alula.reports.page.html import render
+from alula.reports.page.pictures import layers_name
+from alula.reports.tables.console import print_result
+from alula.reports.tables.layers import build_directions_of, direction
+from alula.reports.tables.record import as_json
 
 LINK = "GF"
 

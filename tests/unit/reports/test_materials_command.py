@@ -7,8 +7,8 @@ import tomllib
 import programs
 import pytest
 
-from geometry.materials.material import Material, library, library_text
-from reports.commands.materials import as_markdown, card_text, missing
+from alula.geometry.materials.material import Material, library, library_text
+from alula.reports.commands.materials import as_markdown, card_text, missing
 
 PAGE = (programs.ROOT / "docs" / "materials.md").read_text(encoding="utf-8")
 

@@ -11,11 +11,11 @@ import programs
 import pytest
 from PIL import Image
 
-from loads.case.case_file import read_case
-from loads.states.case_motion import solve_case_motion
-from reports.commands.motion import print_motion, write_motion
-from reports.motion.csv_tables import write_tables
-from reports.motion.record import record
+from alula.loads.case.case_file import read_case
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.commands.motion import print_motion, write_motion
+from alula.reports.motion.csv_tables import write_tables
+from alula.reports.motion.record import record
 
 CASE = """
 schema_version = 1
@@ -163,7 +163,7 @@ def test_the_animation_moves_and_is_small(folder):
 
 def test_a_second_run_replaces_the_first_and_nothing_else(folder, tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "reports.figures.motion_animation.draw_animation", lambda motion, path: path.write_bytes(b"GIF")
+        "alula.reports.figures.motion_animation.draw_animation", lambda motion, path: path.write_bytes(b"GIF")
     )
     home = Path(shutil.copytree(folder.parents[1], tmp_path / "home"))
     folder = home / "out" / "motion"

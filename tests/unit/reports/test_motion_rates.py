@@ -11,17 +11,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.base.errors import CaseError
-from loads.case.case_file import validate
-from loads.states.case_motion import solve_case_motion
-from reports.figures.motion_figures import angles_figure, forces_figure, torque_figure
-from reports.motion.csv_tables import write_tables
-from reports.motion.figures import energy_figure, rate_figures
-from reports.motion.lines import motion_lines
-from reports.motion.rate_rows import ends
-from reports.motion.rates import series, vector_extremes
-from reports.motion.record import record
-from reports.notebook.motion_report import MotionReport
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.figures.motion_figures import angles_figure, forces_figure, torque_figure
+from alula.reports.motion.csv_tables import write_tables
+from alula.reports.motion.figures import energy_figure, rate_figures
+from alula.reports.motion.lines import motion_lines
+from alula.reports.motion.rate_rows import ends
+from alula.reports.motion.rates import series, vector_extremes
+from alula.reports.motion.record import record
+from alula.reports.notebook.motion_report import MotionReport
 
 CASE = """
 schema_version = 1

@@ -9,20 +9,20 @@ from edited_cases import PLANAR, edited
 from html_pages import Page
 from rich.console import Console
 
-from fea.buckling.linkage import NO_EQUILIBRIUM
-from fea.check.run import check_case
-from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, by_nearness, deciding, overall
-from fea.outcomes.unloaded import undecided
-from fea.sizing.changes import changes
-from fea.study.margin import least_margin, nearest
-from fea.study.numbers import VariantNumber, VariantResult
-from reports.notebook.check_report import CheckReport
-from reports.page.html import render
-from reports.page.template import fill
-from reports.tables.console import print_result, say_checks
-from reports.tables.data import check_records
-from reports.words.wording import checks_of, decision, inapplicable
+from alula.fea.buckling.linkage import NO_EQUILIBRIUM
+from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, by_nearness, deciding, overall
+from alula.fea.outcomes.unloaded import undecided
+from alula.fea.sizing.changes import changes
+from alula.fea.study.margin import least_margin, nearest
+from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.reports.notebook.check_report import CheckReport
+from alula.reports.page.html import render
+from alula.reports.page.template import fill
+from alula.reports.tables.console import print_result, say_checks
+from alula.reports.tables.data import check_records
+from alula.reports.words.wording import checks_of, decision, inapplicable
 
 ENTRIES = (
     PLANAR,

@@ -11,10 +11,10 @@ from matplotlib.image import imread
 from rocker_case import TOML
 
 import alula
-from geometry.base.errors import CannotRunError, CaseError
-from reports.notebook.check_report import CheckReport
-from reports.notebook.shown import Picture, Table
-from reports.tables.record import result_record
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.reports.notebook.check_report import CheckReport
+from alula.reports.notebook.shown import Picture, Table
+from alula.reports.tables.record import result_record
 
 HOSTILE = "<script>alert('&')</script>"
 
@@ -144,9 +144,11 @@ def test_an_envelope_has_the_worst_pose_of_every_link(rocker, monkeypatch):
     assert {row["verdict"] for row in found.table("checks")} == {found.verdict.value}
     assert is_png(found.plot_safety_factors())
     drawn = {"rocker": found.plot_safety_factors().png}  # rendering is tested above
-    monkeypatch.setattr("reports.figures.figures.plots_of", lambda scenes, points: ({n: drawn[n] for n in scenes}, ()))
+    monkeypatch.setattr(
+        "alula.reports.figures.figures.plots_of", lambda scenes, points: ({n: drawn[n] for n in scenes}, ())
+    )
     assert is_png(found.plot_stress("rocker"))
-    monkeypatch.setattr("reports.figures.figures.plots_of", lambda scenes, points: ({}, ("rendering crashed",)))
+    monkeypatch.setattr("alula.reports.figures.figures.plots_of", lambda scenes, points: ({}, ("rendering crashed",)))
     with pytest.raises(CannotRunError, match="rendering crashed"):
         found.plot_stress("rocker")
     assert found.verdict.value.upper() in Page(found._repr_html_()).texts

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from geometry.base.errors import AlulaError, CannotRunError, CaseError
-from reports.page import output
-from reports.page.output import EXPORT, place, refuse_unusable, write_folder
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.reports.page import output
+from alula.reports.page.output import EXPORT, place, refuse_unusable, write_folder
 
 LIST = ".alula-check.json"
 

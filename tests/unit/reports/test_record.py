@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 import solved
 
-from fea.common.band import Band
-from geometry.base.version import RESULT_SCHEMA_VERSION, alula_version
-from reports.tables.record import as_json, field_units, result_record
+from alula.fea.common.band import Band
+from alula.geometry.base.version import RESULT_SCHEMA_VERSION, alula_version
+from alula.reports.tables.record import as_json, field_units, result_record
 
 ROOT = Path(__file__).resolve().parents[3]
 

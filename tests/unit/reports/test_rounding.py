@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from legible import written
 
-from fea.check.run import check_case
-from fea.frame.case_statics import solve_case_statics
-from fea.study.numbers import of_check
-from loads.case.case_file import validate
-from loads.statics.rounding import size_of, without_rounding
-from reports.commands.statics import print_statics
-from reports.figures import drawings
-from reports.notebook.check_report import CheckReport
-from reports.page.html import render
-from reports.tables.console import print_result
+from alula.fea.check.run import check_case
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.study.numbers import of_check
+from alula.loads.case.case_file import validate
+from alula.loads.statics.rounding import size_of, without_rounding
+from alula.reports.commands.statics import print_statics
+from alula.reports.figures import drawings
+from alula.reports.notebook.check_report import CheckReport
+from alula.reports.page.html import render
+from alula.reports.tables.console import print_result
 
 FAR = re.compile(r"\d(?:·10⁻1?[¹⁰-⁹]{2}|e-[1-9]\d)")
 """A number of size 1e-10 or less."""

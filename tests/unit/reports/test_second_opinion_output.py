@@ -5,15 +5,15 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-import fea.check.run
-from fea.calculix import program as calculix
-from fea.outcomes.opinion import Answer
-from fea.outcomes.result import HandResult
-from reports.commands.cli import app
-from reports.page.html import render
-from reports.tables.console import print_result
-from reports.tables.record import result_record
-from reports.tables.second_opinion import with_second_opinions
+import alula.fea.check.run
+from alula.fea.calculix import program as calculix
+from alula.fea.outcomes.opinion import Answer
+from alula.fea.outcomes.result import HandResult
+from alula.reports.commands.cli import app
+from alula.reports.page.html import render
+from alula.reports.tables.console import print_result
+from alula.reports.tables.record import result_record
+from alula.reports.tables.second_opinion import with_second_opinions
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +67,8 @@ def test_a_result_of_beams_alone_has_nothing_to_ask_about(result, tmp_path):
 
 def test_the_command_writes_the_decks_into_the_folder(result, tmp_path, monkeypatch):
     monkeypatch.setattr(calculix, "installed", lambda: None)
-    monkeypatch.setattr(fea.check.run, "check_case", lambda *a, **k: result)
-    monkeypatch.setattr("reports.page.pictures.draw_pictures", lambda *a: ({}, ()))
+    monkeypatch.setattr(alula.fea.check.run, "check_case", lambda *a, **k: result)
+    monkeypatch.setattr("alula.reports.page.pictures.draw_pictures", lambda *a: ({}, ()))
     out = tmp_path / "out"
     ran = CliRunner().invoke(app, ["check", result.name, "--second-opinion", "--json", "-o", str(out)])
     assert ran.exit_code == result.verdict.exit_status

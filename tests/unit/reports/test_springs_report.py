@@ -6,18 +6,18 @@ import solved
 from PIL import Image
 from sprung_cases import CROWN, case_of, stands
 
-from fea.check.anchor import anchor_loads
-from fea.check.run import check_case
-from loads.case.case_file import read_case
-from loads.states.case_motion import solve_case_motion
-from reports.figures.drawings import linkage_drawing
-from reports.figures.sprung import coil, spiral, stop_mark
-from reports.motion.csv_tables import write_tables
-from reports.page.coverage import not_covered
-from reports.page.html import render
-from reports.sheet.style import SPRING
-from reports.tables.record import result_record
-from reports.tables.springs import holding_sentence, spring_sentences
+from alula.fea.check.anchor import anchor_loads
+from alula.fea.check.run import check_case
+from alula.loads.case.case_file import read_case
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.figures.drawings import linkage_drawing
+from alula.reports.figures.sprung import coil, spiral, stop_mark
+from alula.reports.motion.csv_tables import write_tables
+from alula.reports.page.coverage import not_covered
+from alula.reports.page.html import render
+from alula.reports.sheet.style import SPRING
+from alula.reports.tables.record import result_record
+from alula.reports.tables.springs import holding_sentence, spring_sentences
 
 PEDAL = "spring-pedal"
 WITHOUT_FOOT = ['load_cases.foot.forces.0.force=["0 N", "0 N"]']

@@ -55,7 +55,7 @@ def test_a_mistake_is_one_sentence_and_leaves_no_folder(arguments: list[str], wo
 def test_more_points_than_many_are_computed_once_that_is_wanted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.commands.study.MANY", 1)
+    monkeypatch.setattr("alula.reports.commands.study.MANY", 1)
     arguments = (*MOTION, "--vary", "motion.poses=3, 4", "-o", "out")
     assert "--yes" in programs.inside(*arguments, folder=tmp_path).stderr
     assert "2 done" in programs.inside(*arguments, "--yes", folder=tmp_path).stdout
@@ -64,8 +64,8 @@ def test_more_points_than_many_are_computed_once_that_is_wanted(
 def test_the_starter_plan_is_valid_and_its_schema_is_one(tmp_path: Path) -> None:
     import jsonschema
 
-    from loads.plans.plan import read_plan
-    from loads.plans.variants import Variants
+    from alula.loads.plans.plan import read_plan
+    from alula.loads.plans.variants import Variants
 
     for arguments in (["four-bar.toml"], ["study.toml", "--study"]):
         assert programs.inside("new", *arguments, folder=tmp_path).returncode == 0

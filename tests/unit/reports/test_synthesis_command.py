@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from geometry.base.errors import CaseError
-from reports.commands.cli import app
-from reports.commands.synthesis import (
+from alula.geometry.base.errors import CaseError
+from alula.reports.commands.cli import app
+from alula.reports.commands.synthesis import (
     PUBLISHED_GROUND,
     PUBLISHED_POINTS,
     joints_at,

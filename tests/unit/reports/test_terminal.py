@@ -8,10 +8,10 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
-from fea.common.verdict import Subject, Verdict
-from reports.tables import data
-from reports.tables.console import print_result
-from reports.words.terminal import KEPT, say, say_table
+from alula.fea.common.verdict import Subject, Verdict
+from alula.reports.tables import data
+from alula.reports.tables.console import print_result
+from alula.reports.words.terminal import KEPT, say, say_table
 
 LONG = "wing-of-the-left-side-outer-section"
 COLUMNS = (("link", False), ("safety factor n\n(band)", True), ("displacement\n[mm]", True))

@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 from mesh_states import state
 
-from fea.solid.stress import stress_field
-from reports.figures.figures import colours
-from reports.page.html import render
-from reports.tables.record import as_json
-from reports.turnable.link import link_model, link_models, link_name
-from reports.turnable.pack import data_block, indices, quantised
-from reports.turnable.script import FOLDER, built_from, sources_digest, viewer
-from reports.turnable.surface import cut_surface
+from alula.fea.solid.stress import stress_field
+from alula.reports.figures.figures import colours
+from alula.reports.page.html import render
+from alula.reports.tables.record import as_json
+from alula.reports.turnable.link import link_model, link_models, link_name
+from alula.reports.turnable.pack import data_block, indices, quantised
+from alula.reports.turnable.script import FOLDER, built_from, sources_digest, viewer
+from alula.reports.turnable.surface import cut_surface
 
 
 def unpacked(packed, columns):

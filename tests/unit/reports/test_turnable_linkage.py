@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from solved import by_hand
 
-from geometry.linkage.motion import solve_motion
-from loads.case.case_file import read_case
-from loads.case.layers import slab
-from loads.states.case_motion import drive_angles, solve_case_motion
-from loads.states.masses import part_masses
-from reports.turnable.moving import check_linkage, motion_linkage
-from reports.turnable.pack import data_block
+from alula.geometry.linkage.motion import solve_motion
+from alula.loads.case.case_file import read_case
+from alula.loads.case.layers import slab
+from alula.loads.states.case_motion import drive_angles, solve_case_motion
+from alula.loads.states.masses import part_masses
+from alula.reports.turnable.moving import check_linkage, motion_linkage
+from alula.reports.turnable.pack import data_block
 
 MOVING = ("flapping-wing-chosen", "ornithopter", "four-bar-synthesis", "spring-pedal", "owl-wing-static")
 
@@ -166,6 +166,6 @@ def test_colours_are_the_use_of_strength_up_to_the_limit_of_the_check():
 
 
 def test_shades_are_bytes_of_shares():
-    from reports.turnable.pack import shades
+    from alula.reports.turnable.pack import shades
 
     assert list(base64.b64decode(shades(np.array([[0.0, 0.5], [1.0, 7.0]])))) == [0, 128, 255, 255]

@@ -7,14 +7,14 @@ import pytest
 from mesh_states import state
 from rich.console import Console
 
-import fea.claims.data
-from fea.claims.data import case_tree
-from fea.outcomes.opinion import SecondOpinion
-from fea.refine.discretisation import MeshStatus
-from geometry.base.errors import CannotRunError
-from loads.case.case_file import read_case
-from reports.figures import figures
-from reports.tables.second_opinion import opinion_records, say_opinions
+import alula.fea.claims.data
+from alula.fea.claims.data import case_tree
+from alula.fea.outcomes.opinion import SecondOpinion
+from alula.fea.refine.discretisation import MeshStatus
+from alula.geometry.base.errors import CannotRunError
+from alula.loads.case.case_file import read_case
+from alula.reports.figures import figures
+from alula.reports.tables.second_opinion import opinion_records, say_opinions
 
 
 @pytest.fixture
@@ -79,7 +79,7 @@ def test_no_claim_is_judged_on_a_stress_that_has_not_converged(monkeypatch, resu
         asked.append(effort.stated)
         return replace(result, load_cases={"weight": solids})
 
-    monkeypatch.setattr(fea.claims.data, "check_case", check)
+    monkeypatch.setattr(alula.fea.claims.data, "check_case", check)
     tree = case_tree(read_case("owl-wing-static"), "owl-wing-static")
     with pytest.raises(CannotRunError, match="that of GF has not converged"):
         tree["solid"]

@@ -3,9 +3,9 @@ from dataclasses import replace
 
 import pytest
 
-from fea.common.band import Band
-from fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
-from reports.words import wording
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
+from alula.reports.words import wording
 
 
 @pytest.mark.parametrize(

@@ -14,58 +14,26 @@ Examples
 4 mm pass 8.7
 """
 
-import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from importlib.util import find_spec
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
-
-class ShadowedError(ImportError):
-    """A file of the user's bears the name of one of alula's own packages, and Python finds it first."""
-
-
-def _in_the_way() -> str:
-    """Say which file is found in place of one of alula's packages, and what to do; an empty text where none is."""
-    for name in ("geometry", "loads", "fea", "reports"):
-        try:
-            spec = find_spec(name)
-        except ValueError:  # a module that was made by hand
-            spec = None
-        places = [] if spec is None else [spec.origin] if spec.has_location else spec.submodule_search_locations or []
-        found = next((Path(place) for place in places if place), None)
-        if found is not None and found.name == "__init__.py":
-            found = found.parent
-        if found is not None and found.resolve() != Path(__file__).resolve().parent / name:
-            return (
-                f"'{found}' is in the way of alula's own package '{name}'; rename it, or move it to a folder of which "
-                "Python does not import"
-            )
-    return ""
-
-
-if _sentence := _in_the_way():
-    if Path(sys.argv[0]).stem == "alula":  # the command, which tells mistakes without a traceback
-        print(f"alula: {_sentence}", file=sys.stderr)
-        sys.exit(2)
-    raise ShadowedError(_sentence)
-
-from geometry.base.version import alula_version  # noqa: E402  (what may be another's is asked first)
+from alula.geometry.base.version import alula_version
 
 if TYPE_CHECKING:
-    from loads.case.case import Case
-    from reports.notebook.check_report import CheckReport
-    from reports.notebook.claims_report import ClaimsReport
-    from reports.notebook.envelope_report import EnvelopeReport
-    from reports.notebook.frequency_report import FrequencyReport
-    from reports.notebook.motion_report import MotionReport
-    from reports.notebook.part_report import PartReport
-    from reports.notebook.size_report import SizeReport
-    from reports.notebook.study_report import StudyReport
-    from reports.notebook.synthesis_report import SynthesisReport
-    from reports.notebook.tolerance_report import ToleranceReport
+    from alula.loads.case.case import Case
+    from alula.reports.notebook.check_report import CheckReport
+    from alula.reports.notebook.claims_report import ClaimsReport
+    from alula.reports.notebook.envelope_report import EnvelopeReport
+    from alula.reports.notebook.frequency_report import FrequencyReport
+    from alula.reports.notebook.motion_report import MotionReport
+    from alula.reports.notebook.part_report import PartReport
+    from alula.reports.notebook.size_report import SizeReport
+    from alula.reports.notebook.study_report import StudyReport
+    from alula.reports.notebook.synthesis_report import SynthesisReport
+    from alula.reports.notebook.tolerance_report import ToleranceReport
 
 __all__ = [
     "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "size", "study",
@@ -82,7 +50,7 @@ def cases() -> tuple[str, ...]:
     >>> "owl-wing-static" in cases()
     True
     """
-    from loads.case.case_file import built_in_cases
+    from alula.loads.case.case_file import built_in_cases
 
     return built_in_cases()
 
@@ -115,7 +83,7 @@ def read_case(name_or_path: "str | PathLike[str]", values: Mapping[str, object] 
     >>> case.parts["tube"].outer_diameter  # mm
     5.0
     """
-    from loads.case import case_file
+    from alula.loads.case import case_file
 
     case = case_file.read_case(fspath(name_or_path))
     return case.with_values(values) if values else case
@@ -166,8 +134,8 @@ def check(
     >>> round(report.drive_torques["weight"], 1)  # N·mm
     -19.9
     """
-    from fea.check.run import check_case, effort_of
-    from reports.notebook.check_report import CheckReport
+    from alula.fea.check.run import check_case, effort_of
+    from alula.reports.notebook.check_report import CheckReport
 
     found = _case(case)
     return CheckReport(
@@ -202,9 +170,9 @@ def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionRe
     CaseError
         For a case without motion or drive, and where the motion meets a dead point.
     """
-    from fea.common.threads import bounded
-    from fea.whole.rubbed_motion import rubbed_motion
-    from reports.notebook.motion_report import MotionReport
+    from alula.fea.common.threads import bounded
+    from alula.fea.whole.rubbed_motion import rubbed_motion
+    from alula.reports.notebook.motion_report import MotionReport
 
     with bounded(threads):
         return MotionReport(rubbed_motion(_case(case)))
@@ -240,10 +208,10 @@ def frequencies(
     CannotRunError
         Where a stage fails.
     """
-    from fea.common.at_temperature import require_stiffness
-    from fea.common.threads import bounded
-    from fea.vibration.over_motion import case_frequencies
-    from reports.notebook.frequency_report import FrequencyReport
+    from alula.fea.common.at_temperature import require_stiffness
+    from alula.fea.common.threads import bounded
+    from alula.fea.vibration.over_motion import case_frequencies
+    from alula.reports.notebook.frequency_report import FrequencyReport
 
     stated = _case(case)
     require_stiffness(stated)
@@ -282,9 +250,9 @@ def envelope(
     CannotRunError
         Where a stage fails.
     """
-    from fea.check.run import effort_of
-    from fea.motion.envelope import envelope_case
-    from reports.notebook.envelope_report import EnvelopeReport
+    from alula.fea.check.run import effort_of
+    from alula.fea.motion.envelope import envelope_case
+    from alula.reports.notebook.envelope_report import EnvelopeReport
 
     found = _case(case)
     return EnvelopeReport(
@@ -321,9 +289,9 @@ def claims(name_or_path: "str | PathLike[str]", *, fidelity: str = "solid", thre
     CaseError
         For a name that is neither.
     """
-    from fea.claims.sources import check_claims
-    from fea.common.threads import bounded
-    from reports.notebook.claims_report import ClaimsReport
+    from alula.fea.claims.sources import check_claims
+    from alula.fea.common.threads import bounded
+    from alula.reports.notebook.claims_report import ClaimsReport
 
     with bounded(threads):
         return ClaimsReport(check_claims(fspath(name_or_path), fidelity=fidelity, threads=threads))
@@ -376,13 +344,11 @@ def study(
     CannotRunError
         Where the disk refuses; what was finished stands.
     """
-    from pathlib import Path
-
-    from fea.study.compute import compute_study
-    from loads.plans.plan import plan_of
-    from loads.plans.variants import Variants
-    from reports.notebook.study_report import StudyReport
-    from reports.page.output import folder_named
+    from alula.fea.study.compute import compute_study
+    from alula.loads.plans.plan import plan_of
+    from alula.loads.plans.variants import Variants
+    from alula.reports.notebook.study_report import StudyReport
+    from alula.reports.page.output import folder_named
 
     place, threads = folder_named(folder), _at_a_time(threads, workers)
     stated = {path: list(value) if isinstance(value, tuple) else value for path, value in vary.items()}
@@ -451,9 +417,9 @@ def size(
     CannotRunError
         Where the disk refuses.
     """
-    from reports.commands.size import find_size
-    from reports.notebook.size_report import SizeReport
-    from reports.page.output import folder_named
+    from alula.reports.commands.size import find_size
+    from alula.reports.notebook.size_report import SizeReport
+    from alula.reports.page.output import folder_named
 
     return SizeReport(
         find_size(
@@ -506,10 +472,10 @@ def tolerance(
     CaseError, CannotRunError
         As ``check``, and for a case without tolerances.
     """
-    from fea.check.run import effort_of
-    from fea.tolerance.analysis import tolerance_case
-    from reports.commands.tolerance import with_tolerances
-    from reports.notebook.tolerance_report import ToleranceReport
+    from alula.fea.check.run import effort_of
+    from alula.fea.tolerance.analysis import tolerance_case
+    from alula.reports.commands.tolerance import with_tolerances
+    from alula.reports.notebook.tolerance_report import ToleranceReport
 
     found = with_tolerances(_case(case), tolerances or {})
     effort = effort_of(found, accuracy)
@@ -543,8 +509,8 @@ def synthesise(points: Sequence[tuple[str, str]], ground: str) -> "SynthesisRepo
     >>> {name: round(length) for name, length in found.lengths.items()}  # mm
     {'a': 1709, 'b': 10344, 'c': 1998, 'd': 10000}
     """
-    from reports.commands.synthesis import read_synthesis
-    from reports.notebook.synthesis_report import SynthesisReport
+    from alula.reports.commands.synthesis import read_synthesis
+    from alula.reports.notebook.synthesis_report import SynthesisReport
 
     return SynthesisReport(read_synthesis([", ".join(pair) for pair in points], ground))
 
@@ -570,10 +536,8 @@ def inspect(path: "str | PathLike[str]", *, material: str | None = None, unit: s
     CaseError, CannotRunError
         For a file that holds no single solid, and where the geometry kernel fails.
     """
-    from pathlib import Path
-
-    from reports.commands.inspect_part import inspect_file
-    from reports.notebook.part_report import PartReport
+    from alula.reports.commands.inspect_part import inspect_file
+    from alula.reports.notebook.part_report import PartReport
 
     return PartReport(inspect_file(Path(path), material, unit))
 
@@ -589,16 +553,5 @@ def _at_a_time(threads: int | None, workers: int | None) -> int | None:
     return workers
 
 
-def _command() -> NoReturn:
-    """Run the command line."""
-    from reports.commands.cli import main
-
-    main()
-
-
 def _silent(message: str) -> None:
     """Say nothing of the progress."""
-
-
-if __name__ == "__main__":
-    _command()
