@@ -18,12 +18,13 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from alula.geometry.base.version import alula_version
 
 if TYPE_CHECKING:
-    from alula.loads.case.case import Case
+    from alula.loads.case.case import Case as Record
+    from alula.loads.compose.stated_case import StatedCase as Case
     from alula.reports.notebook.check_report import CheckReport
     from alula.reports.notebook.claims_report import ClaimsReport
     from alula.reports.notebook.envelope_report import EnvelopeReport
@@ -36,10 +37,19 @@ if TYPE_CHECKING:
     from alula.reports.notebook.tolerance_report import ToleranceReport
 
 __all__ = [
-    "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "size", "study",
+    "Case", "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "size", "study",
     "synthesise", "tolerance",
 ]  # fmt: skip
 __version__ = alula_version()
+
+
+def __getattr__(name: str) -> Any:
+    """Return ``Case``, which is imported where it is needed: all that reads cases takes longer than the rest."""
+    if name != "Case":
+        raise AttributeError(f"module 'alula' has no attribute '{name}'", name=name)
+    from alula.loads.compose.stated_case import StatedCase
+
+    return StatedCase
 
 
 def cases() -> tuple[str, ...]:
@@ -68,7 +78,7 @@ def read_case(name_or_path: "str | PathLike[str]", values: Mapping[str, object] 
     Returns
     -------
     Case
-        The case with its links, joints, parts, load cases and checks; ``case.with_values(...)`` changes entries.
+        With its links, joints, parts, load cases and checks; ``case.with_values(...)`` changes entries.
 
     Raises
     ------
@@ -83,9 +93,9 @@ def read_case(name_or_path: "str | PathLike[str]", values: Mapping[str, object] 
     >>> case.parts["tube"].outer_diameter  # mm
     5.0
     """
-    from alula.loads.case import case_file
+    from alula.loads.compose.stated_case import StatedCase
 
-    case = case_file.read_case(fspath(name_or_path))
+    case = StatedCase.read(name_or_path)
     return case.with_values(values) if values else case
 
 
@@ -298,7 +308,7 @@ def claims(name_or_path: "str | PathLike[str]", *, fidelity: str = "solid", thre
 
 
 def study(
-    case: "str | PathLike[str]",
+    case: "Case | str | PathLike[str]",
     vary: Mapping[str, object],
     folder: "str | PathLike[str]",
     *,
@@ -313,8 +323,8 @@ def study(
 
     Parameters
     ----------
-    case : str or path
-        Name of a built-in case, or path of a case file.
+    case : Case, str or path
+        A case, the name of a built-in one, or the path of a case file.
     vary : mapping of str to object
         Entry -> its values: a list, or a range such as ``"2 mm..8 mm/7"``. All combinations are computed.
     folder : str or path
@@ -353,8 +363,8 @@ def study(
     place, threads = folder_named(folder), _at_a_time(threads, workers)
     stated = {path: list(value) if isinstance(value, tuple) else value for path, value in vary.items()}
     plan = plan_of(
-        {
-            "case": fspath(case),
+        _stated(case).of_study()
+        | {
             "vary": stated,
             "link": dict(link or {}),
             "set": dict(values or {}),
@@ -367,7 +377,7 @@ def study(
 
 
 def size(
-    case: "str | PathLike[str]",
+    case: "Case | str | PathLike[str]",
     vary: Mapping[str, str] | None = None,
     *,
     choose: Mapping[str, str] | None = None,
@@ -388,8 +398,8 @@ def size(
 
     Parameters
     ----------
-    case : str or path
-        Name of a built-in case, or path of a case file.
+    case : Case, str or path
+        A case, the name of a built-in one, or the path of a case file.
     vary : mapping of str to str, optional
         Entry -> its range, such as ``"2 mm..8 mm"``.
     choose : mapping of str to str, optional
@@ -423,7 +433,7 @@ def size(
 
     return SizeReport(
         find_size(
-            fspath(case),
+            _stated(case),
             vary or {},
             choose or {},
             step=step,
@@ -542,8 +552,21 @@ def inspect(path: "str | PathLike[str]", *, material: str | None = None, unit: s
     return PartReport(inspect_file(Path(path), material, unit))
 
 
-def _case(case: "Case | str | PathLike[str]") -> "Case":
-    return read_case(case) if isinstance(case, str | PathLike) else case
+def _case(case: "Case | str | PathLike[str]") -> "Record":
+    from alula.loads.case.case import Case as Record
+
+    return case if isinstance(case, Record) else _stated(case).record
+
+
+def _stated(case: "Case | str | PathLike[str]") -> "Case":
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.compose.stated_case import StatedCase
+
+    if isinstance(case, str | PathLike):
+        return StatedCase.read(case)
+    if not isinstance(case, StatedCase):
+        raise CaseError(f"case: it is {type(case).__name__}; give a case, the name of a built-in one or a path")
+    return case
 
 
 def _at_a_time(threads: int | None, workers: int | None) -> int | None:

@@ -92,7 +92,7 @@ def test_the_page_on_python_has_what_the_functions_return() -> None:
     page = python.page()
     assert "autofunction:: alula.check\n" in page
     assert "autoclass:: alula.reports.notebook.check_report.CheckReport\n" in page
-    assert "automethod:: alula.loads.case.case.Case.with_values\n" in page
+    assert "autoclass:: alula.Case\n" in page
 
 
 @pytest.mark.parametrize(("base", "stretch"), list(stretches()), ids=lambda value: getattr(value, "source", value))

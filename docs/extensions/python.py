@@ -9,6 +9,8 @@ from alula.fea.common.band import Band
 from alula.fea.common.verdict import Verdict
 from alula.reports.notebook.shown import Picture, Table
 
+CASE = "Case"
+"""The one name of ``alula.__all__`` that is a class."""
 HELD = (Table, Picture, Band, Verdict)
 """What the reports hold."""
 
@@ -22,13 +24,11 @@ def page() -> str:
         reStructuredText, whose directives Sphinx fills with the docstrings.
     """
     parts = [_title("Python", "="), ".. automodule:: alula", _title("Functions", "-")]
-    parts += [f"{_title(name, '^')}\n\n.. autofunction:: alula.{name}" for name in alula.__all__]
+    parts += [f"{_title(name, '^')}\n\n.. autofunction:: alula.{name}" for name in alula.__all__ if name != CASE]
+    parts += [_title("A case", "-"), _class("alula", CASE, ":members:", ":member-order: bysource")]
     parts.append(_title("What they return", "-"))
     for module, name in returned():
-        if name == "Case":  # its fields are the entries of the case file
-            parts += [_class(module, f"{name}()"), f".. automethod:: {module}.{name}.with_values"]
-        else:
-            parts.append(_class(module, name, ":members:", ":member-order: bysource"))
+        parts.append(_class(module, name, ":members:", ":member-order: bysource"))
     parts += [_class(kind.__module__, kind.__name__, ":members:", ":member-order: bysource") for kind in HELD]
     return "\n\n".join(parts) + "\n"
 
@@ -43,12 +43,12 @@ def returned() -> list[tuple[str, str]]:
     """
     tree = ast.parse(inspect.getsource(alula))
     imported = {
-        alias.name: node.module or ""
+        alias.asname or alias.name: node.module or ""
         for node in ast.walk(tree)
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     }
-    return [(imported[name], name) for name in dict.fromkeys(_return_names(tree)) if name in imported]
+    return [(imported[name], name) for name in dict.fromkeys(_return_names(tree)) if name in imported and name != CASE]
 
 
 def _return_names(tree: ast.Module) -> Iterator[str]:

@@ -27,8 +27,9 @@ class CaseModel(BaseModel):
         for record in reversed(cls.__mro__):
             for name, text in _entry_texts().get(f"{record.__module__}.{record.__name__}", {}).items():
                 field = cls.model_fields.get(name)  # None for what no case file states
-                if field is not None and field.description is None:
-                    entries[field.alias or name]["description"] = text
+                entry = entries.get(field.alias or name) if field is not None and field.description is None else None
+                if entry is not None:  # which what no file states is not
+                    entry["description"] = text
         return schema
 
 

@@ -57,7 +57,7 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
-    return _changed(read_tables(name_or_path), stated_changes(overrides), name_or_path)
+    return changed_case(read_tables(name_or_path), stated_changes(overrides), name_or_path, folder_of(name_or_path))
 
 
 def read_tables(name_or_path: str) -> dict[str, Any]:
@@ -149,12 +149,33 @@ def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict
     return data
 
 
-def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Case:
-    """Return the case that the tables of a file state after some changes, which later ones can be added to."""
-    return validate(changed_tables(tables, changes), folder_of(name)).read_from(
+def changed_case(tables: dict[str, Any], changes: Sequence[Change], name: str, folder: str) -> Case:
+    """Return the case that tables state after some changes, which later ones can be added to.
+
+    Parameters
+    ----------
+    tables : dict of str to object
+        Of a case file.
+    changes : sequence of Change
+        As for ``changed_tables``.
+    name : str
+        Path or built-in name that they were read from; "" where they were put together in Python.
+    folder : str
+        Where the files of parts are sought.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        As ``changed_tables`` and ``validate``.
+    """
+    return validate(changed_tables(tables, changes), folder).read_from(
         Origin(
             name=name,
-            revise=partial(_revised, tables, tuple(changes), name),
+            revise=partial(_revised, tables, tuple(changes), name, folder),
             changes=tuple((change.path, _as_stated(change.value)) for change in changes),
         )
     )
@@ -164,8 +185,11 @@ def _as_stated(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value, default=str)
 
 
-def _revised(tables: dict[str, Any], changes: Sequence[Change], name: str, values: Mapping[str, object]) -> Case:
-    return _changed(tables, [*changes, *(Change(path, value, "with_values") for path, value in values.items())], name)
+def _revised(
+    tables: dict[str, Any], changes: Sequence[Change], name: str, folder: str, values: Mapping[str, object]
+) -> Case:
+    more = (Change(path, value, "with_values") for path, value in values.items())
+    return changed_case(tables, [*changes, *more], name, folder)
 
 
 def read_text(name_or_path: str) -> tuple[str, str]:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
+from pydantic.json_schema import SkipJsonSchema
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Text
@@ -36,6 +37,8 @@ class StudyPlan(CaseModel):
     """Version of this format."""
     case: Text
     """Name of a built-in case, or path of a case file, relative to the folder of this file."""
+    tables: SkipJsonSchema[dict[Text, Any]] = {}
+    """The tables of a case that was composed in Python; ``case`` is its title then. No plan of a user's states them."""
     analysis: Literal["check", "motion", "envelope"] = "check"
     """What is done with every variant, as by the command of that name."""
     set: Annotated[dict[Text, Any], Field(max_length=200)] = {}

@@ -50,7 +50,7 @@ class Variants:
     def __init__(self, plan: StudyPlan, folder: Path, points: Sequence[Mapping[str, object]] | None = None) -> None:
         self.plan, self.name = plan, case_name(plan, folder)
         changes = [Change(path, value, "set") for path, value in plan.set.items()]
-        self.base = changed_tables(read_tables(self.name), changes)
+        self.base = changed_tables(plan.tables or read_tables(self.name), changes)
         for table in LEFT_OUT:
             self.base.pop(table, None)
         self.points = Points(plan.axes(), table_of(plan, folder), plan.sample) if points is None else Points((), points)
@@ -100,7 +100,7 @@ class Variants:
     def _digest(self, part: str, stated: str) -> str:
         """Return the digest of a part's file with its suffix, which is its name wherever it travels."""
         if stated not in self._digests:
-            path = Path(folder_of(self.name)) / stated
+            path = Path("" if self.plan.tables else folder_of(self.name)) / stated
             try:
                 with path.open("rb") as stream:
                     digest = hashlib.file_digest(stream, "sha256").hexdigest()

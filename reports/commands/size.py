@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from alula.fea.sizing.least import Sized
     from alula.fea.sizing.lightest import Lightest
+    from alula.loads.compose.stated_case import StatedCase
     from alula.loads.plans.axis import Axis
 
 app = typer.Typer()
@@ -81,9 +82,10 @@ def size(
 ) -> None:
     """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
     from alula.loads.case.case_file import stated_changes
+    from alula.loads.compose.stated_case import StatedCase
 
     found = find_size(
-        case,
+        StatedCase.read(case),
         stated(vary, "--vary"),
         stated(choose, "--choose"),
         step=step,
@@ -110,7 +112,7 @@ def size(
 
 
 def find_size(
-    case: str,
+    case: "StatedCase",
     vary: Mapping[str, str],
     choose: Mapping[str, str],
     *,
@@ -132,8 +134,7 @@ def find_size(
 
     Parameters
     ----------
-    case : str
-        Path of a case file, or the name of a built-in case.
+    case : StatedCase
     vary, choose : mapping of str to str
         Entry -> its range, and entry -> its values.
     step : str, optional
@@ -173,7 +174,6 @@ def find_size(
     from alula.fea.study.store import Store
     from alula.geometry.base.errors import CaseError
     from alula.geometry.base.tidying import scratch_folder
-    from alula.loads.case.case_file import read_case
     from alula.loads.plans.plan import plan_of
     from alula.loads.plans.variants import Variants
 
@@ -184,7 +184,7 @@ def find_size(
     several = len(axes) > 1 or not axes[0].is_range or bool(minimise or maximise)
     if several and analysis != "check":
         raise CaseError(f"size: several entries or an objective go with --analysis check alone, not '{analysis}'")
-    data: dict[str, Any] = {"case": case, "vary": {a.path: list(a.values) for a in axes}, "link": dict(link)}
+    data: dict[str, Any] = case.of_study() | {"vary": {a.path: list(a.values) for a in axes}, "link": dict(link)}
     data["mass"] = several and objective.quantity == "mass"
     data |= {"fidelity": fidelity, "accuracy": accuracy, "analysis": analysis, "set": dict(values)}
     plan = plan_of(data)
@@ -198,7 +198,7 @@ def find_size(
         store = stack.enter_context(Store.writing(kept))
         engine = stack.enter_context(engine_for(variants, kept, workers=workers))
         search = Search(plan, Path(), store, engine, tell=tell)
-        told = caveats(read_case(case).with_values(dict(values) | points[0]), over_motion=analysis == "envelope")
+        told = caveats(case.with_values(dict(values) | points[0]).record, over_motion=analysis == "envelope")
         found: Sized | Lightest = (
             lightest(search, axes, objective, most=most, seed=seed, caveats=told)
             if several

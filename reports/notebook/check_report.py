@@ -12,13 +12,13 @@ from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
 from alula.loads.statics.rounding import without_rounding
-from alula.reports.notebook.shown import Picture, Row, Table, pick, summary
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
 from alula.reports.tables.record import worst_load_case
 from alula.reports.words.wording import checks_of, headline, inapplicable
 
 
 @dataclass(frozen=True)
-class CheckReport:
+class CheckReport(Tabled):
     """A check of a case, as ``alula check`` makes it.
 
     Attributes

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from html import escape
 
 from alula.fea.claims.audit import ClaimResult
-from alula.reports.notebook.shown import Table
+from alula.reports.notebook.shown import Table, Tabled
 from alula.reports.tables.claims import as_records, count
 
 
 @dataclass(frozen=True)
-class ClaimsReport:
+class ClaimsReport(Tabled):
     """Published figures re-derived, as ``alula claims`` does.
 
     Attributes

@@ -13,13 +13,13 @@ from alula.fea.motion.envelope_result import EnvelopeResult
 from alula.geometry.base.errors import CannotRunError
 from alula.reports.commands.envelope import drive_angle
 from alula.reports.notebook.check_report import check_rows
-from alula.reports.notebook.shown import Picture, Row, Table, pick, summary
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
 
 Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class EnvelopeReport:
+class EnvelopeReport(Tabled):
     """A case over its whole motion, as ``alula envelope`` makes it.
 
     Attributes

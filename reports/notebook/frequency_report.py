@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from alula.fea.common.band import Band
 from alula.fea.vibration.frequency_outcomes import deciding_load_case, least_frequency, unit
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
-from alula.reports.notebook.shown import Picture, Row, Table, pick
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
 from alula.reports.tables.frequencies import history_sentence, mode_rows
 
 
 @dataclass(frozen=True)
-class FrequencyReport:
+class FrequencyReport(Tabled):
     """Natural frequencies of a linkage over its motion and of each link by itself, as ``alula frequencies`` finds them.
 
     Attributes

@@ -12,13 +12,13 @@ from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.rate_rows import whole_rows
 from alula.reports.motion.rates import QUANTITIES, rates_record, series
 from alula.reports.motion.record import record
-from alula.reports.notebook.shown import Picture, Row, Table, pick
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
 
 Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class MotionReport:
+class MotionReport(Tabled):
     """A case over its motion, as ``alula motion`` makes it.
 
     Attributes

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.exchange.part import part_entries
 from alula.reports.commands.inspect_part import GRAMS, Inspection
-from alula.reports.notebook.shown import Picture, Row, Table
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled
 
 
 @dataclass(frozen=True)
-class PartReport:
+class PartReport(Tabled):
     """What a STEP file or a mesh holds, as ``alula inspect`` finds it.
 
     Attributes

@@ -1,15 +1,18 @@
 """A table and a picture that a notebook shows and a script can use."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from html import escape
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from alula.fea.common.verdict import Verdict
-from alula.geometry.base.errors import CaseError
+from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.reports.words.wording import number, plain
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 Cell = str | float | int | None
 Row = dict[str, Cell]
@@ -72,8 +75,55 @@ class Table:
         )
         return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>"
 
+    def frame(self) -> "DataFrame":
+        """Return the table as a frame of pandas, which the extra ``alula[pandas]`` installs.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With the columns of the table; numbers that are not known and entries that do not apply are missing values.
+
+        Raises
+        ------
+        CannotRunError
+            Where pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise CannotRunError("frame: pandas is not installed; run pip install 'alula[pandas]'") from None
+        return pandas.DataFrame(list(self.rows), columns=list(self.columns))
+
     def _is_number(self, column: str) -> bool:
         return not any(isinstance(row[column], str) for row in self.rows)
+
+
+class Tabled:
+    """A report whose tables are frames of pandas on request."""
+
+    table: Callable[..., Table]
+
+    def frame(self, *of: str) -> "DataFrame":
+        """Return a table of the report as a frame of pandas, which the extra ``alula[pandas]`` installs.
+
+        Parameters
+        ----------
+        *of : str
+            As for ``table``: which one, where the report has several.
+
+        Returns
+        -------
+        pandas.DataFrame
+            As ``Table.frame``.
+
+        Raises
+        ------
+        CaseError
+            For a table that there is not.
+        CannotRunError
+            Where pandas is not installed.
+        """
+        return self.table(*of).frame()
 
 
 @dataclass(frozen=True)

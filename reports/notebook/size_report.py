@@ -8,11 +8,11 @@ from alula.fea.sizing.least import Sized
 from alula.fea.sizing.lightest import Lightest
 from alula.fea.study.margin import margin, nearest
 from alula.fea.study.numbers import VariantResult
-from alula.reports.notebook.shown import Row, Table
+from alula.reports.notebook.shown import Row, Table, Tabled
 
 
 @dataclass(frozen=True)
-class SizeReport:
+class SizeReport(Tabled):
     """The least size that passes, or the best values of several entries, as ``alula size`` finds them.
 
     Attributes

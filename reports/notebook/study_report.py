@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from alula.fea.study.store import Store
-from alula.reports.notebook.shown import Picture, Row, Table
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled
 from alula.reports.study.rows import nearest_text, study_rows
 
 
 @dataclass(frozen=True)
-class StudyReport:
+class StudyReport(Tabled):
     """The variants of a case that a folder holds.
 
     Attributes

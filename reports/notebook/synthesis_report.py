@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 from alula.geometry.mechanisms.synthesis import Synthesis
 from alula.reports.commands.synthesis import draw_linkage, record
-from alula.reports.notebook.shown import Picture, Row, Table
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled
 
 
 @dataclass(frozen=True)
-class SynthesisReport:
+class SynthesisReport(Tabled):
     """A four-bar through three precision points, as ``alula synth`` finds it.
 
     Attributes

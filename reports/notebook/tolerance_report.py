@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.reports.notebook.shown import Picture, Row, Table, pick
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
 
 
 @dataclass(frozen=True)
-class ToleranceReport:
+class ToleranceReport(Tabled):
     """Samples of a case within its tolerances, as ``alula tolerance`` draws them.
 
     Attributes

@@ -118,7 +118,7 @@ def test_wrong_values_are_told_in_a_sentence(values, told):
 
 def test_only_what_was_read_can_be_read_once_more():
     built = validate(tomllib.loads(read_text(OWL)[0]))
-    read = alula.read_case(OWL)
+    read = read_case(OWL)
     assert built == read  # where a case comes from makes no difference to what it states
     assert built.origin == ""
     for case in (built, read.model_copy(update={"title": "other"})):
@@ -127,7 +127,7 @@ def test_only_what_was_read_can_be_read_once_more():
 
 
 def test_a_copy_with_other_links_has_their_linkage():
-    case = alula.read_case(OWL)
+    case = read_case(OWL)
     assert "J" not in case.linkage.links["AE"].points
     link = case.links["AE"]
     longer = link.model_copy(update={"points": {**link.points, "J": (10.0, 0.0)}})

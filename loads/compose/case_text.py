@@ -1,0 +1,95 @@
+"""The text of the file that states a case."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.loads.case.part_points import KINDS
+from alula.loads.text.explain import printable
+
+
+def case_text(tables: dict[str, Any]) -> str:
+    """Return the text of a case file.
+
+    Parameters
+    ----------
+    tables : dict of str to object
+        As ``tomllib`` reads them.
+
+    Returns
+    -------
+    str
+    """
+    return tomlkit.dumps(_with_lines(tables))
+
+
+def name_files(tables: dict[str, Any], sought: str, folder: Path) -> None:
+    """Name the files of parts from another folder: those below it from there, others by their whole path.
+
+    Parameters
+    ----------
+    tables : dict of str to object
+        Of a case; changed in place.
+    sought : str
+        Folder from which they are named so far.
+    folder : Path
+        Absolute.
+    """
+    parts = tables.get("parts")
+    for part in parts.values() if isinstance(parts, dict) else ():
+        if isinstance(part, dict) and part.get("shape") in tuple(KINDS) and isinstance(part.get("file"), str):
+            part["file"] = _named(Path(sought, part["file"]).absolute(), folder)
+
+
+def _named(file: Path, folder: Path) -> str:
+    return (file.relative_to(folder) if file.is_relative_to(folder) else file).as_posix()
+
+
+def _with_lines(value: Any) -> Any:
+    """Return tables whose texts of several lines are written in as many."""
+    if isinstance(value, dict):
+        return {key: _with_lines(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_with_lines(inner) for inner in value]
+    several = isinstance(value, str) and "\n" in value
+    return tomlkit.string(value, multiline=True) if several else value
+
+
+def write_case(path: Path, text: str, *, replace: bool) -> None:
+    """Write a case file, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+    text : str
+        What is to stand in it.
+    replace : bool
+        True to write over a file that is there.
+
+    Raises
+    ------
+    CaseError
+        For a file that is there, where it must not be written over.
+    CannotRunError
+        Where the disk refuses.
+    """
+    begun = path.with_name(f".alula-{os.getpid()}-{path.name}") if replace else path
+    try:
+        with begun.open("x", encoding="utf-8", newline="\n") as file:
+            try:
+                file.write(text)
+                file.flush()
+            except BaseException:
+                begun.unlink()
+                raise
+        begun.replace(path)
+    except FileExistsError:
+        raise CaseError(
+            f"'{printable(str(path))}' is there already; choose another name, or say replace=True"
+        ) from None
+    except OSError as error:
+        raise CannotRunError(f"'{printable(str(path))}' cannot be written: {error.strerror}") from None
