@@ -93,7 +93,7 @@ class CoreCase(Revisable):
     """Plates that links carry through the air, which acts on them in load cases with ``flapping``."""
     massless: tuple[Name, ...] = ()
     """Moving links without part or carried mass that are to weigh nothing where others weigh or move."""
-    load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]
+    load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=1000)]
     """Loads that act together, by name; each load case is checked by itself."""
     checks: dict[Name, Check] = {}
     """What is to be decided, by name; the safety factor of every link where nothing is stated."""

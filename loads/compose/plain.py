@@ -40,7 +40,7 @@ def plain(value: object, entry: str) -> Any:
 
 def _plain(value: object, entry: str) -> Any:
     if hasattr(value, "magnitude") and hasattr(value, "units"):  # a quantity, of whichever registry
-        return _with_unit(_plain(value.magnitude, entry), str(value.units))
+        return _with_unit(_plain(value.magnitude, entry), format(value.units, "~C"))
     if hasattr(value, "tolist"):  # an array, a series, a number of numpy
         value = value.tolist()
     match value:
@@ -72,7 +72,7 @@ def _key(key: object, entry: str) -> str:
 def _with_unit(number: Any, unit: str) -> Any:
     if isinstance(number, list):
         return [_with_unit(inner, unit) for inner in number]
-    return f"{number!r} {unit}"
+    return f"{number!r} {unit}" if unit else number
 
 
 def in_millimetres(points: object) -> object:

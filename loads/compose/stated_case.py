@@ -44,10 +44,12 @@ class StatedCase:
 
     Parameters
     ----------
+    title : str
+        What the case is, in a line.
     folder : str or path, optional
         Where files of parts are sought; the present folder when left out.
     **entries : object
-        Of the top level of a case file: ``title``, ``layer_spacing``, or whole tables such as ``links``.
+        Further ones of the top level of a case file: ``layer_spacing``, or whole tables such as ``links``.
 
     Raises
     ------
@@ -57,7 +59,7 @@ class StatedCase:
     Examples
     --------
     >>> import alula
-    >>> case = alula.Case(title="Lever")
+    >>> case = alula.Case("Lever")
     >>> case = case.with_link("base", ground=True, points={"O": ("0 mm", "0 mm")})
     >>> case = case.with_link("lever", part="bar", points={"O": ("0 mm", "0 mm"), "P": ("60 mm", "0 mm")})
     >>> case = case.with_joint("O", links=("base", "lever"), pin_diameter="3 mm")
@@ -73,10 +75,10 @@ class StatedCase:
     _folder: str
     _name: str
 
-    def __init__(self, *, folder: "str | PathLike[str]" = "", **entries: object) -> None:
+    def __init__(self, title: str | None = None, *, folder: "str | PathLike[str]" = "", **entries: object) -> None:
         tables = {"schema_version": CASE_SCHEMA_VERSION}
         self.__dict__.update(_tables=tables, _changes=(), _folder=fspath(folder), _name="")
-        self.__dict__.update(_tables=self.with_entries(**entries)._tables)
+        self.__dict__.update(_tables=self.with_entries(title=title, **entries)._tables)
 
     @classmethod
     def _of(cls, tables: Tables, changes: tuple[Change, ...], folder: str, name: str) -> Self:
@@ -704,7 +706,7 @@ def _remove(tables: Tables, path: str) -> None:
         else:
             known = tuple(here) if isinstance(here, dict) else ()
         if key not in known:
-            raise CaseError(f"without {printable(path)}: {there} has no '{printable(key)}'{alike(key, known)}")
+            raise CaseError(f"without '{printable(path)}': {there} has no '{printable(key)}'{alike(key, known)}")
         index: Any = int(key) if isinstance(here, list) else key
         if depth == len(above):
             del here[index]
