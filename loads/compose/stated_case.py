@@ -20,7 +20,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
-from alula.loads.case.case_file import Change, changed_case, changed_tables, folder_of, read_tables, validate
+from alula.loads.case.case_file import Change, changed_case, changed_tables, folder_of, read_tables
 from alula.loads.case.part_points import FROM_PART
 from alula.loads.compose.case_text import case_text, name_files, write_case
 from alula.loads.compose.plain import in_millimetres, plain
@@ -582,9 +582,9 @@ class StatedCase:
         CannotRunError
             Where the file cannot be written.
         """
-        record, folder = self.record, Path(path or "case.toml").absolute().parent
+        _, folder = self.record, Path(path or "case.toml").absolute().parent
         text = case_text(self.to_dict(folder=folder))
-        if validate(tomllib.loads(text), str(folder)) != record:
+        if self.from_dict(tomllib.loads(text), folder=folder) != self:
             raise CaseError(
                 "to_toml: the table [ornithopter] sets entries that were changed, and would set them again; remove it "
                 'with without("ornithopter")'
