@@ -92,7 +92,8 @@ def write_report(
             _write_fields(result, folder / FIELDS)
             models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
             pictures, warnings = drawn.result()
-        told = replace(result, warnings=(*result.warnings, *warnings))
+        # The result itself where it can be: it knows already what was worked out for the console.
+        told = replace(result, warnings=(*result.warnings, *warnings)) if warnings else result
         for warning in warnings:
             progress(f"Warning: {warning}")
         published = write_claims(told, folder, REPORT)

@@ -6,7 +6,10 @@ import re
 import pytest
 from PIL import Image
 
+from alula.fea.sizing import changes
+from alula.fea.sizing.tried import Trials
 from alula.reports.figures import figures
+from alula.reports.page import pictures
 from alula.reports.page.folder import report_names, write_report
 
 
@@ -30,6 +33,17 @@ def test_the_folder_is_complete(result, tmp_path):
     assert json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["case"] == "owl-wing-static"
     _is_repacked_without_loss(tmp_path / "out" / "pictures" / "stress-GF.png", tmp_path / "out" / "report.html")
     assert said == ["Drawing the linkage, the internal forces and the stress plots ..."]
+
+
+def test_what_the_console_told_is_not_worked_out_again(result, tmp_path, monkeypatch):
+    """Its trials take a third of a check by hand; a copy of the result would ask for them anew."""
+    begun = []
+    monkeypatch.setattr(pictures, "draw_pictures", lambda result, progress: ({}, []))
+    monkeypatch.setattr(changes, "_latest", [])
+    monkeypatch.setattr(changes, "Trials", lambda **asked: begun.append(asked) or Trials(**asked))
+    changes.changes(result)
+    write_report(result, tmp_path / "out")
+    assert len(begun) == 1
 
 
 def _is_repacked_without_loss(picture, page):
