@@ -84,6 +84,9 @@ def check(
     accuracy: AccuracyOption = None,
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Print all numbers; without it what decides, on one screen.")
+    ] = False,
     second_opinion: Annotated[
         bool,
         typer.Option(
@@ -98,7 +101,7 @@ def check(
     from alula.loads.case.case_file import read_case
     from alula.reports.page.folder import report_names
     from alula.reports.page.output import refuse_unusable
-    from alula.reports.tables.console import print_result
+    from alula.reports.tables.console import print_result, print_screen
     from alula.reports.tables.record import as_json
     from alula.reports.words.limits import limited
 
@@ -117,7 +120,7 @@ def check(
 
             decks = scratch.enter_context(scratch_folder("alula-"))
             result = with_second_opinions(result, decks, threads=threads, progress=progress)
-        _show(result, as_json if json else None, print_result)
+        _show(result, as_json if json else None, print_result if verbose else print_screen)
         if output is not None:
             from alula.reports.page.folder import write_report
 

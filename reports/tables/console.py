@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from alula.fea.check.anchor import anchor_loads
-from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness
+from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness, deciding
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.loads.records.aero import AirForces
 from alula.loads.statics.rounding import without_rounding
@@ -15,11 +15,14 @@ from alula.reports.tables.friction import friction_sentence
 from alula.reports.tables.layers import build_directions_of
 from alula.reports.tables.second_opinion import say_opinions
 from alula.reports.tables.springs import holding_sentence, spring_sentences
-from alula.reports.words.terminal import KEPT, say, say_command, say_table
+from alula.reports.words.terminal import KEPT, height, say, say_command, say_table, shortened
 from alula.reports.words.wording import (
     agreement,
     apart,
     band,
+    besides,
+    checks_of,
+    decision,
     fixed,
     headline,
     inapplicable,
@@ -91,6 +94,81 @@ def print_result(result: CheckResult, console: "Console") -> None:
         say(console, f"Warning: {warning}", style="yellow")
 
 
+SCREEN = 23
+"""Lines of a check on a terminal of 25: one is that of its progress, one says where the report is."""
+MATTER = 5
+"""Checks, and warnings, of which a screen tells."""
+_LEAST = 2
+"""Checks of which it tells before warnings."""
+_REASON, _CHANGE, _BESIDES, _WARNING = 5, 4, 3, 3
+"""Lines of a screen that a text may take."""
+
+
+def print_screen(result: CheckResult, console: "Console") -> None:
+    """Print what decides a check on one screen: verdict, why, what would change it, checks that matter, warnings.
+
+    Parameters
+    ----------
+    result : CheckResult
+    console : rich.console.Console
+        The screen has ``SCREEN`` lines of 80 columns.
+    """
+    checks, several = checks_of(result), len(result.load_cases) > 1
+    why = decision(result.verdict, checks, several=several)
+    if height(console, why) > _REASON:
+        why = shortened(console, decision(result.verdict, checks, several=several, names=False), _REASON)
+    besides_it = shortened(console, besides(result.caveats), _BESIDES)
+    change, command = _change(result, said=why)
+    change = shortened(console, change, _CHANGE)
+    taken = 1 + sum(height(console, text) for text in (why, change, besides_it) if text) + 2 * bool(command)
+    left = SCREEN - taken - 1  # the last line counts what is not told
+    rows, warnings = _worst(checks)[:MATTER], list[str]()
+    least = _table_height(rows[:_LEAST], console, several=several)
+    for warning in (shortened(console, f"Warning: {text}", _WARNING) for text in result.warnings[:MATTER]):
+        if height(console, warning) <= left - least:
+            warnings.append(warning)
+            left -= height(console, warning)
+    while len(rows) > _LEAST and _table_height(rows, console, several=several) > left:
+        rows.pop()
+    badge = f" {result.verdict.value}  "
+    verdict_line(result.verdict, shortened(console, f"{badge}{result.case.title}", 1)[len(badge) :], console)
+    say(console, why)
+    if change:
+        say(console, change)
+    if command:
+        say_command(console, "Find the size:", command)
+    if rows:
+        _check_table(rows, console, several=several)
+    if besides_it:
+        say(console, besides_it)
+    for warning in warnings:
+        say(console, warning, style="yellow")
+    more = [
+        f"{count} more {what}{'s' if count > 1 else ''}"
+        for count, what in ((len(checks) - len(rows), "check"), (len(result.warnings) - len(warnings), "warning"))
+        if count
+    ]
+    say(console, f"{sentence(joined([*more, 'all numbers']))[:-1]}: --verbose")
+
+
+def _worst(checks: Sequence[CheckOutcome]) -> list[CheckOutcome]:
+    """Return the checks that can be judged, one of the same check under several load cases, the deciding ones first."""
+    first = deciding(checks)
+    ordered = [*first, *by_nearness(check for check in checks if check not in first)]
+    found: dict[tuple[str, str, Quantity], CheckOutcome] = {}
+    for check in ordered:
+        if check.applies:
+            found.setdefault((check.name, check.link, check.quantity), check)
+    return list(found.values())
+
+
+def _table_height(checks: Sequence[CheckOutcome], console: "Console", *, several: bool) -> int:
+    """Return how many lines the table of checks takes, whose rows a narrow terminal breaks."""
+    with console.capture() as printed:
+        _check_table(checks, console, several=several)
+    return len(printed.get().splitlines())
+
+
 def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
     """Print the verdict, in its colour, and the title of the case.
 
@@ -108,13 +186,20 @@ def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
 
 def _say_change(result: CheckResult, console: "Console") -> None:
     """Print what would change the check that decides, but for what the headline has said, and what finds its size."""
-    said = headline(result)
+    change, command = _change(result, said=headline(result))
+    if change:
+        say(console, change)
+    if command:
+        say_command(console, "Find the size:", command)
+
+
+def _change(result: CheckResult, *, said: str) -> tuple[str, str]:
+    """Return what would change the check that decides, but for what was said, and the command that finds its size."""
     for change in change_records(result)[:1]:
         fresh = [text for text in change["sentences"] if text[1:] not in said]
-        if fresh:
-            say(console, f"What would change it ({change['title']}): {' '.join(fresh)}")
-        if change["command"]:
-            say_command(console, "Find the size:", change["command"])
+        told = f"What would change it ({change['title']}): {' '.join(fresh)}" if fresh else ""
+        return told, change["command"] or ""
+    return "", ""
 
 
 def _statics(case: LoadCaseResult) -> str:
@@ -188,10 +273,19 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
         The load case has a column if there are several; the name is shown where several have one quantity.
     console : rich.console.Console
     """
+    _check_table(
+        by_nearness(check for check in checks if check.applies),
+        console,
+        several=len({check.load_case for check in checks}) > 1,
+    )
+    for line in inapplicable(checks):
+        say(console, line)
+
+
+def _check_table(checks: Sequence[CheckOutcome], console: "Console", *, several: bool) -> None:
+    """Print checks in their order; ``several`` load cases have a column."""
     from rich.text import Text
 
-    several, together = len({check.load_case for check in checks}) > 1, inapplicable(checks)
-    checks = by_nearness(check for check in checks if check.applies)
     alike = Counter((check.quantity, check.link, check.load_case) for check in checks)
     columns = [("check", False), ("link", False), *([("load case", False)] if several else [])]
     columns += [("value (band)", True), ("limit", True), ("verdict", False)]
@@ -211,8 +305,6 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
             )
         )
     say_table(console, columns, rows)
-    for line in together:
-        say(console, line)
 
 
 def _hand(case: LoadCaseResult) -> list[str]:

@@ -36,6 +36,44 @@ def say(console: "Console", text: "str | Text", *, style: str = "") -> None:
         _put(console, line)
 
 
+def shortened(console: "Console", text: str, lines: int) -> str:
+    """Return a text that takes no more than some lines, with an ellipsis in place of the words that it loses.
+
+    Parameters
+    ----------
+    console : Console
+    text : str
+    lines : int
+        At least one.
+
+    Returns
+    -------
+    str
+    """
+    words = text.split(" ")
+    while len(words) > 1 and height(console, text) > lines:
+        words.pop()
+        text = f"{' '.join(words).rstrip(' ,;:.')} ..."
+    return text
+
+
+def height(console: "Console", text: str) -> int:
+    """Return how many lines ``say`` prints of a text.
+
+    Parameters
+    ----------
+    console : Console
+    text : str
+
+    Returns
+    -------
+    int
+    """
+    from rich.text import Text
+
+    return len(_wrapped(Text(text), console.width))
+
+
 def say_command(console: "Console", text: str, command: str) -> None:
     """Print what a command is for, and below it the command on a line of its own, which a shell takes as it is copied.
 

@@ -258,7 +258,7 @@ def besides(found: Iterable[Caveat]) -> str:
     return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)
 
 
-def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool) -> str:
+def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool, names: bool = True) -> str:
     """Return a verdict and what decides it.
 
     Parameters
@@ -268,6 +268,8 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool)
         All of them.
     several : bool
         Whether there are several load cases, which are then named.
+    names : bool
+        Whether the checks that decide are named.
 
     Returns
     -------
@@ -284,15 +286,15 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool)
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
     found = deciding(checks)
     chosen, first = {id(check) for check in found}, found[0]
-    names = _all_named(check for check in checks if id(check) in chosen)
+    named_all = f": {_all_named(check for check in checks if id(check) in chosen)}" if names else ""
     share = f"{len(found)} of {count} checks"
     if verdict is Verdict.UNDECIDED:
         verb = "is" if len(found) == 1 else "are"
-        return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
+        return f"Undecided: {share} {verb} open{named_all}. {sentence(f'{named(first)}: {first.reason}')}"
     missed = f"{share} {'misses its limit' if len(found) == 1 else 'miss their limits'} over the whole error band"
     if first.quantity is Quantity.LOAD_SHARE:
-        return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}: {names}."
-    return f"Fail: {missed}: {names}. Worst: {_with_limit(first, several=several)}."
+        return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}{named_all}."
+    return f"Fail: {missed}{named_all}. Worst: {_with_limit(first, several=several)}."
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:

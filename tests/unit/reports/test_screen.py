@@ -1,0 +1,73 @@
+"""What decides a check stands on one screen: 25 lines of 80 columns, with its progress and the name of the report."""
+
+import io
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+from solved import by_hand
+
+from alula.fea.common.verdict import Verdict, deciding
+from alula.reports.tables.console import MATTER, SCREEN, print_result, print_screen
+from alula.reports.words.wording import checks_of, decision
+
+CASES = ("owl-wing-static", "owl-wing-braking", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
+
+
+def printed(show, result, *, terminal=True, width=80):
+    console = Console(width=width, file=io.StringIO(), force_terminal=terminal, color_system=None)
+    show(result, console)
+    return console.file.getvalue().splitlines()
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+@pytest.mark.parametrize("name", CASES)
+def test_it_has_one_screen_whatever_the_case(name, terminal):
+    result = by_hand(name)
+    lines = printed(print_screen, result, terminal=terminal)
+    assert len(lines) <= SCREEN
+    assert lines[0].startswith(f" {result.verdict.upper()} ")
+    why = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
+    assert why.split(".")[0].split(":")[0] in " ".join(lines)
+    first = deciding(checks_of(result))[0]
+    rule = next(i for i, line in enumerate(lines) if line.startswith("──"))
+    assert first.quantity.split()[0] in lines[rule + 1]
+    assert first.link in lines[rule + 1]
+    assert lines[-1].endswith("ll numbers: --verbose")
+    told = [line for line in lines if line.startswith("Warning: ")]
+    left = len(result.warnings) - len(told)
+    assert len(told) <= MATTER
+    assert (f"{left} more warning" in lines[-1]) == (left > 0)
+
+
+def test_a_check_under_several_load_cases_stands_once_with_the_worst():
+    """Of either order of the load cases."""
+    result = by_hand("owl-wing-braking")
+    for cases in (result.load_cases, dict(reversed(result.load_cases.items()))):
+        shown = replace(result, load_cases=cases)
+        every = [check for check in checks_of(shown) if check.applies]
+        worst = min(
+            (check for check in every if (check.quantity, check.link) == ("safety factor", "AE")),
+            key=lambda check: (check.verdict is not Verdict.FAIL, check.margin),
+        )
+        rows = [line for line in printed(print_screen, shown, terminal=False) if line.startswith("safety factor ")]
+        assert len({row.split()[2] for row in rows}) == len(rows)
+        [row] = [row for row in rows if " AE " in row]
+        assert worst.load_case in row
+        assert f"{worst.value.value:.3g}" in row
+
+
+def test_long_texts_lose_their_ends_and_never_the_verdict():
+    long = "word " * 400
+    result = by_hand("four-bar")
+    case = result.case.model_copy(update={"title": f"Title {long}"})
+    shown = replace(result, case=case, warnings=(f"first {long}", f"second {long}", "third", *("more",) * 9))
+    lines = printed(print_screen, shown)
+    assert len(lines) <= SCREEN
+    assert lines[0].endswith("...")
+    assert len(lines[0]) <= 80
+    assert sum(line.startswith("Warning: ") for line in lines) >= 1
+    assert "more warnings and all numbers: --verbose" in lines[-1]
+    short = by_hand("four-bar")
+    assert len(printed(print_result, short)) > SCREEN
+    assert len(printed(print_screen, short, width=40)) < len(printed(print_result, short, width=40))
