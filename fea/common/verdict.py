@@ -393,6 +393,28 @@ def deciding(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     return lost + by_nearness(check for check in found if check not in lost)
 
 
+def worst_of_each(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
+    """Return the checks that can be judged, each under its worst load case alone; those that decide come first.
+
+    Parameters
+    ----------
+    checks : iterable of CheckOutcome
+
+    Returns
+    -------
+    list of CheckOutcome
+        In the order of ``deciding``, then of ``by_nearness``.
+    """
+    checks = list(checks)
+    first = deciding(checks)
+    chosen = {id(check) for check in first}
+    found: dict[tuple[str, str, Quantity], CheckOutcome] = {}
+    for check in (*first, *by_nearness(check for check in checks if id(check) not in chosen)):
+        if check.applies:
+            found.setdefault((check.name, check.link, check.quantity), check)
+    return list(found.values())
+
+
 def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
     """Say in a few words why a band gives its verdict.
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from alula.fea.common.verdict import CheckOutcome, Subject, by_nearness
+from alula.fea.common.verdict import CheckOutcome, Subject, by_nearness, worst_of_each
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.materials.material import Material
@@ -78,7 +78,8 @@ def render(
     str
     """
     first, layers = next(iter(result.load_cases.values())), build_directions_of(result)
-    checks = by_nearness(checks_of(result))
+    checks, worst = by_nearness(checks_of(result)), worst_of_each(checks_of(result))
+    several = len(result.load_cases) > 1
     return fill(
         "report.html.jinja",
         styles=("report.css", "turnable.css"),
@@ -87,13 +88,15 @@ def render(
         case=result.case,
         pose=result.pose,
         first=first,
-        several=len(result.load_cases) > 1,
+        several=several,
         verdict=result.verdict.value,
-        headline=headline(result),
+        headline=headline(result, short=True),
         meaning=meaning(result.verdict, "In this pose"),
         checks=checks,
         most_checks=MOST_CHECKS,
-        applicable=[check for check in checks if check.applies],
+        applicable=sum(check.applies for check in checks),
+        worst=worst,
+        worst_reasons=reasons(worst),
         bands=held(checks_of(result)),
         reasons=reasons(checks),
         drawings=_drawings(result, checks, figures),

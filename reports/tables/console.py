@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from alula.fea.check.anchor import anchor_loads
-from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness, deciding
+from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness, worst_of_each
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.loads.records.aero import AirForces
 from alula.loads.statics.rounding import without_rounding
@@ -21,8 +21,8 @@ from alula.reports.words.wording import (
     apart,
     band,
     besides,
+    brief,
     checks_of,
-    decision,
     fixed,
     headline,
     inapplicable,
@@ -114,15 +114,13 @@ def print_screen(result: CheckResult, console: "Console") -> None:
         The screen has ``SCREEN`` lines of 80 columns.
     """
     checks, several = checks_of(result), len(result.load_cases) > 1
-    why = decision(result.verdict, checks, several=several)
-    if height(console, why) > _REASON:
-        why = shortened(console, decision(result.verdict, checks, several=several, names=False), _REASON)
+    why = shortened(console, brief(result.verdict, checks, several=several), _REASON)
     besides_it = shortened(console, besides(result.caveats), _BESIDES)
     change, command = _change(result, said=why)
     change = shortened(console, change, _CHANGE)
     taken = 1 + sum(height(console, text) for text in (why, change, besides_it) if text) + 2 * bool(command)
     left = SCREEN - taken - 1  # the last line counts what is not told
-    rows, warnings = _worst(checks)[:MATTER], list[str]()
+    rows, warnings = worst_of_each(checks)[:MATTER], list[str]()
     least = _table_height(rows[:_LEAST], console, several=several)
     for warning in (shortened(console, f"Warning: {text}", _WARNING) for text in result.warnings[:MATTER]):
         if height(console, warning) <= left - least:
@@ -149,17 +147,6 @@ def print_screen(result: CheckResult, console: "Console") -> None:
         if count
     ]
     say(console, f"{sentence(joined([*more, 'all numbers']))[:-1]}: --verbose")
-
-
-def _worst(checks: Sequence[CheckOutcome]) -> list[CheckOutcome]:
-    """Return the checks that can be judged, one of the same check under several load cases, the deciding ones first."""
-    first = deciding(checks)
-    ordered = [*first, *by_nearness(check for check in checks if check not in first)]
-    found: dict[tuple[str, str, Quantity], CheckOutcome] = {}
-    for check in ordered:
-        if check.applies:
-            found.setdefault((check.name, check.link, check.quantity), check)
-    return list(found.values())
 
 
 def _table_height(checks: Sequence[CheckOutcome], console: "Console", *, several: bool) -> int:

@@ -221,20 +221,26 @@ def checks_of(result: "CheckResult") -> tuple[CheckOutcome, ...]:
     return tuple(check for load_case in result.load_cases.values() for check in load_case.checks)
 
 
-def headline(result: "CheckResult") -> str:
+BRIEF = 320
+"""Characters of a verdict and its reason, four lines of a terminal, beyond which checks are counted alone."""
+
+
+def headline(result: "CheckResult", *, short: bool = False) -> str:
     """Return the verdict, what decides it and what no check looks at.
 
     Parameters
     ----------
     result : CheckResult
         All outcomes of a check.
+    short : bool
+        As ``brief``.
 
     Returns
     -------
     str
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
-    told = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
+    told = (brief if short else decision)(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
     return " ".join(filter(None, (told, besides(result.caveats))))
 
 
@@ -295,6 +301,24 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool,
     if first.quantity is Quantity.LOAD_SHARE:
         return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}{named_all}."
     return f"Fail: {missed}{named_all}. Worst: {_with_limit(first, several=several)}."
+
+
+def brief(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool) -> str:
+    """Return a verdict and what decides it, without the names of all checks that do where they are many.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    checks : sequence of CheckOutcome
+    several : bool
+        As for ``decision``.
+
+    Returns
+    -------
+    str
+    """
+    told = decision(verdict, checks, several=several)
+    return told if len(told) <= BRIEF else decision(verdict, checks, several=several, names=False)
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:
