@@ -164,7 +164,9 @@ def path_text(value: object, entry: str) -> str:
     """
     path = os.fspath(value) if isinstance(value, str | os.PathLike) else None
     if not isinstance(path, str):
-        raise CaseError(f"{entry}: it must be a path, as text or a pathlib.Path, not {type(value).__name__}; give one")
+        raise CaseError(
+            f"{entry}: it must be a path, as text or as Python has it, not {type(value).__name__}; give one"
+        )
     try:
         named = b"\0" not in os.fsencode(path)
     except UnicodeEncodeError:

@@ -48,16 +48,16 @@ class StatedCase:
 
     It never changes: each method returns another case. Entries, units and rules are those of the case file, where
     ``case.with_link("crank", part="bar", ...)`` is ``[links.crank]``. A number with a unit is text, such as ``"3 mm"``,
-    or a quantity of pint; an array of a link's point is in mm. What is added is checked at once by itself, and together
-    with all else when the case is used. Its entries are attributes then: ``case.parts["bar"].thickness`` is a number in
-    mm, N, MPa.
+    or a quantity of pint; an array of bare numbers is a link's point in mm. What is None is left out. What is added is
+    checked at once by itself, and together with all else when the case is used. Its entries are attributes then:
+    ``case.parts["bar"].thickness`` is a number in mm, N, MPa.
 
     Parameters
     ----------
     title : str
         What the case is, in a line.
     folder : str or path, optional
-        Where files of parts are sought; the present folder when left out.
+        Where files of parts are sought; when left out, the folder that is the present one now.
     **entries : object
         Further ones of the top level of a case file: ``layer_spacing``, or whole tables such as ``links``.
 
@@ -386,7 +386,7 @@ class StatedCase:
         replace : bool
             True for another in the place of one that has the name.
         **entries : object
-            As ``[tendons]`` of the case file has them.
+            Such as ``through=[{"link": "base", "at": "S"}, {"link": "crank", "at": "P"}]``, ``tension="5 N"``.
 
         Returns
         -------
@@ -409,7 +409,7 @@ class StatedCase:
         replace : bool
             True for another in the place of one that has the name.
         **entries : object
-            As ``[stops]`` of the case file has them.
+            Such as ``joint="O2"``, ``at_most="100 deg"``.
 
         Returns
         -------
