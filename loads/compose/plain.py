@@ -71,9 +71,10 @@ def plain(value: object, entry: str, level: int = 0) -> Any:
             }
         case list() | tuple():
             return [plain(inner, below(entry, str(i)), level + 1) for i, inner in enumerate(value)]
+    remedy = "leave it out, or remove the entry with without" if value is None else "give one of these"
     raise CaseError(
         f"{printable(entry or 'case')}: a value of a case is text, with its unit where it has one, a number, True or "
-        f"False, a list or a dictionary, not {printable(type(value).__name__)}; give one of these"
+        f"False, a list or a dictionary, not {printable(type(value).__name__)}; {remedy}"
     )
 
 

@@ -12,7 +12,6 @@ from itertools import takewhile
 from operator import eq
 from os import PathLike
 from pathlib import Path
-from types import MappingProxyType
 from typing import Annotated, Any, Self
 
 from annotated_types import MinLen
@@ -614,7 +613,7 @@ class StatedCase:
         if name.startswith("_") or name not in _attributes():
             raise AttributeError(f"a case has no attribute '{name}'{alike(name, _attributes())}", name=name, obj=self)
         found = getattr(self.record, name)
-        return MappingProxyType(found) if isinstance(found, dict) else found  # nothing of a case can be changed
+        return dict(found) if isinstance(found, dict) else found  # a copy: a case never changes
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *_attributes()})

