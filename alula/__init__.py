@@ -96,7 +96,7 @@ def read_case(name_or_path: "str | PathLike[str]", values: Mapping[str, object] 
     from alula.loads.compose.stated_case import StatedCase
 
     case = StatedCase.read(name_or_path)
-    return case.with_values(values) if values else case
+    return case if values is None else case.with_values(values)
 
 
 def check(
@@ -355,19 +355,19 @@ def study(
         Where the disk refuses; what was finished stands.
     """
     from alula.fea.study.compute import compute_study
+    from alula.loads.compose.plain import plain
     from alula.loads.plans.plan import plan_of
     from alula.loads.plans.variants import Variants
     from alula.reports.notebook.study_report import StudyReport
     from alula.reports.page.output import folder_named
 
     place, threads = folder_named(folder), _at_a_time(threads, workers)
-    stated = {path: list(value) if isinstance(value, tuple) else value for path, value in vary.items()}
     plan = plan_of(
         _stated(case).of_study()
         | {
-            "vary": stated,
-            "link": dict(link or {}),
-            "set": dict(values or {}),
+            "vary": plain(vary, "vary"),
+            "link": plain({} if link is None else link, "link"),
+            "set": plain({} if values is None else values, "values"),
             "analysis": analysis,
             "fidelity": fidelity,
         }
@@ -427,6 +427,7 @@ def size(
     CannotRunError
         Where the disk refuses.
     """
+    from alula.loads.compose.plain import plain
     from alula.reports.commands.size import find_size
     from alula.reports.notebook.size_report import SizeReport
     from alula.reports.page.output import folder_named
@@ -434,13 +435,13 @@ def size(
     return SizeReport(
         find_size(
             _stated(case),
-            vary or {},
-            choose or {},
+            _ranges(vary, "vary"),
+            _ranges(choose, "choose"),
             step=step,
             minimise=minimise,
             maximise=maximise,
-            link=link or {},
-            values=values or {},
+            link=_ranges(link, "link"),
+            values=plain({} if values is None else values, "values"),
             analysis=analysis,
             fidelity=fidelity,
             accuracy=accuracy,
@@ -484,10 +485,11 @@ def tolerance(
     """
     from alula.fea.check.run import effort_of
     from alula.fea.tolerance.analysis import tolerance_case
+    from alula.loads.compose.plain import plain
     from alula.reports.commands.tolerance import with_tolerances
     from alula.reports.notebook.tolerance_report import ToleranceReport
 
-    found = with_tolerances(_case(case), tolerances or {})
+    found = with_tolerances(_case(case), plain({} if tolerances is None else tolerances, "tolerances"))
     effort = effort_of(found, accuracy)
     done = tolerance_case(found, name=found.origin, samples=samples, seed=seed, threads=threads, effort=effort)
     return ToleranceReport(done)
@@ -567,6 +569,13 @@ def _stated(case: "Case | str | PathLike[str]") -> "Case":
     if not isinstance(case, StatedCase):
         raise CaseError(f"case: it is {type(case).__name__}; give a case, the name of a built-in one or a path")
     return case
+
+
+def _ranges(values: Mapping[str, str] | None, entry: str) -> dict[str, str]:
+    from alula.loads.compose.plain import below, mapping_of, text_of
+
+    stated = mapping_of({} if values is None else values, entry, "entries and their values").items()
+    return {text_of(path, entry, "path"): text_of(value, below(entry, path), "value") for path, value in stated}
 
 
 def _at_a_time(threads: int | None, workers: int | None) -> int | None:
