@@ -15,7 +15,7 @@ def alula_version() -> str:
         return version("alula")
     except PackageNotFoundError:
         what = f"alula is not installed for {sys.executable}"
-        raise ImportError(f"{what}; 'make setup' in its checkout does so in .venv", name="alula") from None
+        raise ImportError(f"{what}; 'make setup' in its checkout makes a Python that has it", name="alula") from None
 
 
 def result_stamp() -> dict[str, object]:
