@@ -14,15 +14,40 @@ Examples
 4 mm pass 8.7
 """
 
+import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from alula.geometry.base.version import alula_version
+
+class _Beside:
+    """Finds the four packages of a checkout, where they stand beside this folder instead of in it.
+
+    It comes before the finder of an editable install, which may be that of another checkout.
+    """
+
+    folder = Path(__file__).parents[1]
+
+    @classmethod
+    def find_spec(cls, name: str, path: object = None, target: object = None) -> "ModuleSpec | None":
+        above, _, package = name.rpartition(".")
+        if above != "alula" or package not in ("geometry", "loads", "fea", "reports"):
+            return None
+        from importlib.util import spec_from_file_location
+
+        return spec_from_file_location(name, cls.folder / package / "__init__.py")
+
+
+if not Path(__file__).with_name("geometry").exists() and (_Beside.folder / "geometry" / "__init__.py").exists():
+    sys.meta_path.insert(0, _Beside)
+
+from alula.geometry.base.version import alula_version  # noqa: E402 - it has to be found first
 
 if TYPE_CHECKING:
+    from importlib.machinery import ModuleSpec
+
     from alula.loads.case.case import Case as Record
     from alula.loads.compose.stated_case import StatedCase as Case
     from alula.reports.notebook.check_report import CheckReport
