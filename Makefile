@@ -104,7 +104,9 @@ $(INSTALLED): requirements.lock pyproject.toml setup.py | libraries
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 # What type checkers and editors look through, which do not ask the finder of an editable install.
 	@rm -rf $(VENV)/types && mkdir -p $(VENV)/types/alula
-	@ln -s $(addprefix $(CURDIR)/,$(wildcard alula/*.py) alula/py.typed geometry loads fea reports) $(VENV)/types/alula/
+	@for one in alula/*.py alula/py.typed geometry loads fea reports; do \
+	  ln -s "$(CURDIR)/$$one" $(VENV)/types/alula/ || exit 1; \
+	done
 	@touch $@
 # Other users of the machine may run it, whatever the umask: pip keeps to that.
 	@chmod -R a+rX $(VENV)

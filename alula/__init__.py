@@ -14,15 +14,40 @@ Examples
 4 mm pass 8.7
 """
 
+import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from alula.geometry.base.version import alula_version
+
+class _Beside:
+    """Finds the four packages of a checkout, where they stand beside this folder instead of in it.
+
+    It comes before the finder of an editable install, which may be that of another checkout.
+    """
+
+    folder = Path(__file__).parents[1]
+
+    @classmethod
+    def find_spec(cls, name: str, path: object = None, target: object = None) -> "ModuleSpec | None":
+        above, _, package = name.rpartition(".")
+        if above != "alula" or package not in ("geometry", "loads", "fea", "reports"):
+            return None
+        from importlib.util import spec_from_file_location
+
+        return spec_from_file_location(name, cls.folder / package / "__init__.py")
+
+
+if not Path(__file__).with_name("geometry").exists() and (_Beside.folder / "geometry" / "__init__.py").exists():
+    sys.meta_path.insert(0, _Beside)
+
+from alula.geometry.base.version import alula_version  # noqa: E402 - it has to be found first
 
 if TYPE_CHECKING:
+    from importlib.machinery import ModuleSpec
+
     from alula.loads.case.case import Case as Record
     from alula.loads.compose.stated_case import StatedCase as Case
     from alula.reports.notebook.check_report import CheckReport
@@ -96,7 +121,7 @@ def read_case(name_or_path: "str | PathLike[str]", values: Mapping[str, object] 
     from alula.loads.compose.stated_case import StatedCase
 
     case = StatedCase.read(name_or_path)
-    return case.with_values(values) if values else case
+    return case if values is None else case.with_values(values)
 
 
 def check(
@@ -355,19 +380,19 @@ def study(
         Where the disk refuses; what was finished stands.
     """
     from alula.fea.study.compute import compute_study
+    from alula.loads.compose.plain import plain
     from alula.loads.plans.plan import plan_of
     from alula.loads.plans.variants import Variants
     from alula.reports.notebook.study_report import StudyReport
     from alula.reports.page.output import folder_named
 
     place, threads = folder_named(folder), _at_a_time(threads, workers)
-    stated = {path: list(value) if isinstance(value, tuple) else value for path, value in vary.items()}
     plan = plan_of(
         _stated(case).of_study()
         | {
-            "vary": stated,
-            "link": dict(link or {}),
-            "set": dict(values or {}),
+            "vary": plain(vary, "vary"),
+            "link": plain({} if link is None else link, "link"),
+            "set": plain({} if values is None else values, "values"),
             "analysis": analysis,
             "fidelity": fidelity,
         }
@@ -427,6 +452,7 @@ def size(
     CannotRunError
         Where the disk refuses.
     """
+    from alula.loads.compose.plain import plain
     from alula.reports.commands.size import find_size
     from alula.reports.notebook.size_report import SizeReport
     from alula.reports.page.output import folder_named
@@ -434,13 +460,13 @@ def size(
     return SizeReport(
         find_size(
             _stated(case),
-            vary or {},
-            choose or {},
+            _ranges(vary, "vary"),
+            _ranges(choose, "choose"),
             step=step,
             minimise=minimise,
             maximise=maximise,
-            link=link or {},
-            values=values or {},
+            link=_ranges(link, "link"),
+            values=plain({} if values is None else values, "values"),
             analysis=analysis,
             fidelity=fidelity,
             accuracy=accuracy,
@@ -484,10 +510,11 @@ def tolerance(
     """
     from alula.fea.check.run import effort_of
     from alula.fea.tolerance.analysis import tolerance_case
+    from alula.loads.compose.plain import plain
     from alula.reports.commands.tolerance import with_tolerances
     from alula.reports.notebook.tolerance_report import ToleranceReport
 
-    found = with_tolerances(_case(case), tolerances or {})
+    found = with_tolerances(_case(case), plain({} if tolerances is None else tolerances, "tolerances"))
     effort = effort_of(found, accuracy)
     done = tolerance_case(found, name=found.origin, samples=samples, seed=seed, threads=threads, effort=effort)
     return ToleranceReport(done)
@@ -567,6 +594,13 @@ def _stated(case: "Case | str | PathLike[str]") -> "Case":
     if not isinstance(case, StatedCase):
         raise CaseError(f"case: it is {type(case).__name__}; give a case, the name of a built-in one or a path")
     return case
+
+
+def _ranges(values: Mapping[str, str] | None, entry: str) -> dict[str, str]:
+    from alula.loads.compose.plain import below, mapping_of, text_of
+
+    stated = mapping_of({} if values is None else values, entry, "entries and their values").items()
+    return {text_of(path, entry, "path"): text_of(value, below(entry, path), "value") for path, value in stated}
 
 
 def _at_a_time(threads: int | None, workers: int | None) -> int | None:

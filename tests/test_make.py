@@ -64,6 +64,23 @@ def test_others_may_read_and_run_what_set_up_installs(tmp_path):
     assert (modes["lib"], modes["module.py"], modes["alula"]) == (0o755, 0o644, 0o755)
 
 
+def test_type_checkers_find_the_packages_of_a_checkout_with_a_space_in_its_path(tmp_path):
+    checkout = tmp_path / "a check out"
+    names = ("Makefile", "requirements.lock", "pyproject.toml", "setup.py", "alula/__init__.py", "alula/py.typed")
+    for name in (*names, *(f"{room}/__init__.py" for room in ("geometry", "loads", "fea", "reports"))):
+        (checkout / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, checkout / name)
+    (checkout / ".venv" / "bin").mkdir(parents=True)
+    program(checkout / ".venv" / "bin", "python", "exit 0")
+    for _ in range(2):
+        result = make("-C", str(checkout), "setup", "PYTHON=true")
+        assert result.returncode == 0, result.stderr
+        (checkout / "pyproject.toml").touch()
+    links = {path.name: path.resolve() for path in (checkout / ".venv" / "types" / "alula").iterdir()}
+    rooms = {room: checkout / room for room in ("geometry", "loads", "fea", "reports")}
+    assert links == rooms | {name: checkout / "alula" / name for name in ("__init__.py", "py.typed")}
+
+
 @pytest.fixture
 def python(tmp_path) -> Path:
     """Stand in for a Python on a system that lacks libGLU."""

@@ -115,7 +115,8 @@ def test_what_is_installed_is_what_the_metadata_says(installed):
     for one in always:
         assert one.specifier.contains(version(one.name), prereleases=True), one
     declared = {canonical(one.name) for one in always}
-    optional = {canonical(one.name) for one in stated if re.search(r'extra == "(pardiso|cluster)"', str(one.marker))}
+    extra = re.compile(r'extra == "(pardiso|cluster|pandas)"')
+    optional = {canonical(one.name) for one in stated if extra.search(str(one.marker))}
     owners = packages_distributions()
     modules = {
         name.partition(".")[0]
@@ -148,7 +149,8 @@ import fea, loads, reports, tests, geometry.mine
 case = alula.read_case("four-bar")
 print(alula.check(case, fidelity="beam").verdict, alula.check(case, fidelity="solid", accuracy="50 %").verdict)
 study = alula.study("four-bar", {"parts.bar.thickness": ["4 mm", "6 mm"]}, "out", fidelity="beam", threads=2)
-print(len(study.table()), fea.MINE + loads.MINE + reports.MINE + tests.MINE + geometry.mine.MINE)
+print(*(row["verdict"] for row in study.table()))
+print(fea.MINE + loads.MINE + reports.MINE + tests.MINE + geometry.mine.MINE)
 """
 
 
@@ -158,7 +160,35 @@ def test_a_script_stands_beside_files_with_the_names_of_alulas_packages(installe
         (tmp_path / mine).parent.mkdir(exist_ok=True)
         (tmp_path / mine).write_text("MINE = 1", encoding="utf-8")
     (tmp_path / "sweep.py").write_text(SWEEP, encoding="utf-8")
-    assert run(installed / "bin" / "python", "sweep.py", cwd=tmp_path).split() == ["undecided", "pass", "2", "5"]
+    assert run(installed / "bin" / "python", "sweep.py", cwd=tmp_path).split() == [
+        "undecided",
+        "pass",
+        "undecided",
+        "undecided",
+        "5",
+    ]
+
+
+@pytest.mark.parametrize("environment", ["editable", "wheel", "none"])
+def test_a_checkout_brings_its_own_packages(environment, installed, tmp_path):
+    """Mistakes are planted in a copy of the checkout, whose packages count there whatever else is installed."""
+    checkout = tmp_path / "a chéckout"
+    shutil.copytree(ROOT / "alula", checkout / "alula")
+    shutil.copytree(ROOT / "geometry" / "base", checkout / "geometry" / "base")
+    for package in PACKAGES:
+        (checkout / package).mkdir(exist_ok=True)
+        shutil.copy(ROOT / package / "__init__.py", checkout / package)
+    script = f"import alula\nfrom alula import {', '.join(PACKAGES)}\nprint({', '.join(PACKAGES)}, sep='\\n')"
+    if environment == "none":
+        bare = [sys.executable, "-S", "-c", script]
+        done = subprocess.run(bare, cwd=checkout, capture_output=True, text=True, timeout=60)
+        assert f"ImportError: alula is not installed for {sys.executable}; 'make setup'" in done.stderr.splitlines()[-1]
+        return
+    python = sys.executable if environment == "editable" else installed / "bin" / "python"
+    told = run(python, "-c", script, cwd=checkout).splitlines()
+    assert all(str(checkout / package) in line for package, line in zip(PACKAGES, told, strict=True)), told
+    elsewhere = run(python, "-P", "-c", script, cwd=checkout)
+    assert str(checkout) not in elsewhere
 
 
 def test_the_command_line_and_the_face_import_late(installed, tmp_path):

@@ -135,8 +135,11 @@ def test_slow_commands(command: str, tmp_path: Path) -> None:
     check(folder, command)
 
 
-def test_the_snippet(tmp_path: Path) -> None:
-    (snippet,) = [text for kind, text in BLOCKS if kind == "python"]
+SNIPPETS = [(text, BLOCKS[i + 1][1]) for i, (kind, text) in enumerate(BLOCKS) if kind == "python"]
+
+
+@pytest.mark.parametrize(("snippet", "printed"), SNIPPETS)
+def test_a_snippet(snippet: str, printed: str, tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", snippet],
         cwd=tmp_path,
@@ -148,8 +151,7 @@ def test_the_snippet(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
-    printed, *_ = [text for kind, text in BLOCKS if kind == "text"]
-    assert done.stdout == printed
+    assert [line.rstrip() for line in done.stdout.splitlines()] == printed.splitlines()
 
 
 def test_the_lines_of_a_case_are_those_of_the_starter() -> None:

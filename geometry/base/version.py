@@ -8,9 +8,14 @@ RESULT_SCHEMA_VERSION = 2
 
 def alula_version() -> str:
     """Return the installed version, such as ``"0.1.0"``; ``pyproject.toml`` states it."""
-    from importlib.metadata import version
+    import sys
+    from importlib.metadata import PackageNotFoundError, version
 
-    return version("alula")
+    try:
+        return version("alula")
+    except PackageNotFoundError:
+        what = f"alula is not installed for {sys.executable}"
+        raise ImportError(f"{what}; 'make setup' in its checkout makes a Python that has it", name="alula") from None
 
 
 def result_stamp() -> dict[str, object]:

@@ -136,10 +136,7 @@ def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict
     CaseError
         For an entry that there is not.
     """
-    data = deepcopy(dict(tables))
-    changes = sorted((_of_catalogue(data, change) for change in changes), key=lambda change: not _is_part(change.path))
-    for change in changes:
-        _override(data, change)
+    data, changes = _made(tables, changes)
     derived = Case.derived(data)
     for table, entries in derived.items():
         for path, value in entries.items():
@@ -147,6 +144,37 @@ def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict
     for change in changes if derived else ():  # what is stated outright wins
         _override(data, change)
     return data
+
+
+def stated_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict[str, Any]:
+    """Return the tables of a case after some changes, as a user would state them: without what derives from them.
+
+    Parameters
+    ----------
+    tables : mapping
+        Of a case file; they stay as they are.
+    changes : sequence of Change
+        As for ``changed_tables``.
+
+    Returns
+    -------
+    dict of str to object
+
+    Raises
+    ------
+    CaseError
+        For an entry that there is not.
+    """
+    return _made(tables, changes)[0]
+
+
+def _made(tables: Mapping[str, Any], changes: Sequence[Change]) -> tuple[dict[str, Any], list[Change]]:
+    """Return a copy of tables with changes made, and the changes in the order in which they were."""
+    data = deepcopy(dict(tables))
+    made = sorted((_of_catalogue(data, change) for change in changes), key=lambda change: not _is_part(change.path))
+    for change in made:
+        _override(data, change)
+    return data, made
 
 
 def changed_case(tables: dict[str, Any], changes: Sequence[Change], name: str, folder: str) -> Case:
@@ -325,7 +353,7 @@ def _stated(override: str) -> Change:
         override.encode()
     except UnicodeEncodeError:  # what a terminal hands over of bytes that are no text
         raise CaseError(f"--set '{printable(override)}': it is not UTF-8 text; write it in UTF-8") from None
-    if not sign or not all(_keys(path)):
+    if not sign or not all(keys_of(path)):
         raise CaseError(f"--set '{printable(override)}': write it as path=value, for example pose.angle=\"30 deg\"")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
@@ -334,12 +362,23 @@ def _stated(override: str) -> Change:
     return Change(path.strip(), value)
 
 
-def _keys(path: str) -> list[str]:
+def keys_of(path: str) -> list[str]:
+    """Return the keys of the path of an entry.
+
+    Parameters
+    ----------
+    path : str
+        With dots; keys may stand in quotes.
+
+    Returns
+    -------
+    list of str
+    """
     return [key.strip().strip("\"'") for key in path.strip().split(".")]
 
 
 def _is_part(path: str) -> bool:
-    keys = _keys(path)
+    keys = keys_of(path)
     return len(keys) == 2 and keys[0] == "parts"
 
 
@@ -364,7 +403,7 @@ def _override(data: dict[str, Any], change: Change) -> None:
     beside the one that is meant, and change nothing else.
     """
     path, who = change.path, change.who
-    keys = _keys(path)
+    keys = keys_of(path)
     if not all(keys):
         raise CaseError(f"{who} '{printable(path)}': write keys with dots between them, for example pose.angle")
     refuse_deep(change.value, f"{who} {printable(path)}", above=len(keys))

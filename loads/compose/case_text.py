@@ -1,6 +1,7 @@
 """The text of the file that states a case."""
 
 import os
+import secrets
 from pathlib import Path
 from typing import Any
 
@@ -77,19 +78,19 @@ def write_case(path: Path, text: str, *, replace: bool) -> None:
     CannotRunError
         Where the disk refuses.
     """
-    begun = path.with_name(f".alula-{os.getpid()}-{path.name}") if replace else path
+    shown = printable(str(path))
     try:
+        path = Path(os.path.realpath(path)) if replace else path  # a link stays one
+        begun = path.parent / f".alula-{secrets.token_hex(8)}" if replace else path
         with begun.open("x", encoding="utf-8", newline="\n") as file:
             try:
                 file.write(text)
                 file.flush()
+                begun.replace(path)
             except BaseException:
                 begun.unlink()
                 raise
-        begun.replace(path)
     except FileExistsError:
-        raise CaseError(
-            f"'{printable(str(path))}' is there already; choose another name, or say replace=True"
-        ) from None
+        raise CaseError(f"'{shown}' is there already; choose another name, or say replace=True") from None
     except OSError as error:
-        raise CannotRunError(f"'{printable(str(path))}' cannot be written: {error.strerror}") from None
+        raise CannotRunError(f"'{shown}' cannot be written: {error.strerror}") from None

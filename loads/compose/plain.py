@@ -1,17 +1,20 @@
 """Values of Python as a case file states them: text, numbers, lists and tables."""
 
 import os
+import re
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from alula.geometry.base.errors import CaseError
 from alula.loads.text.explain import printable
-from alula.loads.text.nesting import refuse_deep
+from alula.loads.text.nesting import DEEPEST, too_deep
+
+_POINT = re.compile(r"links\.[^.]+\.points\.[^.]+")
+_LARGEST = 2**63 - 1
+"""Of the whole numbers that every reader of TOML takes."""
 
 
-def plain(value: object, entry: str) -> Any:
+def plain(value: object, entry: str, level: int = 0) -> Any:
     """Return a value as a case file states it.
 
     Parameters
@@ -19,9 +22,12 @@ def plain(value: object, entry: str) -> Any:
     value : object
         Text, a number, a truth value, a list or a mapping of such; a path, which becomes its text; a numpy array or a
         series of pandas, which becomes a list; a pint quantity, which becomes text with its unit, or of an array a list
-        of such. What a mapping names with None is left out.
+        of such. What a mapping names with None is left out. An array of bare numbers that is the point of a link is
+        in mm, as all arrays that alula returns: no text with its unit stands in it beside a number.
     entry : str
-        What the message calls it.
+        Its path, which decides on points and begins messages; "" for a whole case.
+    level : int, optional
+        Of tables and lists above it.
 
     Returns
     -------
@@ -34,70 +40,144 @@ def plain(value: object, entry: str) -> Any:
     CaseError
         For any other object, for a key that is no text, and where tables stand too deep in one another.
     """
-    refuse_deep(value, entry)
-    return _plain(value, entry)
-
-
-def _plain(value: object, entry: str) -> Any:
+    if level > DEEPEST:
+        raise too_deep(printable(entry))
     if hasattr(value, "magnitude") and hasattr(value, "units"):  # a quantity, of whichever registry
-        return _with_unit(_plain(value.magnitude, entry), format(value.units, "~C"))
+        number = value.magnitude.tolist() if hasattr(value.magnitude, "tolist") else value.magnitude
+        return _with_unit(plain(number, entry, level), format(value.units, "~C"))
     if hasattr(value, "tolist"):  # an array, a series, a number of numpy
+        bare = getattr(getattr(value, "dtype", None), "kind", None) in ("i", "u", "f")
         value = value.tolist()
+        if bare and _POINT.fullmatch(entry):
+            return _with_unit(value, "mm")
     match value:
         case bool():
             return bool(value)
-        case str() | int() | float():  # a subclass, such as an enumeration's, as what it is made of
-            kind = next(kind for kind in (str, int, float) if isinstance(value, kind))
-            return kind(value) if kind is not str else str.__str__(value)
+        case int() if abs(value) > _LARGEST:
+            raise CaseError(f"{printable(entry)}: a whole number of a case is at most 2^63 - 1; make it smaller")
+        case int():  # a subclass, such as an enumeration's, as what it is made of
+            return int(value)
+        case float():
+            return float(value)
+        case str():
+            return str.__str__(value)
         case os.PathLike():
             return os.fsdecode(value)
         case Mapping():
             return {
-                _key(key, entry): _plain(inner, f"{entry}.{key}") for key, inner in value.items() if inner is not None
+                (name := text_of(key, entry or "case", "key")): plain(inner, below(entry, name), level + 1)
+                for key, inner in value.items()
+                if inner is not None
             }
         case list() | tuple():
-            return [_plain(inner, f"{entry}.{i}") for i, inner in enumerate(value)]
+            return [plain(inner, below(entry, str(i)), level + 1) for i, inner in enumerate(value)]
+    remedy = "leave it out, or remove the entry with without" if value is None else "give one of these"
     raise CaseError(
-        f"{printable(entry)}: a value of a case is text, with its unit where it has one, a number, True or False, a "
-        f"list or a dictionary, not {printable(type(value).__name__)}; give one of these"
+        f"{printable(entry or 'case')}: a value of a case is text, with its unit where it has one, a number, True or "
+        f"False, a list or a dictionary, not {printable(type(value).__name__)}; {remedy}"
     )
 
 
-def _key(key: object, entry: str) -> str:
-    if not isinstance(key, str):
-        raise CaseError(f"{printable(entry)}: the key {printable(repr(key))} must be text; write it in quotes")
-    return str.__str__(key)
+def below(entry: str, key: str) -> str:
+    """Return the path of an entry below another one.
+
+    Parameters
+    ----------
+    entry : str
+        "" for the top level.
+    key : str
+
+    Returns
+    -------
+    str
+    """
+    return f"{entry}.{key}" if entry else key
+
+
+def text_of(value: object, entry: str, what: str) -> str:
+    """Return text as a plain ``str``.
+
+    Parameters
+    ----------
+    value : object
+    entry : str
+        What it belongs to; it begins the message.
+    what : str
+        What it is, for the message.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    CaseError
+        For anything else.
+    """
+    if not isinstance(value, str):
+        raise CaseError(f"{printable(entry)}: the {what} must be text, not {type(value).__name__}; write it in quotes")
+    return str.__str__(value)
+
+
+def mapping_of(value: object, entry: str, holds: str) -> Mapping[Any, object]:
+    """Return a mapping as it is.
+
+    Parameters
+    ----------
+    value : object
+    entry : str
+        What takes it; it begins the message.
+    holds : str
+        What it holds, for the message.
+
+    Returns
+    -------
+    mapping
+
+    Raises
+    ------
+    CaseError
+        For anything else.
+    """
+    if not isinstance(value, Mapping):
+        raise CaseError(f"{entry}: it takes {holds} as a dictionary, not {type(value).__name__}; give one")
+    return value
+
+
+def path_text(value: object, entry: str) -> str:
+    """Return the text of a path.
+
+    Parameters
+    ----------
+    value : object
+        Text, or a path.
+    entry : str
+        What it names; it begins the message.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    CaseError
+        For anything else, and for what no file can be called.
+    """
+    path = os.fspath(value) if isinstance(value, str | os.PathLike) else None
+    if not isinstance(path, str):
+        raise CaseError(
+            f"{entry}: it must be a path, as text or as Python has it, not {type(value).__name__}; give one"
+        )
+    try:
+        named = b"\0" not in os.fsencode(path)
+    except UnicodeEncodeError:
+        named = False
+    if not named:
+        raise CaseError(f"{entry}: no file can be called '{printable(path)}'; choose another name")
+    return str.__str__(path)
 
 
 def _with_unit(number: Any, unit: str) -> Any:
     if isinstance(number, list):
         return [_with_unit(inner, unit) for inner in number]
     return f"{number!r} {unit}" if unit else number
-
-
-def in_millimetres(points: object) -> object:
-    """Return the points of a link with the unit of those that are arrays of bare numbers.
-
-    An array has one kind of entry, so that no text with its unit stands in it beside a number; its numbers are mm, as
-    those of all arrays that alula returns.
-
-    Parameters
-    ----------
-    points : object
-        Name -> place, where it is a mapping.
-
-    Returns
-    -------
-    object
-    """
-    if not isinstance(points, Mapping):
-        return points
-    return {name: _millimetres(place) if _is_bare(place) else place for name, place in points.items()}
-
-
-def _is_bare(place: object) -> bool:
-    return isinstance(place, np.ndarray) and place.dtype.kind in "iuf"
-
-
-def _millimetres(place: Any) -> Any:
-    return _with_unit(place.tolist(), "mm")

@@ -4,12 +4,13 @@ What is stated are the tables of a case file. Each entry is held against its mod
 fit together can be known at the end alone, so that it is asked when the case is used: ``StatedCase.record``.
 """
 
-import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache, cached_property
-from os import PathLike, fspath
+from itertools import takewhile
+from operator import eq
+from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -20,10 +21,18 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
-from alula.loads.case.case_file import Change, changed_case, changed_tables, folder_of, read_tables
+from alula.loads.case.case_file import (
+    Change,
+    changed_case,
+    changed_tables,
+    folder_of,
+    keys_of,
+    read_tables,
+    stated_tables,
+)
 from alula.loads.case.part_points import FROM_PART
 from alula.loads.compose.case_text import case_text, name_files, write_case
-from alula.loads.compose.plain import in_millimetres, plain
+from alula.loads.compose.plain import mapping_of, path_text, plain, text_of
 from alula.loads.text.entries import alike
 from alula.loads.text.explain import printable, sentence
 
@@ -38,16 +47,16 @@ class StatedCase:
 
     It never changes: each method returns another case. Entries, units and rules are those of the case file, where
     ``case.with_link("crank", part="bar", ...)`` is ``[links.crank]``. A number with a unit is text, such as ``"3 mm"``,
-    or a quantity of pint; an array of a link's point is in mm. What is added is checked at once by itself, and together
-    with all else when the case is used. Its entries are attributes then: ``case.parts["bar"].thickness`` is a number in
-    mm, N, MPa.
+    or a quantity of pint; an array of bare numbers is a link's point in mm. What is None is left out. What is added is
+    checked at once by itself, and together with all else when the case is used. Its entries are attributes then:
+    ``case.parts["bar"].thickness`` is a number in mm, N, MPa.
 
     Parameters
     ----------
     title : str
         What the case is, in a line.
     folder : str or path, optional
-        Where files of parts are sought; the present folder when left out.
+        Where files of parts are sought; when left out, the folder that is the present one now.
     **entries : object
         Further ones of the top level of a case file: ``layer_spacing``, or whole tables such as ``links``.
 
@@ -61,13 +70,16 @@ class StatedCase:
     >>> import alula
     >>> case = alula.Case("Lever")
     >>> case = case.with_link("base", ground=True, points={"O": ("0 mm", "0 mm")})
-    >>> case = case.with_link("lever", part="bar", points={"O": ("0 mm", "0 mm"), "P": ("60 mm", "0 mm")})
+    >>> points = {"O": ("0 mm", "0 mm"), "P": ("60 mm", "0 mm")}
+    >>> case = case.with_link("lever", part="bar", points=points, end_patch="8 mm")
     >>> case = case.with_joint("O", links=("base", "lever"), pin_diameter="3 mm")
-    >>> case = case.with_part("bar", shape="bar", material="aluminium-6061-t6", width="8 mm", thickness="4 mm")
-    >>> case = case.with_entries(pose={"angle": "0 deg"}, drive={"link": "lever", "joint": "O"})
+    >>> bar = {"material": "aluminium-6061-t6", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "2 mm"}
+    >>> case = case.with_part("bar", shape="bar", **bar)
+    >>> case = case.with_pose(coordinate="lever", angle="0 deg").with_drive(link="lever", joint="O")
     >>> case = case.with_load_case("grip", forces=[{"link": "lever", "at": "P", "force": ("0 N", "-5 N")}])
     >>> report = alula.check(case, fidelity="beam")
     >>> print(report.verdict, f"{report.safety_factors['lever'].value:.1f}")
+    pass 21.2
     """
 
     _tables: Tables
@@ -77,7 +89,7 @@ class StatedCase:
 
     def __init__(self, title: str | None = None, *, folder: "str | PathLike[str]" = "", **entries: object) -> None:
         tables = {"schema_version": CASE_SCHEMA_VERSION}
-        self.__dict__.update(_tables=tables, _changes=(), _folder=fspath(folder), _name="")
+        self.__dict__.update(_tables=tables, _changes=(), _folder=_absolute(folder), _name="")
         self.__dict__.update(_tables=self.with_entries(title=title, **entries)._tables)
 
     @classmethod
@@ -105,8 +117,8 @@ class StatedCase:
         CaseError
             With one sentence for whatever is wrong.
         """
-        name = fspath(name_or_path)
-        found = cls._of(read_tables(name), (), folder_of(name), name)
+        name = path_text(name_or_path, "case")
+        found = cls._of(read_tables(name), (), _absolute(folder_of(name)), name)
         _ = found.record
         return found
 
@@ -131,12 +143,7 @@ class StatedCase:
         CaseError
             With one sentence for whatever is wrong.
         """
-        if not isinstance(tables, Mapping):
-            raise CaseError(
-                "from_dict: it takes the tables of a case as a dictionary; read a file with alula.read_case"
-            )
-        stated = {name: _of_links(name, value) for name, value in tables.items()}
-        found = cls._of(plain(stated, "case"), (), fspath(folder), "")
+        found = cls._of(plain(mapping_of(tables, "from_dict", "the tables of a case"), ""), (), _absolute(folder), "")
         _ = found.record
         return found
 
@@ -178,7 +185,10 @@ class StatedCase:
         >>> case.parts["tube"].outer_diameter, thicker.parts["tube"].outer_diameter  # mm
         (5.0, 6.0)
         """
-        changes = (Change(path, plain(value, path), "with_values") for path, value in values.items())
+        changes = (
+            Change(text_of(path, "with_values", "path of an entry"), plain(value, path), "with_values")
+            for path, value in mapping_of(values, "with_values", "entries and their values").items()
+        )
         found = self._of(self._tables, (*self._changes, *changes), self._folder, self._name)
         _ = found.record
         return found
@@ -201,10 +211,11 @@ class StatedCase:
             For an unknown entry, and a value that breaks its rule.
         """
         given = {name: value for name, value in entries.items() if value is not None}
-        stated = {name: plain(_of_links(name, value), name) for name, value in given.items()}
+        stated = {name: plain(value, name) for name, value in given.items()}
         for name, value in stated.items():
             _check({name: value}, self._folder)
-        return self._stating(self._tables | stated, *stated)
+        tables, others = self._apart_from(*stated)
+        return self._of(tables | stated, others, self._folder, "")
 
     def with_link(self, name: str, *, replace: bool = False, **entries: object) -> Self:
         """Return the case with one more link.
@@ -227,7 +238,7 @@ class StatedCase:
         CaseError
             For a name that is taken, an unknown entry, and a value that breaks its rule.
         """
-        return self._adding("links", name, entries | {"points": in_millimetres(entries.get("points"))}, replace)
+        return self._adding("links", name, entries, replace)
 
     def with_joint(self, name: str, *, replace: bool = False, **entries: object) -> Self:
         """Return the case with one more joint.
@@ -354,7 +365,7 @@ class StatedCase:
         replace : bool
             True for another in the place of one that has the name.
         **entries : object
-            Such as ``links=("base", "crank")``, ``stiffness="0.5 N/mm"``.
+            Such as ``joint="O2"``, ``stiffness="20 N*mm/rad"``, ``free_angle="40 deg"``.
 
         Returns
         -------
@@ -377,7 +388,7 @@ class StatedCase:
         replace : bool
             True for another in the place of one that has the name.
         **entries : object
-            As ``[tendons]`` of the case file has them.
+            Such as ``through=[{"link": "base", "at": "S"}, {"link": "crank", "at": "P"}]``, ``tension="5 N"``.
 
         Returns
         -------
@@ -400,7 +411,7 @@ class StatedCase:
         replace : bool
             True for another in the place of one that has the name.
         **entries : object
-            As ``[stops]`` of the case file has them.
+            Such as ``joint="O2"``, ``at_most="100 deg"``.
 
         Returns
         -------
@@ -499,7 +510,8 @@ class StatedCase:
         Parameters
         ----------
         *paths : str
-            Each with dots, such as ``"links.crank"``, ``"motion"``, ``"load_cases.lift.forces.0"``.
+            Each with dots, such as ``"links.crank"``, ``"motion"``, ``"load_cases.lift.forces.0"``. What the table
+            ``"ornithopter"`` sets stays when it is removed.
 
         Returns
         -------
@@ -512,9 +524,15 @@ class StatedCase:
         """
         found = self
         for path in paths:
-            tables = deepcopy(found._tables)
-            _remove(tables, path)
-            found = found._stating(tables, path)
+            keys = keys_of(text_of(path, "without", "path of an entry"))
+            if len(keys) == 1 and keys[0] in Case.derived(found._tables):  # what it sets stays
+                tables = changed_tables(found._tables, found._changes)
+                others: tuple[Change, ...] = ()
+            else:  # removed from a list, an entry moves those behind it
+                tables, others = found._apart_from(".".join(takewhile(lambda key: not key.isdecimal(), keys)))
+            tables = deepcopy(tables)
+            _remove(tables, keys)
+            found = found._of(tables, others, found._folder, "")
         return found
 
     def to_dict(self, *, folder: "str | PathLike[str]" = "") -> Tables:
@@ -534,10 +552,15 @@ class StatedCase:
         Raises
         ------
         CaseError
-            Where values were changed that the case cannot have.
+            Where values were changed that the case cannot have, or that a table of the case would set again.
         """
         tables = changed_tables(self._tables, self._changes)
-        name_files(tables, self._folder, Path(folder).absolute())
+        if changed_tables(tables, ()) != tables:
+            raise CaseError(
+                "ornithopter: this table sets entries that were changed, and would set them again; remove it with "
+                'without("ornithopter")'
+            )
+        name_files(tables, self._folder, Path(_absolute(folder)))
         return tables
 
     def of_study(self) -> Tables:
@@ -582,21 +605,18 @@ class StatedCase:
         CannotRunError
             Where the file cannot be written.
         """
-        _, folder = self.record, Path(path or "case.toml").absolute().parent
-        text = case_text(self.to_dict(folder=folder))
-        if self.from_dict(tomllib.loads(text), folder=folder) != self:
-            raise CaseError(
-                "to_toml: the table [ornithopter] sets entries that were changed, and would set them again; remove it "
-                'with without("ornithopter")'
-            )
+        _ = self.record
+        folder = Path(path_text("case.toml" if path is None else path, "to_toml")).absolute().parent
+        stated = case_text(self.to_dict(folder=folder))
         if path is not None:
-            write_case(Path(path), text, replace=replace)
-        return text
+            write_case(Path(path), stated, replace=replace)
+        return stated
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in _attributes():
             raise AttributeError(f"a case has no attribute '{name}'{alike(name, _attributes())}", name=name, obj=self)
-        return getattr(self.record, name)
+        found = getattr(self.record, name)
+        return dict(found) if isinstance(found, dict) else found  # a copy: a case never changes
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *_attributes()})
@@ -625,32 +645,34 @@ class StatedCase:
         return f"Case({printable(str(self._tables.get('title', '')))!r}: {', '.join(counts)})"
 
     def _adding(self, table: str, name: str, entries: Mapping[str, object], replace: bool) -> Self:
-        if not isinstance(name, str):
-            raise CaseError(f"{table}: the name {printable(repr(name))} must be text; write it in quotes")
-        path, there = f"{table}.{name}", self._tables.get(table, {})
+        if not isinstance(replace, bool):
+            raise CaseError(f"replace: it must be True or False, not {type(replace).__name__}; write one of them")
+        name = text_of(name, table, "name")
+        path = f"{table}.{name}"
+        tables, others = self._apart_from(path)
+        there = tables.get(table, {})
         if name in there and not replace:
             raise CaseError(f"{printable(path)}: there is one of that name already; rename it, or say replace=True")
         if replace and name not in there:
             raise CaseError(f"{printable(path)}: there is none to replace{alike(name, there) or '; leave replace out'}")
         entry = plain(entries, path)
         _check({table: {name: entry}}, self._folder)
-        return self._stating(self._tables | {table: there | {name: entry}}, path)
+        return self._of(tables | {table: there | {name: entry}}, others, self._folder, "")
 
-    def _stating(self, tables: Tables, *paths: str) -> Self:
-        """Return a case of other tables, without changes of what they state anew at some paths: no file is it now."""
-        anew = [path.split(".") for path in paths]
-        kept = (c for c in self._changes if not any(c.path.split(".")[: len(keys)] == keys for keys in anew))
-        return self._of(tables, tuple(kept), self._folder, "")
+    def _apart_from(self, *paths: str) -> tuple[Tables, tuple[Change, ...]]:
+        """Return tables in which some entries may be stated anew, and the changes that are not about these.
+
+        The others are made in the tables: what they set stands there, and is not set again.
+        """
+        stated = [keys_of(path) for path in paths]
+        about = [c for c in self._changes if any(all(map(eq, keys, keys_of(c.path))) for keys in stated)]
+        others = tuple(c for c in self._changes if c not in about)
+        return stated_tables(self._tables, about) if about else self._tables, others
 
 
-def _of_links(table: str, value: object) -> object:
-    """Return a table of links with mm to the arrays among their points."""
-    if table != "links" or not isinstance(value, Mapping):
-        return value
-    return {
-        name: {**link, "points": in_millimetres(link.get("points"))} if isinstance(link, Mapping) else link
-        for name, link in value.items()
-    }
+def _absolute(folder: object) -> str:
+    """Return a folder as it is called from everywhere: the present one may be another when the case is used."""
+    return str(Path(path_text(folder, "folder")).absolute())
 
 
 def _check(tables: Tables, folder: str) -> None:
@@ -695,20 +717,20 @@ def _attributes() -> frozenset[str]:
     return frozenset(told | Case.model_fields.keys())
 
 
-def _remove(tables: Tables, path: str) -> None:
+def _remove(tables: Tables, keys: list[str]) -> None:
     """Remove an entry from tables that are made for it."""
-    *above, last = path.split(".")
     here: Any = tables
-    for depth, key in enumerate((*above, last)):
-        there = printable(".".join(path.split(".")[:depth])) or "the case"
+    for depth, key in enumerate(keys):
+        there = printable(".".join(keys[:depth])) or "the case"
         if isinstance(here, list):
             known: tuple[str, ...] = tuple(map(str, range(len(here))))
         else:
             known = tuple(here) if isinstance(here, dict) else ()
         if key not in known:
-            raise CaseError(f"without '{printable(path)}': {there} has no '{printable(key)}'{alike(key, known)}")
+            path = printable(".".join(keys))
+            raise CaseError(f"without '{path}': {there} has no '{printable(key)}'{alike(key, known)}")
         index: Any = int(key) if isinstance(here, list) else key
-        if depth == len(above):
+        if depth == len(keys) - 1:
             del here[index]
         else:
             here = here[index]

@@ -201,9 +201,9 @@ def _shown(value: float) -> str:
 
 
 def _command(study: StudyColumns) -> str:
-    """The command that checks the best point; "" where nothing is checked, or where the case has another path."""
+    """The command that checks the best point; "" where nothing is checked, and for a case that no file states."""
     plan, best = study.facts["plan"], study.extremes.get("best")
-    if best is None or plan["analysis"] == "motion":
+    if best is None or plan["analysis"] == "motion" or plan.get("tables"):
         return ""
     changes = {**plan["set"], **best.parameters}
     options = [word for path, value in changes.items() for word in ("--set", f"{path}={_text(value)}")]

@@ -132,8 +132,8 @@ def test_load_cases_times_links() -> None:
     assert len(validate(laden(MOST_RESULTS // 30)).load_cases) == MOST_RESULTS // 30
     with pytest.raises(CaseError, match=r"load_cases: 67 load cases of 30 links .* at most 2,000"):
         validate(laden(MOST_RESULTS // 30 + 1))
-    with pytest.raises(CaseError, match="must hold at most 100"):
-        validate(laden(101))
+    with pytest.raises(CaseError, match="must hold at most 1000"):
+        validate(laden(1001))
 
 
 def _row_of_four_bars(count: int) -> dict[str, Any]:

@@ -93,12 +93,12 @@ def test_quantities_and_arrays_are_what_their_text_is(lever):
         (lambda c: c.with_link("base", points=ORIGIN), "links.base: there is one of that name already"),
         (lambda c: c.with_link("x", replace=True, points=ORIGIN), "links.x: there is none to replace"),
         (lambda c: c.with_link("l/er", points=ORIGIN), "links.l/er: a name is made of letters"),
-        (lambda c: c.with_link(5, points=ORIGIN), "links: the name 5 must be text"),
+        (lambda c: c.with_link(5, points=ORIGIN), "links: the name must be text, not int"),
         (lambda c: c.with_link("x", ground=True, ponts={}, points=ORIGIN), "links.x.ponts: .* did you mean 'points'"),
         (lambda c: c.with_link("x", ground=True, points={"O": np.array([0, np.nan])}), "O.1 .it is 'nan mm'.: .*finit"),
         (lambda c: c.with_link("x", ground=True, points={"O": (0, 1)}), r"links.x.points.O.0 \(it is 0\): .* its unit"),
         (lambda c: c.with_link("x", ground=True, points={"O": {1, 2}}), "links.x.points.O: .* not set"),
-        (lambda c: c.with_link("x", ground=True, points={7: ("0 mm", "0 mm")}), "points: the key 7 must be text"),
+        (lambda c: c.with_link("x", ground=True, points={7: ("0 mm", "0 mm")}), "points: the key must be text"),
         (lambda c: c.with_part("y", **BAR | {"width": "inf mm"}), r"parts.y.width \(it is 'inf mm'\): .* finite"),
         (lambda c: c.with_part("y", **BAR | {"width": 3 * UNITS.N}), '"N" is not a unit of length'),
         (lambda c: c.with_part("y", **BAR | {"fillet_radius": None}), "parts.y.fillet_radius: this entry is missing"),
@@ -152,7 +152,7 @@ def test_changes_by_path_hold_until_what_they_changed_is_stated_anew():
 
 def test_entries_that_a_mechanism_sets_are_not_written_as_if_they_were_free():
     changed = alula.read_case("ornithopter").with_values({"parts.rod.width": "3 mm", "pose.angle": "17 deg"})
-    with pytest.raises(CaseError, match=r"to_toml: .*\[ornithopter\] sets entries"):
+    with pytest.raises(CaseError, match="ornithopter: this table sets entries"):
         changed.to_toml()
     free = changed.without("ornithopter")
     assert alula.Case.from_dict(tomllib.loads(free.to_toml())).parts["rod"].width == 3.0
