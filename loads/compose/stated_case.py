@@ -40,6 +40,9 @@ Tables = dict[str, Any]
 _ANY_POINTS = {"A": ["0 mm", "0 mm"], "B": ["1 mm", "0 mm"]}
 """Of a link whose part says where its points are: they are asked for with all others."""
 
+_NO_FILE = "made"
+"""Module of the models that are made here: no source has the texts of their entries."""
+
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class StatedCase:
@@ -702,12 +705,12 @@ def _model_of(table: str) -> type[BaseModel]:
     """Return a model of one entry of the top level; how many must be there can be known at the end alone."""
     field = Case.model_fields.get(table)
     if field is None:
-        return create_model("Stated", __base__=CaseModel)
+        return create_model("Stated", __base__=CaseModel, __module__=_NO_FILE)
     kind: Any = field.annotation
     for rule in field.metadata:
         kind = kind if isinstance(rule, MinLen) else Annotated[kind, rule]
     definitions: dict[str, Any] = {table: (kind, ...)}
-    return create_model("Stated", __base__=CaseModel, **definitions)
+    return create_model("Stated", __base__=CaseModel, __module__=_NO_FILE, **definitions)
 
 
 @cache
