@@ -29,6 +29,7 @@ from alula.geometry.materials.material import stress_measure
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.sources.published_statics import StaticsAudit
+from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.clearance import Clearance
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.extent import Extent
@@ -341,6 +342,8 @@ class CheckResult:
         CalculiX beside our solid models, where it was asked for.
     frequencies : CaseFrequencies or None
         Natural frequencies, where a check asks for them.
+    in_air : CaseMotion or None
+        The motion of the load cases with air; None without any, where it cannot be moved, and of a bare check.
     """
 
     name: str
@@ -357,6 +360,7 @@ class CheckResult:
     warnings: tuple[str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
+    in_air: CaseMotion | None = None
 
     @cached_property
     def caveats(self) -> tuple[Caveat, ...]:

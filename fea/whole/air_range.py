@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from alula.fea.whole.rubbed_motion import rubbed_motion
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case import Case
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.flapping import in_air
 
@@ -64,3 +66,24 @@ def air_range(moved: CaseMotion) -> AirRange | None:
         share: rubbed_motion(in_air(moved.case, share)) for share in (None, 0.0, 1.0)
     }
     return AirRange(without=found[None], least=found[0.0], largest=found[1.0])
+
+
+def motion_in_air(case: Case) -> CaseMotion | None:
+    """Return the motion of the load cases with air.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    CaseMotion or None
+        None without any, without a motion or a drive, and where the linkage does not get along it.
+    """
+    flapping = {name: one for name, one in case.load_cases.items() if one.flapping is not None}
+    if not flapping or case.motion is None or case.drive is None:
+        return None
+    try:
+        return rubbed_motion(case.model_copy(update={"load_cases": flapping}))
+    except CaseError:  # ``alula motion`` says why
+        return None

@@ -7,28 +7,28 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from alula.fea.whole.air_range import air_range
-from alula.loads.case.case import Case
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.figures.motion_figures import DPI, legend, over_angle
-from alula.reports.tables.loads import motion_air_record, motion_in_air
+from alula.reports.tables.loads import motion_air_record
 
 Real = NDArray[np.float64]
 _SIZE = (8.0, 6.6)
 
 
-def case_air_pictures(case: Case) -> dict[str, bytes]:
+def case_air_pictures(moved: CaseMotion | None) -> dict[str, bytes]:
     """Draw the drive with and without air over the motion of a case.
 
     Parameters
     ----------
-    case : Case
+    moved : CaseMotion or None
+        As ``motion_in_air``.
 
     Returns
     -------
     dict of str to bytes
         Load case -> PNG; empty without air, and without a motion.
     """
-    moved, found = motion_in_air(case), {}
+    found = {}
     for name in () if moved is None else moved.torque:
         with BytesIO() as file:
             assert moved is not None

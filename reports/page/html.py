@@ -114,7 +114,7 @@ def render(
         air={name: found for name in result.load_cases if (found := air_record(result, name))},
         flapping={
             name: {**found, "picture": figures.get(flapping_name(name)), "lines": air_lines(found)}
-            for name, found in case_air_record(result.case).items()
+            for name, found in case_air_record(result.in_air).items()
         },
         turning=turning,
         axes=AXES,

@@ -148,7 +148,7 @@ def draw_pictures(
         pictures |= frequency_pictures(result.frequencies)
         if result.size is not None and (limits := size_limits(result.case)):
             pictures[BOX] = box_drawing(result.size, limits)
-        pictures |= {flapping_name(name): figure for name, figure in case_air_pictures(result.case).items()}
+        pictures |= {flapping_name(name): figure for name, figure in case_air_pictures(result.in_air).items()}
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link])
             for link, found in worst.items()

@@ -10,7 +10,6 @@ from alula.fea.check.anchor import anchor_loads
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.whole.air_range import air_range
 from alula.fea.whole.motor import demand
-from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.geometry.base.units import as_text
 from alula.geometry.linkage.placement import Placement
 from alula.loads.case.case import Case
@@ -209,39 +208,21 @@ def _asked(moved: CaseMotion, load_case: str) -> dict[str, float]:
     return {"peak_power": found.peak_power, "mean_power": found.mean_power, "peak_effort": found.peak_torque}
 
 
-def case_air_record(case: Case) -> dict[str, dict[str, Any]]:
+def case_air_record(moved: CaseMotion | None) -> dict[str, dict[str, Any]]:
     """Return what the air does over the motion of a case, for every load case that has air.
 
     Parameters
     ----------
-    case : Case
+    moved : CaseMotion or None
+        As ``motion_in_air``.
 
     Returns
     -------
     dict of str to dict
         Load case -> its record; empty without air, and without a motion.
     """
-    moved = motion_in_air(case)
     found = {} if moved is None else {name: motion_air_record(moved, name) for name in moved.torque}
     return {name: record for name, record in found.items() if record is not None}
-
-
-def motion_in_air(case: Case) -> CaseMotion | None:
-    """Return the motion of the load cases with air.
-
-    Parameters
-    ----------
-    case : Case
-
-    Returns
-    -------
-    CaseMotion or None
-        None without any, and without a motion or a drive.
-    """
-    flapping = {name: one for name, one in case.load_cases.items() if one.flapping is not None}
-    if not flapping or case.motion is None or case.drive is None:
-        return None
-    return rubbed_motion(case.model_copy(update={"load_cases": flapping}))
 
 
 def air_lines(record: dict[str, Any] | None) -> list[str]:

@@ -66,7 +66,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "changes": change_records(result),
         "hand_calculations": [*_cantilevers(result), *_comparisons(result.load_cases.values())],
         "clearance": clearance_record(result.clearance),
-        "flapping": case_air_record(result.case) or None,
+        "flapping": case_air_record(result.in_air) or None,
         "mass": mass_record(result.mass),
         "size": size_record(result.size),
         "frequencies": frequencies_record(result.frequencies),

@@ -5,9 +5,11 @@ import re
 
 import pytest
 from PIL import Image
+from solved import by_hand
 
 from alula.fea.sizing import changes
 from alula.fea.sizing.tried import Trials
+from alula.fea.whole import air_range
 from alula.reports.figures import figures
 from alula.reports.page import pictures
 from alula.reports.page.folder import report_names, write_report
@@ -44,6 +46,18 @@ def test_what_the_console_told_is_not_worked_out_again(result, tmp_path, monkeyp
     changes.changes(result)
     write_report(result, tmp_path / "out")
     assert len(begun) == 1
+
+
+def test_the_air_over_the_motion_is_moved_once_by_the_check(tmp_path, monkeypatch):
+    """Page, pictures and JSON tell of it: each moved the wings anew, nine times in all."""
+    result = by_hand("ornithopter")
+    assert result.in_air is not None
+    air_range.air_range(result.in_air)
+    monkeypatch.setattr(air_range, "rubbed_motion", lambda case: pytest.fail("moved"))
+    write_report(result, tmp_path / "out")
+    record = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
+    assert list(record["flapping"]) == ["wings-10-air", "wings-12-air"]
+    assert len(list((tmp_path / "out" / "pictures").glob("air-*"))) == 2
 
 
 def _is_repacked_without_loss(picture, page):
