@@ -13,6 +13,8 @@ import pytest
 import alula
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.case_file import built_in_cases, folder_of, read_case, read_tables
+from alula.loads.plans.plan import plan_of
+from alula.loads.plans.variants import Variants
 
 UNITS = pint.UnitRegistry()  # a user's own
 NAMED = {
@@ -68,6 +70,8 @@ def test_a_part_below_the_folder_is_named_from_there(tmp_path, monkeypatch):
     assert case.to_dict()["parts"][part]["file"] == "parts/crank.step"
     assert 'file = "crank.step"' in case.to_toml("parts/case.toml")
     assert alula.read_case("parts/case.toml") == case
+    plan = case.with_entries(title="on/off").of_study() | {"vary": {"load_cases.pull.scatter": ["0 %", "10 %"]}}
+    assert [file.read_bytes() for file in Variants(plan_of(plan), Path()).files.values()] == [step]
 
 
 def test_quantities_and_arrays_are_what_their_text_is(lever):
@@ -85,6 +89,8 @@ def test_quantities_and_arrays_are_what_their_text_is(lever):
     assert case == same.with_entries(conditions={"temperature": "23 degC"})
     assert case.links["lever"].points["P"] == (60.0, 0.0)
     assert case != lever
+    printed = lever.with_part("bar", replace=True, **BAR, build_direction=np.array([0.0, 0.0, 2.0]))  # has no unit
+    assert printed.parts["bar"].build_direction == (0.0, 0.0, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -148,6 +154,7 @@ def test_changes_by_path_hold_until_what_they_changed_is_stated_anew():
     assert (anew.checks["stiffness"].maximum, anew.parts["bar"].width) == (1.0, 9.0)
     assert (case.origin, alula.read_case("four-bar").origin) == ("", "four-bar")
     assert "stiffness" not in case.without("checks.stiffness").checks
+    assert alula.read_case("four-bar").with_check("third", type="safety-factor").origin == ""
 
 
 def test_entries_that_a_mechanism_sets_are_not_written_as_if_they_were_free():

@@ -7,9 +7,10 @@ import pytest
 from rich.console import Console
 from solved import by_hand
 
-from alula.fea.common.verdict import Verdict, deciding
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, deciding, worst_of_each
 from alula.reports.tables.console import MATTER, SCREEN, print_result, print_screen
-from alula.reports.words.wording import checks_of, decision
+from alula.reports.words.wording import BRIEF, brief, checks_of, decision
 
 CASES = ("owl-wing-static", "owl-wing-braking", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
 
@@ -55,6 +56,26 @@ def test_a_check_under_several_load_cases_stands_once_with_the_worst():
         [row] = [row for row in rows if " AE " in row]
         assert worst.load_case in row
         assert f"{worst.value.value:.3g}" in row
+
+
+def test_checks_of_two_names_and_links_stand_for_themselves_and_what_does_not_apply_for_none():
+    def outcome(name, link, load_case, value):
+        band = Band(value=value, low=0.9 * value, high=1.1 * value)
+        return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.SAFETY_FACTOR, band, 1.0)
+
+    light, heavy = (outcome("own", "a", load_case, value) for load_case, value in (("light", 9.0), ("heavy", 2.0)))
+    other, second = outcome("other", "a", "light", 5.0), outcome("own", "b", "light", 4.0)
+    gone = outcome("own", "c", "light", 0.5).not_applicable("gone")
+    for order in ([light, heavy, other, second, gone], [gone, second, other, heavy, light]):
+        assert worst_of_each(order) == [heavy, second, other]
+
+
+def test_many_names_are_counted_alone():
+    result = by_hand("ornithopter")
+    told = brief(result.verdict, checks_of(result), several=True)
+    assert told.startswith("Undecided: 36 of 84 checks are open. ")
+    assert len(decision(result.verdict, checks_of(result), several=True)) > BRIEF
+    assert printed(print_screen, result)[-1] == "79 more checks and all numbers: --verbose"
 
 
 def test_long_texts_lose_their_ends_and_never_the_verdict():
