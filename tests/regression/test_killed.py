@@ -236,7 +236,8 @@ def test_calculix_ends_with_the_run(tmp_path: Path, number: signal.Signals) -> N
 # Neither thread comes back from native code for minutes: what the interpreter would clear away has to be gone all the
 # same, the child process with it.
 NATIVE = """
-import hashlib, threading
+import hashlib, signal, threading
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell lets what runs in the background ignore it
 from concurrent.futures import ThreadPoolExecutor
 import alula.reports.commands.ending as ending
 from alula.geometry.base import child
