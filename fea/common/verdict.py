@@ -408,10 +408,10 @@ def worst_of_each(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     checks = list(checks)
     first = deciding(checks)
     chosen = {id(check) for check in first}
-    found: dict[tuple[str, str, Quantity], CheckOutcome] = {}
+    found: dict[tuple[str, Subject, Quantity], CheckOutcome] = {}
     for check in (*first, *by_nearness(check for check in checks if id(check) not in chosen)):
         if check.applies:
-            found.setdefault((check.name, check.link, check.quantity), check)
+            found.setdefault((check.name, check.subject, check.quantity), check)
     return list(found.values())
 
 

@@ -28,7 +28,7 @@ class CaseModel(BaseModel):
             for name, text in _entry_texts().get(f"{record.__module__}.{record.__name__}", {}).items():
                 field = cls.model_fields.get(name)  # None for what no case file states
                 entry = entries.get(field.alias or name) if field is not None and field.description is None else None
-                if entry is not None:  # which what no file states is not
+                if entry is not None:  # the schema leaves out what no file states
                     entry["description"] = text
         return schema
 

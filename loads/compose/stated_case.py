@@ -559,9 +559,10 @@ class StatedCase:
         """
         tables = changed_tables(self._tables, self._changes)
         if changed_tables(tables, ()) != tables:
+            table = ", ".join(Case.derived(tables))
             raise CaseError(
-                "ornithopter: this table sets entries that were changed, and would set them again; remove it with "
-                'without("ornithopter")'
+                f"{table}: this table sets entries that were changed, and would set them again; remove it with "
+                f'without("{table}")'
             )
         name_files(tables, self._folder, Path(_absolute(folder)))
         return tables

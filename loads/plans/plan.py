@@ -38,7 +38,7 @@ class StudyPlan(CaseModel):
     case: Text
     """Name of a built-in case, or path of a case file, relative to the folder of this file."""
     tables: SkipJsonSchema[dict[Text, Any]] = {}
-    """The tables of a case that was composed in Python; ``case`` is its title then. No plan of a user's states them."""
+    """The tables of a case that was composed in Python; ``case`` is its title then. A file needs none."""
     analysis: Literal["check", "motion", "envelope"] = "check"
     """What is done with every variant, as by the command of that name."""
     set: Annotated[dict[Text, Any], Field(max_length=200)] = {}

@@ -52,7 +52,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
     """
     verdict_line(result.verdict, result.case.title, console)
     say(console, headline(result))
-    _say_change(result, console)
+    _say_change(_change(result, said=headline(result)), console)
     several = len(result.load_cases) > 1
     for case in result.load_cases.values():
         say(console, "")
@@ -131,10 +131,7 @@ def print_screen(result: CheckResult, console: "Console") -> None:
     badge = f" {result.verdict.value}  "
     verdict_line(result.verdict, shortened(console, f"{badge}{result.case.title}", 1)[len(badge) :], console)
     say(console, why)
-    if change:
-        say(console, change)
-    if command:
-        say_command(console, "Find the size:", command)
+    _say_change((change, command), console)
     if rows:
         _check_table(rows, console, several=several)
     if besides_it:
@@ -171,9 +168,9 @@ def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
     say(console, Text.assemble(badge, f" {title}"))
 
 
-def _say_change(result: CheckResult, console: "Console") -> None:
-    """Print what would change the check that decides, but for what the headline has said, and what finds its size."""
-    change, command = _change(result, said=headline(result))
+def _say_change(told: tuple[str, str], console: "Console") -> None:
+    """Print what would change a check, and the command that finds its size; each may be empty."""
+    change, command = told
     if change:
         say(console, change)
     if command:
