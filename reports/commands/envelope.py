@@ -23,8 +23,8 @@ from alula.reports.tables.data import check_records, data, entries, finite
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
 from alula.reports.tables.friction import motion_friction_lines, motion_friction_record
 from alula.reports.tables.meshes import solver_record
+from alula.reports.words.numbers import band, fixed, number, sentence
 from alula.reports.words.terminal import say, say_table
-from alula.reports.words.wording import band, fixed, number, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -89,8 +89,8 @@ def print_frequencies(found: "CaseFrequencies", console: "Console") -> None:
     console : rich.console.Console
     """
     from alula.reports.tables.frequencies import history_sentence, mode_rows
+    from alula.reports.words.numbers import band
     from alula.reports.words.terminal import say, say_table
-    from alula.reports.words.wording import band
 
     say(console, found.case.title)
     rows = mode_rows(found)

@@ -114,7 +114,7 @@ def _values(found: "Lightest", place: "Place") -> str:
 
 
 def _cost(found: "Lightest", place: "Place") -> str:
-    from alula.reports.words.wording import number
+    from alula.reports.words.numbers import number
 
     cost = found.objective.number(found.solved[place])
     return "" if cost is None else number(cost.value) + ("" if cost.unit == "1" else f" {cost.unit}")
@@ -130,7 +130,7 @@ def _outcome(found: "Lightest", place: "Place") -> tuple[str, str]:
 
 
 def _gained(found: "Lightest", gain: "Gain") -> str:
-    from alula.reports.words.wording import percent
+    from alula.reports.words.numbers import percent
 
     model = ", by hand calculation" if gain.by_hand else ""
     changes = f"changes it by {percent(gain.share)} and the {found.objective.quantity} by {percent(gain.cost)}"

@@ -132,7 +132,7 @@ def _rows() -> list[tuple[str, ...]]:
 
 
 def _row(name: str, material: "Material") -> tuple[str, ...]:
-    from alula.reports.words.wording import plain
+    from alula.reports.words.numbers import plain
 
     across, least = material.strength_across_layers, material.minimum_safety_factor
     assumed = [_SHORT.get(entry, entry) for entry, status in material.status.items() if status == "assumed"]

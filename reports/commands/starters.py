@@ -69,7 +69,7 @@ def new(
 ) -> None:
     """Write a commented case to start from: a four-bar linkage, any built-in case, or one for a part from CAD."""
     from alula.geometry.base.errors import CaseError
-    from alula.reports.words.wording import joined
+    from alula.reports.words.numbers import joined
 
     if listed:
         if path is not None or start is not None or study or pylinkage or pmks or step:

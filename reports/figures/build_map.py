@@ -7,7 +7,7 @@ from alula.fea.solid.layers import AZIMUTH, POLAR, build_directions
 from alula.reports.sheet.canvas import Canvas
 from alula.reports.sheet.style import GROUND, INK
 from alula.reports.tables.layers import BuildDirections, direction
-from alula.reports.words.wording import number
+from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 _WIDTH, _HEIGHT = 262.0, 330.0

@@ -8,7 +8,7 @@ from alula.reports.sheet.canvas import Canvas, faint
 from alula.reports.sheet.labels import heights, stacked, write_stacked
 from alula.reports.sheet.plot import Axes
 from alula.reports.sheet.style import GROUND, INK, WIDTH
-from alula.reports.words.wording import number
+from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 _BESIDE = 0.03

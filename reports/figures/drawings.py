@@ -18,7 +18,7 @@ from alula.reports.sheet.labels import along, place_labels
 from alula.reports.sheet.plot import Axes, ticks, widest
 from alula.reports.sheet.silhouette import curves, outlines, silhouette
 from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
-from alula.reports.words.wording import number, turning
+from alula.reports.words.numbers import number, turning
 
 Real = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ from alula.reports.sheet.canvas import SIZE, Canvas, faint
 from alula.reports.sheet.labels import heights, stacked, write_stacked
 from alula.reports.sheet.plot import Axes
 from alula.reports.sheet.style import INK, WIDTH
-from alula.reports.words.wording import fixed, number, plain
+from alula.reports.words.numbers import fixed, number, plain
 
 Real = NDArray[np.float64]
 

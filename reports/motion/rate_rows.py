@@ -6,7 +6,7 @@ from typing import Any
 
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.rates import QUANTITIES
-from alula.reports.words.wording import number
+from alula.reports.words.numbers import number
 
 Columns = list[tuple[str, list[str]]]
 """Head with its unit, and the cells below it."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from alula.fea.common.verdict import Verdict
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.reports.words.wording import number, plain
+from alula.reports.words.numbers import number, plain
 
 if TYPE_CHECKING:
     from pandas import DataFrame

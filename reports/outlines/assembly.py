@@ -16,7 +16,7 @@ from alula.reports.sheet.canvas import Canvas, faint
 from alula.reports.sheet.labels import place_labels
 from alula.reports.sheet.plot import Axes, ticks, widest
 from alula.reports.sheet.style import GROUND, INK, WIDTH
-from alula.reports.words.wording import plain
+from alula.reports.words.numbers import plain
 
 Real = NDArray[np.float64]
 

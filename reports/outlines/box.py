@@ -14,7 +14,7 @@ from alula.reports.outlines.assembly import draw
 from alula.reports.sheet.canvas import Canvas, faint
 from alula.reports.sheet.plot import Axes, ticks, widest
 from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, WIDTH
-from alula.reports.words.wording import plain
+from alula.reports.words.numbers import plain
 
 Real = NDArray[np.float64]
 

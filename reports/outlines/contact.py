@@ -13,7 +13,7 @@ from alula.reports.sheet.canvas import Canvas, extent, faint
 from alula.reports.sheet.labels import place_labels
 from alula.reports.sheet.plot import Axes, ticks, widest
 from alula.reports.sheet.style import JOINT_FORCE, WIDTH
-from alula.reports.words.wording import number
+from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 

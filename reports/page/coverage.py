@@ -7,7 +7,7 @@ from alula.fea.common.verdict import LINKAGE, Quantity, Subject
 from alula.fea.outcomes.result import CheckResult, LinkResult, SolidResult
 from alula.fea.solid.buckling_factor import MOST
 from alula.loads.case.joint_rules import clearances, rubbing_joints
-from alula.reports.words.wording import joined
+from alula.reports.words.numbers import joined
 
 STACKING = (
     "The case states no layers, so all links lie in one plane. In a real linkage they are stacked along the pins; the "

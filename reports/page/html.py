@@ -39,7 +39,8 @@ from alula.reports.tables.whole import whole_table
 from alula.reports.turnable.link import link_name
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from alula.reports.turnable.script import viewer
-from alula.reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
+from alula.reports.words.numbers import plain, turning
+from alula.reports.words.wording import agreement, apart, checks_of, headline, named
 
 MOST_CHECKS = 8
 """That the first page shows; the others stand below."""

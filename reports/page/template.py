@@ -6,7 +6,7 @@ from typing import Any
 
 from alula.geometry.base.version import alula_version
 from alula.reports.page.policy import sealed
-from alula.reports.words.wording import band, fixed, joined, number, percent, plain, sentence
+from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, sentence
 
 
 def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: str = "", **entries: Any) -> str:

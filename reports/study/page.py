@@ -18,7 +18,7 @@ from alula.reports.study.choice import StudyPicture, pictures
 from alula.reports.study.columns import Parameter, StudyColumns, read_study
 from alula.reports.study.rows import ALIKE, Row, number_text
 from alula.reports.study.style import LOOKS, tick
-from alula.reports.words.wording import joined, number
+from alula.reports.words.numbers import joined, number
 
 PAGE = "study.html"
 FOLDER = "pictures"

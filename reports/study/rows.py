@@ -13,8 +13,8 @@ from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import Store
 from alula.geometry.base.version import result_stamp
 from alula.reports.tables.data import finite
+from alula.reports.words.numbers import band, number
 from alula.reports.words.terminal import say, say_table
-from alula.reports.words.wording import band, number
 
 if TYPE_CHECKING:
     from rich.console import Console

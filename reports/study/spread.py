@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LOAD, WIDTH
 from alula.reports.study.style import LOOKS, Words, limit_handle, present, scale, styled, wants_decades
-from alula.reports.words.wording import fixed, number
+from alula.reports.words.numbers import fixed, number
 
 Real = NDArray[np.float64]
 MOST_BARS = 20

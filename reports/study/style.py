@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from alula.reports.figures.motion_figures import quiet_glyphs
 from alula.reports.sheet.style import DPI, GROUND, INK, LOAD, STYLE, as_png
-from alula.reports.words.wording import number
+from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 Words = NDArray[np.str_]

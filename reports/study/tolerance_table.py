@@ -10,8 +10,9 @@ import numpy as np
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
 from alula.geometry.base.version import result_stamp
 from alula.reports.tables.data import entries, finite
+from alula.reports.words.numbers import number
 from alula.reports.words.terminal import say, say_table
-from alula.reports.words.wording import besides, number
+from alula.reports.words.wording import besides
 
 if TYPE_CHECKING:
     from rich.console import Console

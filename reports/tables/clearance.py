@@ -6,7 +6,7 @@ from alula.fea.whole.clearance import clearance_band, clearance_sentence
 from alula.geometry.clearance.least import Gap
 from alula.loads.states.clearance import Clearance
 from alula.reports.tables.data import data
-from alula.reports.words.wording import band, sentence
+from alula.reports.words.numbers import band, sentence
 
 MOST = 12
 """Gaps that a table shows, the least first."""

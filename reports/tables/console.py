@@ -15,25 +15,9 @@ from alula.reports.tables.friction import friction_sentence
 from alula.reports.tables.layers import build_directions_of
 from alula.reports.tables.second_opinion import say_opinions
 from alula.reports.tables.springs import holding_sentence, spring_sentences
+from alula.reports.words.numbers import band, fixed, joined, measured, number, percent, plain, sentence, turning
 from alula.reports.words.terminal import KEPT, height, say, say_command, say_table, shortened
-from alula.reports.words.wording import (
-    agreement,
-    apart,
-    band,
-    besides,
-    brief,
-    checks_of,
-    fixed,
-    headline,
-    inapplicable,
-    joined,
-    measured,
-    number,
-    percent,
-    plain,
-    sentence,
-    turning,
-)
+from alula.reports.words.wording import agreement, apart, besides, brief, checks_of, headline, inapplicable
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -16,7 +16,7 @@ from alula.fea.vibration.link_modes import LinkModes
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
 from alula.loads.case.case import Case
 from alula.reports.tables.data import data, entries
-from alula.reports.words.wording import sentence
+from alula.reports.words.numbers import sentence
 
 LEFT_OUT = (
     "damping",

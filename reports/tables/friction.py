@@ -15,7 +15,7 @@ from alula.loads.states.rubbing import told_direction
 from alula.loads.statics.friction import friction_wrenches
 from alula.loads.statics.rounding import size_of
 from alula.loads.statics.statics import Reactions
-from alula.reports.words.wording import number
+from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.solid.layers import Layers, build_directions
 from alula.reports.tables.data import data
-from alula.reports.words.wording import band, fixed, number
+from alula.reports.words.numbers import band, fixed, number
 
 ALIKE = 0.05
 """Gain in safety factor up to which another direction is not called better."""

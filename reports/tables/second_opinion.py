@@ -9,8 +9,8 @@ from alula.fea.calculix.second_opinion import second_opinions
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
 from alula.reports.tables.data import entries
+from alula.reports.words.numbers import number
 from alula.reports.words.terminal import say_table
-from alula.reports.words.wording import number
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -11,7 +11,7 @@ from alula.loads.records.springs import TurnSpring
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.springs import SpringState, spring_states
 from alula.loads.states.standing import Standing
-from alula.reports.words.wording import number, turning
+from alula.reports.words.numbers import number, turning
 
 
 def holding_sentence(standing: Standing) -> str:

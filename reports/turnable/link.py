@@ -13,7 +13,7 @@ from alula.reports.figures.scene import Scene, scene_of
 from alula.reports.tables.record import worst_load_case
 from alula.reports.turnable.pack import data_block, indices, quantised
 from alula.reports.turnable.surface import CutSurface, cut_surface
-from alula.reports.words.wording import fixed, number
+from alula.reports.words.numbers import fixed, number
 
 
 def link_name(link: str) -> str:

@@ -19,7 +19,7 @@ from alula.reports.figures.figures import COLOURS
 from alula.reports.outlines.assembly import LAYERS
 from alula.reports.turnable.bodies import PlateBody, plate_body
 from alula.reports.turnable.pack import quantised, shades
-from alula.reports.words.wording import plain
+from alula.reports.words.numbers import plain
 
 Real = NDArray[np.float64]
 

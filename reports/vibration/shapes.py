@@ -13,7 +13,7 @@ from alula.fea.vibration.modes import Mode
 from alula.reports.sheet.canvas import Canvas
 from alula.reports.sheet.plot import ticks
 from alula.reports.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
-from alula.reports.words.wording import band, plain
+from alula.reports.words.numbers import band, plain
 
 Real = NDArray[np.float64]
 MOST = 4

@@ -6,7 +6,8 @@ from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
 from alula.fea.sizing.changes import MaterialChange, VerdictChange, rounded
-from alula.reports.words.wording import joined, named, number, plain, sentence
+from alula.reports.words.numbers import joined, number, plain, sentence
+from alula.reports.words.wording import named
 
 _NARROWED: dict[SourceKind, str] = {
     SourceKind.DISCRETISATION: "finer meshes (--accuracy, --max-unknowns; of frames solid.mesh_size)",

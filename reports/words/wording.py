@@ -1,179 +1,18 @@
-"""Numbers, bands and verdicts in words, for console and page alike."""
+"""Verdicts and checks in words, for console and page alike."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from alula.loads.text.caveat import Caveat, Heading
+from alula.reports.words.numbers import joined, measured, number, plain, sentence
 
 if TYPE_CHECKING:
     from alula.fea.outcomes.result import CheckResult, SectionComparison
 
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_ROUNDING = 1e-12
 HAND_AGREEMENT = 0.03
 """Largest difference between hand calculation and solid model that needs no explanation."""
-
-
-def number(value: float, digits: int = 4, beside: float = 0.0) -> str:
-    """Return a number with some significant digits; with a power of ten outside 1e-4 to 1e5.
-
-    Parameters
-    ----------
-    value : float
-    digits : int, optional
-        Significant ones.
-    beside : float, optional
-        A number of which this one is a part: what is smaller than its rounding error is zero.
-
-    Returns
-    -------
-    str
-    """
-    if math.isnan(value):
-        return "not known"
-    if math.isinf(value):
-        return "∞" if value > 0.0 else "−∞"
-    if abs(value) <= _ROUNDING * abs(beside):
-        return "0"
-    if 1e-4 <= abs(value) < 1e5:
-        exponent = math.floor(math.log10(float(f"{abs(value):.{digits - 1}e}")))
-        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
-    else:
-        mantissa, _, exponent_text = f"{value:.{digits - 1}e}".partition("e")
-        text = f"{mantissa}·10{str(int(exponent_text)).translate(_SUPERSCRIPT)}"
-    return text.replace("-", "−")
-
-
-def fixed(value: float, decimals: int) -> str:
-    """Return a number with some decimals; zero has no sign.
-
-    Parameters
-    ----------
-    value : float
-    decimals : int
-
-    Returns
-    -------
-    str
-    """
-    text = f"{value:.{decimals}f}"
-    return text.lstrip("-") if float(text) == 0.0 else text.replace("-", "−")
-
-
-def plain(value: float) -> str:
-    """Return a stated number, such as a limit, without padding zeros.
-
-    Parameters
-    ----------
-    value : float
-
-    Returns
-    -------
-    str
-    """
-    return f"{value:g}".replace("-", "−")
-
-
-def band(value: Band, digits: int = 3) -> str:
-    """Return ``3.21 (2.44 to 3.21)``, the value alone where the band has no visible width, or ``3.21 (no band)``.
-
-    Parameters
-    ----------
-    value : Band
-    digits : int, optional
-        Significant ones.
-
-    Returns
-    -------
-    str
-    """
-    shown = number(value.value, digits)
-    if value.without and not value.unknowable:
-        return f"{shown} (no band)"
-    low, high = number(value.low, digits), number(value.high, digits)
-    return shown if low == high else f"{shown} ({low} to {high})"
-
-
-def measured(value: Band, unit: str, digits: int = 3) -> str:
-    """Return a band with its unit, which what is not known has not.
-
-    Parameters
-    ----------
-    value : Band
-    unit : str
-        "" for a pure number.
-    digits : int, optional
-        Significant ones.
-
-    Returns
-    -------
-    str
-        Such as ``3.21 (2.44 to 3.21) mm``, or ``not known``.
-    """
-    return band(value, digits) if math.isnan(value.value) or not unit else f"{band(value, digits)} {unit}"
-
-
-def limit_load(factor: Band) -> str:
-    """Return a limit-load factor in words, such as ``limit-load factor at least 7.29``.
-
-    Parameters
-    ----------
-    factor : Band
-
-    Returns
-    -------
-    str
-    """
-    if factor.unknowable or not math.isinf(factor.high):
-        return f"limit-load factor {band(factor)}"
-    return f"limit-load factor at least {number(factor.low, 3)}"
-
-
-def percent(ratio: float) -> str:
-    """Return a ratio as a signed percentage.
-
-    Parameters
-    ----------
-    ratio : float
-
-    Returns
-    -------
-    str
-    """
-    text = f"{100.0 * ratio:+.1f}"
-    return f"{text[1:] if float(text) == 0.0 else text} %".replace("-", "−")
-
-
-def joined(words: tuple[str, ...] | list[str]) -> str:
-    """Return ``a, b and c``.
-
-    Parameters
-    ----------
-    words : tuple
-
-    Returns
-    -------
-    str
-    """
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
-
-
-def turning(torque: float) -> str:
-    """Return the sense of a torque about z.
-
-    Parameters
-    ----------
-    torque : float
-        Counter-clockwise positive.
-
-    Returns
-    -------
-    str
-    """
-    return "none" if torque == 0.0 else "clockwise" if torque < 0.0 else "counter-clockwise"
 
 
 def apart(compared: Sequence["SectionComparison"]) -> list["SectionComparison"]:
@@ -428,17 +267,3 @@ def _with_limit(check: CheckOutcome, *, several: bool) -> str:
     under, sign = f" {_under(check, several=several)}".rstrip(), check.quantity.sense.value
     value = measured(check.value, check.quantity.unit)
     return f"{named(check, long=True)}{under}, {value}; limit {sign} {plain(check.limit)}{unit}"
-
-
-def sentence(text: str) -> str:
-    """Return a text that begins with a capital and ends with a full stop.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    str
-    """
-    return f"{text[:1].upper()}{text[1:].rstrip('.')}."

@@ -5,7 +5,7 @@ import pytest
 
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
-from alula.reports.words import wording
+from alula.reports.words import numbers, wording
 
 
 @pytest.mark.parametrize(
@@ -25,34 +25,34 @@ from alula.reports.words import wording
     ],
 )
 def test_a_number_has_its_significant_digits(value, digits, text):
-    assert wording.number(value, digits) == text
+    assert numbers.number(value, digits) == text
 
 
 def test_what_rounding_leaves_of_a_sum_is_zero_beside_its_parts():
-    assert wording.number(8e-16, 3, beside=0.05) == "0"
-    assert wording.number(8e-10, 3, beside=0.05) == "8.00·10⁻¹⁰"
+    assert numbers.number(8e-16, 3, beside=0.05) == "0"
+    assert numbers.number(8e-10, 3, beside=0.05) == "8.00·10⁻¹⁰"
 
 
 @pytest.mark.parametrize(("value", "text"), [(-0.0004, "0.00"), (-1.0, "−1.00"), (2.345, "2.35")])
 def test_a_fixed_number_has_no_negative_zero(value, text):
-    assert wording.fixed(value, 2) == text
+    assert numbers.fixed(value, 2) == text
 
 
 def test_a_band_is_spelled_out_where_it_shows():
-    assert wording.band(Band(value=3.21, low=2.44, high=3.21)) == "3.21 (2.44 to 3.21)"
-    assert wording.band(Band(value=3.2101, low=3.2100, high=3.2102)) == "3.21"
+    assert numbers.band(Band(value=3.21, low=2.44, high=3.21)) == "3.21 (2.44 to 3.21)"
+    assert numbers.band(Band(value=3.2101, low=3.2100, high=3.2102)) == "3.21"
 
 
 @pytest.mark.parametrize(
     ("words", "text"), [([], ""), (["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")]
 )
 def test_words_are_joined(words, text):
-    assert wording.joined(words) == text
+    assert numbers.joined(words) == text
 
 
 @pytest.mark.parametrize(("torque", "sense"), [(-1.0, "clockwise"), (1.0, "counter-clockwise"), (0.0, "none")])
 def test_positive_torque_is_counter_clockwise(torque, sense):
-    assert wording.turning(torque) == sense
+    assert numbers.turning(torque) == sense
 
 
 def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
@@ -103,8 +103,8 @@ def test_the_unfavourable_end_of_a_band_says_which_check_is_nearest_to_its_limit
 
 
 def test_percentages_and_sentences():
-    assert [wording.percent(x) for x in (0.0123, -0.0123, -1e-5, 1e-5)] == ["+1.2 %", "−1.2 %", "0.0 %", "0.0 %"]
-    assert wording.sentence("load case a: it holds") == wording.sentence("Load case a: it holds.")
+    assert [numbers.percent(x) for x in (0.0123, -0.0123, -1e-5, 1e-5)] == ["+1.2 %", "−1.2 %", "0.0 %", "0.0 %"]
+    assert numbers.sentence("load case a: it holds") == numbers.sentence("Load case a: it holds.")
 
 
 def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
@@ -161,9 +161,9 @@ def test_no_headline_is_about_what_is_not_applicable(changed):
 
 def test_what_is_not_known_has_no_unit(result, changed):
     """A headline said "displacement of ED not known mm"."""
-    assert wording.measured(Band.unknown("gone"), "mm") == "not known"
-    assert wording.measured(Band(value=2.0, low=1.0, high=math.inf), "mm") == "2.00 (1.00 to ∞) mm"
-    assert wording.measured(Band.exact(2.0), "") == "2.00"
+    assert numbers.measured(Band.unknown("gone"), "mm") == "not known"
+    assert numbers.measured(Band(value=2.0, low=1.0, high=math.inf), "mm") == "2.00 (1.00 to ∞) mm"
+    assert numbers.measured(Band.exact(2.0), "") == "2.00"
 
 
 @pytest.mark.parametrize(

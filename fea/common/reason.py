@@ -1,0 +1,42 @@
+"""Why a result is as it is, as data: a kind and what it needs to be told. ``alula.reports.sentences`` tells it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a result is as it is, or what a reader must know of it.
+
+    Two reasons of one kind with the same facts are equal, so that checks with one reason can be told together.
+
+    Attributes
+    ----------
+    kind : str
+        The name of its sentence in ``alula.reports.sentences``.
+    facts : tuple of (str, object)
+        What the sentence names: numbers in mm, N, MPa, bands, names, tuples of names, further reasons.
+    """
+
+    kind: str
+    facts: tuple[tuple[str, Any], ...] = ()
+
+    def __getitem__(self, name: str) -> Any:
+        """Return one fact; raises ``KeyError`` for one that it has not."""
+        return dict(self.facts)[name]
+
+
+def reason(kind: str, **facts: Any) -> Reason:
+    """Return a reason.
+
+    Parameters
+    ----------
+    kind : str
+    **facts
+        Lists become tuples, so that the reason can be a key.
+
+    Returns
+    -------
+    Reason
+    """
+    return Reason(kind, tuple((name, tuple(v) if isinstance(v, list) else v) for name, v in facts.items()))
