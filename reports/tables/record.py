@@ -32,7 +32,7 @@ _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sour
 @cache
 def field_units() -> dict[str, Any]:
     """Return the unit of every dimension and, under ``fields``, of every field of ``result.json``."""
-    found = tomllib.loads(files("alula.reports.tables").joinpath("units.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads(files("alula.reports.renderers").joinpath("units.toml").read_text(encoding="utf-8"))
     return {**found["dimensions"], "fields": found["fields"]}
 
 
