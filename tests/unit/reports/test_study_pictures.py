@@ -17,6 +17,7 @@ from alula.fea.study.margin import least_margin, margin, margin_band, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
+from alula.reports.figures.study import style
 from alula.reports.figures.study.choice import chosen
 from alula.reports.figures.study.curves import curves
 from alula.reports.figures.study.many import front, parallel, pareto
@@ -24,7 +25,6 @@ from alula.reports.figures.study.maps import verdict_map
 from alula.reports.figures.study.spread import histogram, tornado
 from alula.reports.figures.study.style import LOOKS
 from alula.reports.page.study_page import write_study
-from alula.reports.study import style
 from alula.reports.study.columns import Parameter, Response, read_study
 from alula.reports.study.regression import regression
 from alula.reports.study.rows import ALIKE, Chosen, Row
