@@ -98,11 +98,12 @@ def check(
 ) -> None:
     """Check a case: pose, joint forces, stress, verdict."""
     from alula.fea.check.run import check_case, effort_of
+    from alula.fea.sizing.changes import changes
     from alula.loads.case.case_file import read_case
-    from alula.reports.page.folder import report_names
+    from alula.reports.check.folder import report_names
+    from alula.reports.check.screen import print_result, print_screen
+    from alula.reports.check.whole_check import check_json, check_sections
     from alula.reports.page.output import refuse_unusable
-    from alula.reports.tables.console import print_result, print_screen
-    from alula.reports.tables.record import as_json
     from alula.reports.words.limits import limited
 
     if second_opinion and fidelity == "auto":
@@ -120,11 +121,18 @@ def check(
 
             decks = scratch.enter_context(scratch_folder("alula-"))
             result = with_second_opinions(result, decks, threads=threads, progress=progress)
-        _show(result, as_json if json else None, print_result if verbose else print_screen)
-        if output is not None:
-            from alula.reports.page.folder import write_report
+        found = changes(result)
+        sections = check_sections(result, found)
+        if json:
+            print(check_json(result, sections), flush=True)
+        else:
+            from rich.console import Console
 
-            write_report(result, output, decks=decks, progress=progress)
+            (print_result if verbose else print_screen)(result, sections, Console())
+        if output is not None:
+            from alula.reports.check.folder import write_report
+
+            write_report(result, found, output, decks=decks, progress=progress)
             _tell(f"Report: {output / 'report.html'}", json)
     raise SystemExit(result.verdict.exit_status)
 

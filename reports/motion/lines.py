@@ -8,12 +8,13 @@ from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.clearance import clearance
 from alula.reports.motion.play import drive_line, motion_play_record, play_lines
 from alula.reports.motion.rate_rows import link_columns, point_columns, told_speed, whole_sentences
-from alula.reports.tables.clearance import clearance_line
+from alula.reports.sections.assembly import clearance_text
+from alula.reports.sections.friction import motion_friction_lines
+from alula.reports.sections.markup import as_plain
+from alula.reports.sections.springs import motion_springs
 from alula.reports.tables.frames import motion_linkage_line
-from alula.reports.tables.friction import motion_friction_lines
 from alula.reports.tables.loads import air_lines
 from alula.reports.tables.mechanism import design_lines
-from alula.reports.tables.springs import motion_springs
 
 
 def motion_lines(result: CaseMotion, data: Mapping[str, Any]) -> Iterator[str]:
@@ -35,7 +36,8 @@ def motion_lines(result: CaseMotion, data: Mapping[str, Any]) -> Iterator[str]:
     yield from () if play is None else play_lines(result, play)
     if design := design_lines(result.case):
         yield from ("", *design)
-    if (line := clearance_line(clearance(result.case))) is not None:
+    if (found := clearance(result.case)) is not None:
+        line = as_plain(clearance_text(found).text)
         yield from ("", line)
     for told, values in motion_springs(result):
         ends = [float(f"{value:.4g}") for value in (values[0], values[-1], values.min(), values.max())]

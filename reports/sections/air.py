@@ -260,6 +260,6 @@ def wing_table(records: dict[str, dict[str, Any]]) -> Table:
 
 
 def _figure(moved: CaseMotion, name: str) -> Any:
-    from alula.reports.motion.air_figures import case_air_pictures
+    from alula.reports.figures.motion.air_figures import case_air_pictures
 
     return case_air_pictures(moved).get(name)

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from rich.console import Console
+from told import as_json, print_result, render
 
 from alula.fea.check.run import check_case
 from alula.fea.claims.sources import check_claims
@@ -16,11 +17,8 @@ from alula.fea.outcomes.result import CheckResult
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, read_companion, read_text, validate
-from alula.reports.page.folder import write_report
-from alula.reports.page.html import render
+from alula.reports.check.folder import write_report
 from alula.reports.tables.claims import as_markdown, as_text
-from alula.reports.tables.console import print_result
-from alula.reports.tables.record import as_json
 from alula.reports.turnable.pack import data_block
 
 OWL = "owl-wing-static"

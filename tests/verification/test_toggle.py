@@ -33,7 +33,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.words.changes import change_sentences
+from alula.reports.check.changes import change_sentences
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """

@@ -10,9 +10,9 @@ from solved import by_hand
 from alula.fea.sizing import changes
 from alula.fea.sizing.tried import Trials
 from alula.fea.whole import air_range
+from alula.reports.check.folder import report_names, write_report
 from alula.reports.figures import figures
 from alula.reports.page import pictures
-from alula.reports.page.folder import report_names, write_report
 
 
 @pytest.fixture
