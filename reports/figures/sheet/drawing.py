@@ -41,16 +41,31 @@ class Drawing(Protocol):
     """A picture: a sheet or a chart."""
 
     def png(self) -> bytes:
-        """Return it as PNG, without a date, so that equal pictures are equal bytes."""
+        """Return it as PNG, without a date, so that equal pictures are equal bytes.
+
+        Returns
+        -------
+        bytes
+        """
         ...
 
     def element(self, alt: str) -> str:
-        """Return it as an element of a page, with words for who does not see it."""
+        """Return it as an element of a page.
+
+        Parameters
+        ----------
+        alt : str
+            What it shows, for who does not see it.
+
+        Returns
+        -------
+        str
+        """
         ...
 
     @property
     def plotted(self) -> Sequence[Plotted]:
-        """Its curves."""
+        """Its curves, in the units of their axes."""
         ...
 
 
