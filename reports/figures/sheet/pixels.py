@@ -1,6 +1,7 @@
 """A sheet as PNG, drawn by Pillow at a tenth of matplotlib's processor time."""
 
-import io
+import struct
+import zlib
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any
@@ -42,9 +43,28 @@ def as_pixels(width: float, height: float, marks: Iterable[Mark], texts: Iterabl
     sheet = fine.reduce(_FINE)
     for text in texts:
         _write(sheet, text)
-    stream = io.BytesIO()
-    sheet.save(stream, format="PNG", dpi=(DPI, DPI))
-    return stream.getvalue()
+    return _packed(np.asarray(sheet))
+
+
+def _packed(pixels: NDArray[np.uint8]) -> bytes:
+    """Return an image (h, w, 3) as PNG.
+
+    Rows are stored as they are: of drawings, which are white for the most part, this takes fewer bytes than the filters
+    that Pillow tries on every row, and a third of the time, during which other threads run.
+    """
+    tall, wide, _ = pixels.shape
+    rows = np.zeros((tall, 3 * wide + 1), dtype=np.uint8)
+    rows[:, 1:] = pixels.reshape(tall, -1)
+    per_metre = round(DPI / 0.0254)
+    parts = (
+        (b"IHDR", struct.pack(">IIBBBBB", wide, tall, 8, 2, 0, 0, 0)),
+        (b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
+        (b"IDAT", zlib.compress(rows, 5)),
+        (b"IEND", b""),
+    )
+    found = [struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+             for kind, data in parts]  # fmt: skip
+    return b"\x89PNG\r\n\x1a\n" + b"".join(found)
 
 
 def _mark(image: Any, draw: Any, mark: Mark) -> None:
