@@ -81,14 +81,14 @@ def write_envelope(
         write_curves(result, folder / CURVES)
         progress("Drawing the envelope ...")
         curves = envelope_figure(result)
-        (folder / FIGURE).write_bytes(curves)
+        (folder / FIGURE).write_bytes(curves.png())
         progress("Rendering the stress plots ...")
         plots, warnings = stress_pictures(result, result.links)
         for warning in warnings:
             progress(f"Warning: {warning}")
         (folder / "pictures").mkdir()
         for name, plot in plots.items():
-            (folder / "pictures" / f"stress-{name}.png").write_bytes(plot)
+            (folder / "pictures" / f"stress-{name}.png").write_bytes(plot.png())
         (folder / ENVELOPE).write_text(envelope_page(result, curves, plots), encoding="utf-8")
         (folder / "vtu").mkdir()
         for name, link in result.links.items():

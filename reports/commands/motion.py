@@ -22,19 +22,20 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
         Of the case, as the command was given it.
     """
     from alula.reports.figures.motion.motion_animation import draw_animation
-    from alula.reports.figures.motion.rate_figures import draw_figures
+    from alula.reports.figures.motion.rate_figures import motion_pictures
     from alula.reports.figures.outlines.contact import contact_drawing
+    from alula.reports.figures.sheet.drawing import Drawing
     from alula.reports.page.motion_pages import MOTION, motion_page
 
     (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")
     write_tables(result, folder)
-    drawn = draw_figures(result, folder)
+    pictures: dict[str, Drawing] = dict(motion_pictures(result))
     apart = clearance(result.case)
     if apart is not None and apart.shown is not None:
-        drawn.append(folder / "clearance.png")
-        drawn[-1].write_bytes(contact_drawing(apart))
+        pictures["clearance"] = contact_drawing(apart)
+    for title, picture in pictures.items():
+        (folder / f"{title}.png").write_bytes(picture.png())
     draw_animation(result.motion, folder / "linkage.gif")
-    pictures = {path.stem: path.read_bytes() for path in drawn}
     page = motion_page(result, pictures, (folder / "linkage.gif").read_bytes(), name=name)
     (folder / MOTION).write_text(page, encoding="utf-8")
 

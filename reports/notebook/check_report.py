@@ -117,7 +117,7 @@ class CheckReport(Tabled):
 
         name = self.load_cases[0] if load_case is None else load_case
         pick(self.result.load_cases, name, "load case")
-        return Picture(linkage_drawing(self.result, name))
+        return Picture(linkage_drawing(self.result, name).png())
 
     def plot_assembly(self) -> Picture:
         """Draw the links in their layers, from above and from the side.
@@ -136,7 +136,7 @@ class CheckReport(Tabled):
         if self.result.clearance is None:
             layer = layer_of(self.result.case.links)
             raise CaseError(f"the case states no layers, so all links lie in one plane; give every link one: {layer}")
-        return Picture(assembly_drawing(self.result.clearance))
+        return Picture(assembly_drawing(self.result.clearance).png())
 
     def plot_box(self) -> Picture:
         """Draw the box about the linkage over its motion, from above and from the side, with the limits of its checks.
@@ -154,7 +154,7 @@ class CheckReport(Tabled):
 
         if self.result.size is None:
             raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
-        return Picture(box_drawing(self.result.size, size_limits(self.result.case)))
+        return Picture(box_drawing(self.result.size, size_limits(self.result.case)).png())
 
     def plot_clearance(self) -> Picture:
         """Draw the two outlines that touch first over the motion, or come nearest.
@@ -172,7 +172,7 @@ class CheckReport(Tabled):
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
-        return Picture(contact_drawing(self.result.clearance))
+        return Picture(contact_drawing(self.result.clearance).png())
 
     def plot_frequencies(self, what: Literal["campbell", "shapes"] = "campbell") -> Picture:
         """Draw natural frequencies over the motion and the speed of the drive, or the shapes that belong to them.
@@ -218,7 +218,7 @@ class CheckReport(Tabled):
 
         pick({name: name for name in self._links}, link, "link")
         stations = {point: x for point, (x, _) in self.result.case.links[link].points.items()}
-        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations))
+        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations).png())
 
     def plot_build_directions(self, link: str) -> Picture:
         """Draw the safety factor of a printed link's layers for every direction in which it may be built.
@@ -241,7 +241,7 @@ class CheckReport(Tabled):
         from alula.reports.tables.layers import build_directions_of
 
         known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
-        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")))
+        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")).png())
 
     def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
         """Draw the stress of a link on its deformed shape, and around its largest value.
@@ -273,7 +273,7 @@ class CheckReport(Tabled):
         plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link])
+        return Picture(plots[link].png())
 
     def write(self, folder: str | Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
         """Write ``report.html``, ``result.json``, pictures and VTU files into a folder, as ``alula check -o`` does.

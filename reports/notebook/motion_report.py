@@ -1,6 +1,5 @@
 """What ``alula.motion`` returns."""
 
-import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -187,13 +186,7 @@ class MotionReport(Tabled):
 
 
 def _picture(figure: object) -> Picture:
-    from matplotlib.figure import Figure
-
     from alula.reports.figures.motion.motion_figures import DPI
-    from alula.reports.figures.sheet.style import quiet_glyphs
+    from alula.reports.figures.sheet.chart import Chart
 
-    assert isinstance(figure, Figure)
-    stream = io.BytesIO()
-    with quiet_glyphs():
-        figure.savefig(stream, format="png", dpi=DPI)
-    return Picture(stream.getvalue())
+    return Picture(Chart(figure, dpi=DPI).png())

@@ -81,7 +81,7 @@ def write_report(
         As ``write_folder``.
     """
     from alula.reports.page.html import render
-    from alula.reports.page.pictures import draw_pictures, repacked
+    from alula.reports.page.pictures import draw_pictures
     from alula.reports.turnable.link import link_models
     from alula.reports.turnable.moving import LINKAGE, check_linkage
     from alula.reports.turnable.pack import data_block
@@ -97,13 +97,11 @@ def write_report(
         for warning in warnings:
             progress(f"Warning: {warning}")
         published = write_claims(told, folder, REPORT)
-        stresses = pictures.keys() & set(map(stress_name, result.case.checked_links))
-        packed = {name: repacked(pictures[name]) for name in stresses}
-        (folder / REPORT).write_text(render(told, {**pictures, **packed}, published, models), encoding="utf-8")
+        (folder / REPORT).write_text(render(told, pictures, published, models), encoding="utf-8")
         (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
         (folder / PICTURES).mkdir()
         for name, picture in pictures.items():
-            (folder / PICTURES / f"{name}.png").write_bytes(picture)
+            (folder / PICTURES / f"{name}.png").write_bytes(picture.png())
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
 

@@ -10,6 +10,7 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.materials.material import Material
 from alula.loads.case.forks import forked_link
 from alula.loads.statics.rounding import without_rounding
+from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.page.coverage import not_covered
 from alula.reports.page.decided import held, meaning, reasons
 from alula.reports.page.frequencies_page import frequencies_view
@@ -57,7 +58,7 @@ _PROPERTIES = (
 
 def render(
     result: CheckResult,
-    figures: Mapping[str, bytes],
+    figures: Mapping[str, Drawing],
     published: str = "",
     models: Mapping[str, str] = MappingProxyType({}),
 ) -> str:
@@ -67,7 +68,7 @@ def render(
     ----------
     result : CheckResult
     figures : mapping
-        PNG pictures by the names of ``alula.reports.page.pictures``; the page omits missing ones.
+        Drawings by the names of ``alula.reports.page.pictures``; the page omits missing ones.
     published : str, optional
         How many published figures ``claims.html`` beside the page has, in a sentence; "" where there is none.
     models : mapping, optional
@@ -152,8 +153,8 @@ def render(
 
 
 def _drawings(
-    result: CheckResult, checks: Sequence[CheckOutcome], figures: Mapping[str, bytes]
-) -> list[tuple[str, bytes | None, str]]:
+    result: CheckResult, checks: Sequence[CheckOutcome], figures: Mapping[str, Drawing]
+) -> list[tuple[str, Drawing | None, str]]:
     """Return (load case, picture of the linkage, its caption), that of the check nearest to its limit first."""
     names = list(governing_load_cases(result))
     decisive = checks[0].load_case if checks else ""
@@ -195,7 +196,7 @@ def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
 def _link(
     result: CheckResult,
     name: str,
-    figures: Mapping[str, bytes],
+    figures: Mapping[str, Drawing],
     layers: Mapping[str, BuildDirections],
     models: Mapping[str, str],
 ) -> dict[str, Any]:

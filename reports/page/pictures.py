@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.whole.size import size_limits
+from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.tables.layers import build_directions_of
 from alula.reports.tables.record import worst_load_case
 
@@ -106,7 +107,7 @@ def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
 
 def draw_pictures(
     result: CheckResult, progress: Callable[[str], None] = lambda message: None
-) -> tuple[dict[str, bytes], tuple[str, ...]]:
+) -> tuple[dict[str, Drawing], tuple[str, ...]]:
     """Draw every picture of a report.
 
     The linkage under every governing load case, and its links in layers; internal forces and, for a solid, stress of
@@ -122,13 +123,12 @@ def draw_pictures(
     Returns
     -------
     tuple
-        Name -> PNG, and warnings.
+        Name -> Drawing, and warnings.
     """
     from alula.reports.figures.build_map import build_map
     from alula.reports.figures.diagrams import internal_force_diagram
     from alula.reports.figures.drawings import linkage_drawing
     from alula.reports.figures.figures import stress_plots
-    from alula.reports.figures.motion.air_figures import case_air_pictures
     from alula.reports.figures.outlines.assembly import assembly_drawing
     from alula.reports.figures.outlines.box import box_drawing
     from alula.reports.figures.outlines.contact import contact_drawing
@@ -140,7 +140,9 @@ def draw_pictures(
     progress("Drawing the linkage, the internal forces and the stress plots ...")
     with ThreadPoolExecutor(1) as beside:  # its work is that of a child process
         rendered = beside.submit(stress_plots, worst, points)
-        pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
+        pictures: dict[str, Drawing] = {
+            linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)
+        }
         if result.clearance is not None:
             pictures[ASSEMBLY] = assembly_drawing(result.clearance)
             if result.clearance.shown is not None:
@@ -148,7 +150,10 @@ def draw_pictures(
         pictures |= frequency_pictures(result.frequencies)
         if result.size is not None and (limits := size_limits(result.case)):
             pictures[BOX] = box_drawing(result.size, limits)
-        pictures |= {flapping_name(name): figure for name, figure in case_air_pictures(result.in_air).items()}
+        if result.in_air is not None:
+            from alula.reports.figures.motion.air_figures import case_air_pictures  # matplotlib
+
+            pictures |= {flapping_name(name): figure for name, figure in case_air_pictures(result.in_air).items()}
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link])
             for link, found in worst.items()
@@ -161,24 +166,3 @@ def draw_pictures(
         }
         plots, warnings = rendered.result()
     return pictures | {stress_name(link): plot for link, plot in plots.items()}, warnings
-
-
-def repacked(picture: bytes) -> bytes:
-    """Return a PNG as lossless WebP, which takes some six tenths of the bytes where colours shade into one another.
-
-    Parameters
-    ----------
-    picture : bytes
-
-    Returns
-    -------
-    bytes
-    """
-    from io import BytesIO
-
-    from PIL import Image
-
-    packed = BytesIO()
-    with Image.open(BytesIO(picture)) as image:
-        image.save(packed, "WEBP", lossless=True, quality=60)
-    return packed.getvalue()

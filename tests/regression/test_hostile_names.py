@@ -18,6 +18,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, read_companion, read_text, validate
 from alula.reports.page.folder import write_report
 from alula.reports.page.html import render
+from alula.reports.page.pictures import draw_pictures
 from alula.reports.tables.claims import as_markdown, as_text
 from alula.reports.tables.console import print_result
 from alula.reports.tables.record import as_json
@@ -143,13 +144,14 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, str]:
 
 def test_the_report_shows_hostile_text_as_text(checked: CheckResult) -> None:
     page = _Page()
-    page.feed(render(checked, {}))
+    page.feed(render(checked, draw_pictures(checked)[0]))
+    assert "svg" in page.tags
     assert "script" not in page.tags
     assert not [value for key, value in page.attributes if key.startswith("on")]
     for key, value in page.attributes:
         if key in ("src", "href"):
             assert value is not None
-            assert value.startswith(("data:image/png;base64,", "#")), value
+            assert value.startswith(("data:image/png;base64,", "data:image/webp;base64,", "#")), value
     assert HOSTILE in " ".join("".join(page.text).split())
     assert "{{7*7}}" in "".join(page.text)
 

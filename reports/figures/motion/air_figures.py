@@ -1,7 +1,5 @@
 """Figures of the drive with and without air on wings that flap."""
 
-from io import BytesIO
-
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -9,13 +7,14 @@ from numpy.typing import NDArray
 from alula.fea.whole.air_range import air_range
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.figures.motion.motion_figures import DPI, legend, over_angle
+from alula.reports.figures.sheet.chart import Chart
 from alula.reports.tables.loads import motion_air_record
 
 Real = NDArray[np.float64]
 _SIZE = (8.0, 6.6)
 
 
-def case_air_pictures(moved: CaseMotion | None) -> dict[str, bytes]:
+def case_air_pictures(moved: CaseMotion | None) -> dict[str, Chart]:
     """Draw the drive with and without air over the motion of a case.
 
     Parameters
@@ -25,16 +24,10 @@ def case_air_pictures(moved: CaseMotion | None) -> dict[str, bytes]:
 
     Returns
     -------
-    dict of str to bytes
-        Load case -> PNG; empty without air, and without a motion.
+    dict of str to Chart
+        By load case; empty without air, and without a motion.
     """
-    found = {}
-    for name in () if moved is None else moved.torque:
-        with BytesIO() as file:
-            assert moved is not None
-            air_figure(moved, name).savefig(file, dpi=DPI)
-            found[name] = file.getvalue()
-    return found
+    return {} if moved is None else {name: Chart(air_figure(moved, name), dpi=DPI) for name in moved.torque}
 
 
 def air_figures(result: CaseMotion) -> dict[str, Figure]:

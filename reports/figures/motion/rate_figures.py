@@ -1,7 +1,6 @@
-"""All figures of a motion as files; those of speeds, accelerations, energy and shaking are drawn here."""
+"""All figures of a motion; those of speeds, accelerations, energy and shaking are drawn here."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from alula.reports.figures.motion.motion_figures import (
     paths_figure,
     torque_figure,
 )  # fmt: skip
-from alula.reports.figures.sheet.style import quiet_glyphs
+from alula.reports.figures.sheet.chart import Chart
 from alula.reports.motion.rate_rows import told_speed
 from alula.reports.motion.rates import QUANTITIES, Series, Values, series
 
@@ -29,19 +28,17 @@ _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
-def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
-    """Draw all figures of a motion as PNG files.
+def motion_pictures(result: CaseMotion) -> dict[str, Chart]:
+    """Draw all figures of a motion.
 
     Parameters
     ----------
     result : CaseMotion
-    folder : Path
-        Folder to write into.
 
     Returns
     -------
-    list of Path
-        The files.
+    dict of str to Chart
+        By the name of the file, without its ending.
     """
     figures = {
         "link-angles": angles_figure(result),
@@ -52,12 +49,7 @@ def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
     figures |= air_figures(result) | rate_figures(result)
-    paths = []
-    with quiet_glyphs():
-        for name, figure in figures.items():
-            paths.append(folder / f"{name}.png")
-            figure.savefig(paths[-1], dpi=DPI)
-    return paths
+    return {name: Chart(figure, dpi=DPI) for name, figure in figures.items()}
 
 
 def rate_figures(result: CaseMotion) -> dict[str, Figure]:

@@ -25,6 +25,7 @@ from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.extent import Extent
 from alula.loads.states.weighed import Weighed
+from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.page.html import render
 from alula.reports.tables.data import change_records
 from alula.reports.tables.record import result_record
@@ -338,7 +339,7 @@ def test_mass_and_size_are_in_the_record(heavy, plain):
 
 
 def test_the_page_says_what_is_counted_where_a_check_asks(heavy, plain):
-    page = render(heavy, {"box": b"a picture"})
+    page = render(heavy, {"box": Canvas(72.0, 72.0)})
     assert "<h2>Mass and size</h2>" in page
     row = re.search(r"<tr><td>crank</td>(.*?)</tr>", page.partition("Mass of each link [g]")[2])
     assert row is not None

@@ -67,11 +67,12 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
     assert "crank speed over speed of S [rad/mm]" in links[0]
 
 
-def test_figures_of_it_are_drawn(tmp_path) -> None:
-    from alula.reports.figures.motion.rate_figures import draw_figures
+def test_figures_of_it_are_drawn() -> None:
+    from alula.reports.figures.motion.rate_figures import motion_pictures
 
-    draw_figures(solve_case_motion(validate(piston_entries())), tmp_path)
-    assert {path.suffix for path in tmp_path.iterdir()} == {".png"}
+    drawn = motion_pictures(solve_case_motion(validate(piston_entries())))
+    assert {"link-angles", "paths", "torque"} <= drawn.keys()
+    assert all(picture.png().startswith(b"\x89PNG") for picture in drawn.values())
 
 
 def test_its_check_holds_the_piston() -> None:

@@ -81,7 +81,7 @@ def test_the_ground_bears_the_other_end_of_the_spring(balanced):
 
 def test_the_drawing_shows_spring_and_stops(balanced, tmp_path):
     path = tmp_path / "linkage.png"
-    path.write_bytes(linkage_drawing(balanced, "foot"))
+    path.write_bytes(linkage_drawing(balanced, "foot").png())
     pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
     colour = np.array([int(SPRING[i : i + 2], 16) for i in (1, 3, 5)])
     assert np.count_nonzero(np.abs(pixels - colour).sum(axis=-1) < 12) > 500
