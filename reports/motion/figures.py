@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from alula.fea.whole.air_range import air_range
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.loose_motion import loose_motion
 from alula.reports.figures.motion_figures import (
@@ -51,7 +52,7 @@ def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
     for i, load_case in enumerate(result.forces):
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
-    figures |= air_figures(result) | rate_figures(result)
+    figures |= air_figures(air_range(result)) | rate_figures(result)
     paths = []
     with quiet_glyphs():
         for name, figure in figures.items():

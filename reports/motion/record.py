@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.motion.linkage_history import asked_over_motion
+from alula.fea.whole.air_range import air_range
 from alula.geometry.base.version import result_stamp
 from alula.loads.states.case_motion import CaseMotion, with_inertia
 from alula.loads.states.clearance import clearance
@@ -127,7 +128,7 @@ def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
         scale = max(float(np.nanmax(np.abs(drive), initial=0.0)), math.ulp(0.0))
         data["drive_power"] = over(drive / 1000.0)
         data["energy_imbalance"] = float(np.nanmax(np.abs(imbalance), initial=0.0)) / scale
-    if (air := motion_air_record(result, load_case)) is not None:
+    if (air := motion_air_record(air_range(result), load_case)) is not None:
         data["flapping"] = air
     return data | {"rates": rates_record(result, load_case)}
 
