@@ -162,6 +162,7 @@ def motion(
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
     from alula.fea.common.verdict import Verdict
+    from alula.fea.findings.of_motion import motion_findings
     from alula.fea.whole.rubbed_motion import rubbed_motion
     from alula.loads.case.case_file import read_case
     from alula.reports.commands.motion import print_motion, write_motion
@@ -172,10 +173,11 @@ def motion(
         parsed = read_case(case, overrides or ())
         refuse_unusable(output, "motion")
         result = rubbed_motion(parsed)
-        print_motion(result, case, json=json)
+        found = motion_findings(result)
+        print_motion(found, case, json=json)
         if output is not None:
             progress("Drawing figures and the animation ...")
-            write_folder(output, "motion", lambda folder: write_motion(result, folder, case))
+            write_folder(output, "motion", lambda folder: write_motion(found, folder, case))
             _tell(f"\nTables and figures: {output / 'motion'}", json)
     for sentence in result.locks:
         progress(f"Warning: {sentence}.")

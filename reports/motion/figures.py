@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from alula.fea.whole.air_range import air_range
+from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.loose_motion import loose_motion
 from alula.reports.figures.motion_figures import (
     COLOURS,
     DASHES,
@@ -30,12 +29,12 @@ _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
-def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
+def draw_figures(found: MotionFindings, folder: Path) -> list[Path]:
     """Draw all figures of a motion as PNG files.
 
     Parameters
     ----------
-    result : CaseMotion
+    found : MotionFindings
     folder : Path
         Folder to write into.
 
@@ -44,15 +43,16 @@ def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
     list of Path
         The files.
     """
+    result = found.moved
     figures = {
         "link-angles": angles_figure(result),
-        "paths": paths_figure(result.motion, loose_motion(result)),
-        "torque": torque_figure(result),
+        "paths": paths_figure(result.motion, found.play),
+        "torque": torque_figure(result, found.play),
     }
     for i, load_case in enumerate(result.forces):
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
-    figures |= air_figures(air_range(result)) | rate_figures(result)
+    figures |= air_figures(found.air) | rate_figures(result)
     paths = []
     with quiet_glyphs():
         for name, figure in figures.items():
