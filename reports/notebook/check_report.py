@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -37,7 +38,7 @@ class CheckReport(Tabled):
     @property
     def headline(self) -> str:
         """The verdict and its reason in a few sentences."""
-        return headline(self.result)
+        return headline(self._judged)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -292,10 +293,12 @@ class CheckReport(Tabled):
         CannotRunError
             Where the folder cannot be written.
         """
+        from alula.fea.claims.sources import claims_of
         from alula.reports.page.folder import write_report
         from alula.reports.page.output import folder_named
 
-        write_report(self.result, folder_named(folder), progress=progress)
+        target = folder_named(folder)
+        write_report(self._told, target, claims=claims_of(self.result), progress=progress)
 
     def __str__(self) -> str:
         checks = checks_of(self.result)
@@ -308,6 +311,20 @@ class CheckReport(Tabled):
         checks, title = checks_of(self.result), self.result.case.title
         table, below = _applicable(checks), inapplicable(checks)
         return summary(self.verdict, title, self.headline, table, self.warnings, below)
+
+    @cached_property
+    def _judged(self) -> CheckResult:
+        """The result with all that its headline tells."""
+        from alula.fea.findings.of_check import with_harmonic
+
+        return with_harmonic(self.result)
+
+    @cached_property
+    def _told(self) -> CheckResult:
+        """The result with all that its pages tell."""
+        from alula.fea.findings.of_check import with_findings
+
+        return with_findings(self.result)
 
     @property
     def _links(self) -> tuple[str, ...]:

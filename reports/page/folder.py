@@ -1,11 +1,12 @@
 """The output folder of a check: report, result, pictures and VTU files."""
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
+from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
 from alula.reports.figures.vibration.pictures import campbell_name, shapes_name
@@ -57,6 +58,7 @@ def write_report(
     result: CheckResult,
     target: Path,
     *,
+    claims: Sequence[ClaimResult] = (),
     decks: Path | None = None,
     progress: Callable[[str], None] = lambda message: None,
 ) -> None:
@@ -68,8 +70,11 @@ def write_report(
     Parameters
     ----------
     result : CheckResult
+        With what ``alula.fea.findings.of_check`` finds besides.
     target : Path
         The output folder.
+    claims : sequence of ClaimResult, optional
+        Of figures that were published of the case.
     decks : Path, optional
         Folder whose CalculiX decks go into ``calculix/``.
     progress : callable, optional
@@ -92,12 +97,13 @@ def write_report(
             _write_fields(result, folder / FIELDS)
             models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
             pictures, warnings = drawn.result()
-        # The result itself where it can be: it knows already what was worked out for the console.
-        told = replace(result, warnings=(*result.warnings, *warnings)) if warnings else result
+        told = replace(result, warnings=(*result.warnings, *warnings))
         for warning in warnings:
             progress(f"Warning: {warning}")
-        published = write_claims(told, folder, REPORT)
-        (folder / REPORT).write_text(render(told, pictures, published, models), encoding="utf-8")
+        published = write_claims(told, claims, folder, REPORT)
+        stresses = pictures.keys() & set(map(stress_name, result.case.checked_links))
+        packed = {name: repacked(pictures[name]) for name in stresses}
+        (folder / REPORT).write_text(render(told, {**pictures, **packed}, published, models), encoding="utf-8")
         (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
         (folder / PICTURES).mkdir()
         for name, picture in pictures.items():

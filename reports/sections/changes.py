@@ -4,10 +4,11 @@ import shlex
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from alula.fea.common.change import MaterialChange, VerdictChange
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
-from alula.fea.sizing.changes import MaterialChange, VerdictChange, rounded
+from alula.fea.sizing.changes import rounded
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import code
 from alula.reports.sections.section import Items, Section

@@ -13,6 +13,7 @@ from imported_case import imported_case
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import SIZES, Quantity, Verdict
+from alula.fea.findings.of_check import with_findings
 from alula.fea.motion.envelope_outcomes import FOLLOWED
 from alula.fea.outcomes.unchecked import unchecked
 from alula.fea.study.numbers import of_check, of_motion
@@ -310,7 +311,7 @@ def plain():
 def test_a_check_says_what_would_change_a_mass_and_a_size(heavy):
     assert heavy.verdict is Verdict.FAIL
     total = 2.0 * bar(120.0) + bar(100.0) + 2.0 * rod(8.0, 16.0)
-    [told] = change_records(heavy)
+    [told] = change_records(with_findings(heavy))
     assert (told["quantity"], told["load_factor"]) == ("total mass", None)
     shrink = f"{math.floor(1000.0 * 40.0 / total) / 1000.0:g}"
     assert told["sentences"] == [f"It does not depend on the loads; it passes at {shrink} times what it is."]
