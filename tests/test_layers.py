@@ -21,7 +21,7 @@ LAYERS = {
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
         *("refine", "superposition", "vibration", "outcomes", "whole", "links", "doubts"),
-        *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance"),
+        *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
     "reports": (
         "words",

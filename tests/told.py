@@ -4,20 +4,31 @@ import io
 
 from rich.console import Console
 
-from alula.fea.sizing.changes import changes
+from alula.fea.findings.of_check import with_findings
 from alula.reports.check import screen
 from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
 from alula.reports.renderers.page import as_page
 from alula.reports.sections.section import parts_of
 
+_FOUND = {}
+
+
+def found(result):
+    """The result with what a report tells besides; one that has it already stays as it is."""
+    if result.changes or result.motion is not None:
+        return result
+    if id(result) not in _FOUND:
+        _FOUND[id(result)] = result, with_findings(result)
+    return _FOUND[id(result)][1]
+
 
 def sections(result, published=""):
-    return check_sections(result, changes(result), published)
+    return check_sections(found(result), published)
 
 
 def section(result, key):
-    [found] = [one for one in sections(result) if one.key == key]
-    return found
+    [own] = [one for one in sections(result) if one.key == key]
+    return own
 
 
 def tables(result, key):
@@ -25,7 +36,7 @@ def tables(result, key):
 
 
 def render(result, pictures=None, published="", models=None):
-    return as_page(check_page(result, sections(result, published)), pictures or {}, models or {})
+    return as_page(check_page(found(result), sections(result, published)), pictures or {}, models or {})
 
 
 def result_record(result):
@@ -37,11 +48,11 @@ def as_json(result):
 
 
 def print_result(result, console):
-    screen.print_result(result, sections(result), console)
+    screen.print_result(found(result), sections(result), console)
 
 
 def print_screen(result, console):
-    screen.print_screen(result, sections(result), console)
+    screen.print_screen(found(result), sections(result), console)
 
 
 def printed(result, width=80):

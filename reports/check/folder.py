@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
+from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
-from alula.fea.sizing.changes import VerdictChange
 from alula.loads.case.case import Case
 from alula.reports.check.links import worst_load_case
 from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
@@ -47,9 +47,9 @@ def report_names(case: Case) -> set[str]:
 
 def write_report(
     result: CheckResult,
-    changes: Sequence[VerdictChange],
     target: Path,
     *,
+    claims: Sequence[ClaimResult] = (),
     decks: Path | None = None,
     progress: Callable[[str], None] = lambda message: None,
 ) -> None:
@@ -61,10 +61,11 @@ def write_report(
     Parameters
     ----------
     result : CheckResult
-    changes : sequence of VerdictChange
-        What would change its verdict.
+        With what ``alula.fea.findings.of_check`` finds besides.
     target : Path
         The output folder.
+    claims : sequence of ClaimResult, optional
+        Of figures that were published of the case.
     decks : Path, optional
         Folder whose CalculiX decks go into ``calculix/``.
     progress : callable, optional
@@ -80,8 +81,8 @@ def write_report(
     from alula.reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
-        told, published = result, write_claims(result, folder, REPORT)
-        page = check_page(told, check_sections(told, changes, published))
+        told, published = result, write_claims(result, claims, folder, REPORT)
+        page = check_page(told, check_sections(told, published))
         with ThreadPoolExecutor(1) as beside:
             drawn = beside.submit(check_pictures, result, page, progress)
             _write_fields(result, folder / FIELDS)
@@ -91,7 +92,7 @@ def write_report(
             for warning in warnings:
                 progress(f"Warning: {warning}")
             told = replace(result, warnings=(*result.warnings, *warnings))
-        sections = check_sections(told, changes, published)
+        sections = check_sections(told, published)
         files = {name: picture if isinstance(picture, bytes) else picture.png() for name, picture in pictures.items()}
         shown = {name: repacked(one) if name.startswith("stress-") else one for name, one in pictures.items()}
         (folder / REPORT).write_text(as_page(check_page(told, sections), shown, models), encoding="utf-8")

@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.sizing.changes import VerdictChange
 from alula.geometry.base.version import alula_version
 from alula.reports.check.changes import changes_section
 from alula.reports.check.displacement import displacement_section
@@ -31,14 +30,13 @@ from alula.reports.words.numbers import fixed
 from alula.reports.words.wording import checks_of, headline
 
 
-def check_sections(result: CheckResult, changes: Sequence[VerdictChange], published: str = "") -> tuple[Section, ...]:
+def check_sections(result: CheckResult, published: str = "") -> tuple[Section, ...]:
     """Return all that is told of a check.
 
     Parameters
     ----------
     result : CheckResult
-    changes : sequence of VerdictChange
-        What would change its verdict.
+        With what ``alula.fea.findings.of_check`` finds besides.
     published : str, optional
         How many published figures ``claims.html`` has, in a sentence; "" where there is no such page.
 
@@ -49,7 +47,7 @@ def check_sections(result: CheckResult, changes: Sequence[VerdictChange], publis
     """
     several = len(result.load_cases) > 1
     sections = (
-        changes_section(result, changes),
+        changes_section(result),
         case_section(result, published),
         checks_section(checks_of(result), result.verdict, "In this pose", several=several),
         _model(result),

@@ -9,7 +9,6 @@ from typing import Literal
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
-from alula.fea.sizing.changes import VerdictChange, changes
 from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
@@ -59,7 +58,7 @@ class CheckReport(Tabled):
     @property
     def headline(self) -> str:
         """The verdict and its reason in a few sentences."""
-        return headline(self.result)
+        return headline(self._judged)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -97,14 +96,9 @@ class CheckReport(Tabled):
         return {name: case.reactions.driving[0] for name, case in found if case.reactions.drive is not None}
 
     @cached_property
-    def changes(self) -> tuple[VerdictChange, ...]:
-        """What would change the verdict of the checks that decide it."""
-        return tuple(changes(self.result))
-
-    @cached_property
     def sections(self) -> tuple[Section, ...]:
         """All that is told of it, as on the page of ``alula check``."""
-        return check_sections(self.result, self.changes)
+        return check_sections(self._told)
 
     def table(self, of: str = "checks") -> Table:
         """Return a table of the result.
@@ -149,7 +143,7 @@ class CheckReport(Tabled):
 
         name = self.load_cases[0] if load_case is None else load_case
         pick(self.result.load_cases, name, "load case")
-        return Picture(linkage_drawing(self.result, name))
+        return Picture(linkage_drawing(self.result, name).png())
 
     def plot_assembly(self) -> Picture:
         """Draw the links in their layers, from above and from the side.
@@ -168,7 +162,7 @@ class CheckReport(Tabled):
         if self.result.clearance is None:
             layer = layer_of(self.result.case.links)
             raise CaseError(f"the case states no layers, so all links lie in one plane; give every link one: {layer}")
-        return Picture(assembly_drawing(self.result.clearance))
+        return Picture(assembly_drawing(self.result.clearance).png())
 
     def plot_box(self) -> Picture:
         """Draw the box about the linkage over its motion, from above and from the side, with the limits of its checks.
@@ -186,7 +180,7 @@ class CheckReport(Tabled):
 
         if self.result.size is None:
             raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
-        return Picture(box_drawing(self.result.size, size_limits(self.result.case)))
+        return Picture(box_drawing(self.result.size, size_limits(self.result.case)).png())
 
     def plot_clearance(self) -> Picture:
         """Draw the two outlines that touch first over the motion, or come nearest.
@@ -204,7 +198,7 @@ class CheckReport(Tabled):
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
-        return Picture(contact_drawing(self.result.clearance))
+        return Picture(contact_drawing(self.result.clearance).png())
 
     def plot_frequencies(self, what: Literal["campbell", "shapes"] = "campbell") -> Picture:
         """Draw natural frequencies over the motion and the speed of the drive, or the shapes that belong to them.
@@ -250,7 +244,7 @@ class CheckReport(Tabled):
 
         pick({name: name for name in self._links}, link, "link")
         stations = {point: x for point, (x, _) in self.result.case.links[link].points.items()}
-        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations))
+        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations).png())
 
     def plot_build_directions(self, link: str) -> Picture:
         """Draw the safety factor of a printed link's layers for every direction in which it may be built.
@@ -273,7 +267,7 @@ class CheckReport(Tabled):
         from alula.reports.sections.layers import build_directions_of
 
         known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
-        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")))
+        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")).png())
 
     def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
         """Draw the stress of a link on its deformed shape, and around its largest value.
@@ -305,7 +299,7 @@ class CheckReport(Tabled):
         plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link])
+        return Picture(plots[link].png())
 
     def write(self, folder: str | Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
         """Write ``report.html``, ``result.json``, pictures and VTU files into a folder, as ``alula check -o`` does.
@@ -324,10 +318,12 @@ class CheckReport(Tabled):
         CannotRunError
             Where the folder cannot be written.
         """
+        from alula.fea.claims.sources import claims_of
         from alula.reports.check.folder import write_report
         from alula.reports.page.output import folder_named
 
-        write_report(self.result, self.changes, folder_named(folder), progress=progress)
+        target = folder_named(folder)
+        write_report(self._told, target, claims=claims_of(self.result), progress=progress)
 
     def __str__(self) -> str:
         checks = checks_of(self.result)
@@ -340,6 +336,20 @@ class CheckReport(Tabled):
         checks, title = checks_of(self.result), self.result.case.title
         table, below = _applicable(checks), inapplicable(checks)
         return summary(self.verdict, title, self.headline, table, self.warnings, below)
+
+    @cached_property
+    def _judged(self) -> CheckResult:
+        """The result with all that its headline tells."""
+        from alula.fea.findings.of_check import with_harmonic
+
+        return with_harmonic(self.result)
+
+    @cached_property
+    def _told(self) -> CheckResult:
+        """The result with all that its pages tell."""
+        from alula.fea.findings.of_check import with_findings
+
+        return with_findings(self.result)
 
     @property
     def _links(self) -> tuple[str, ...]:

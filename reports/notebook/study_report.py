@@ -48,7 +48,7 @@ class StudyReport(Tabled):
 
         with Store.reading(self.folder) as store:
             drawn, _ = pictures(read_study(store))
-        return {one.title: Picture(one.png) for one in drawn}
+        return {one.title: Picture(one.drawn.png()) for one in drawn}
 
     def __str__(self) -> str:
         return str(self.table())

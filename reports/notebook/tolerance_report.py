@@ -60,7 +60,7 @@ class ToleranceReport(Tabled):
         """
         from alula.reports.figures.study.tolerance_pictures import spread_picture
 
-        return Picture(spread_picture(pick(self.numbers, number, "number")))
+        return Picture(spread_picture(pick(self.numbers, number, "number")).png())
 
     def __str__(self) -> str:
         return str(self.table())

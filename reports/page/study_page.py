@@ -60,7 +60,7 @@ def write_study(folder: Path, output: Path, wanted: Sequence[str] = ()) -> Path:
         (target / PAGE).write_text(render(study, drawn, notes), encoding="utf-8")
         (target / FOLDER).mkdir()
         for picture in drawn:
-            (target / FOLDER / f"{picture.name}.png").write_bytes(picture.png)
+            (target / FOLDER / f"{picture.name}.png").write_bytes(picture.drawn.png())
 
     write_folder(output, COMMAND, fill)
     return output / COMMAND / PAGE

@@ -411,10 +411,36 @@ class Series:
         Its name.
     columns : mapping of str to array, shape (n,)
         Title with unit -> values.
+    digits : int or None
+        Significant ones, with nothing in place of what is unknown or unbounded; None for numbers in full.
     """
 
     file: str
     columns: Mapping[str, ArrayLike]
+    digits: int | None = None
+
+    @classmethod
+    def below(cls, file: str, cases: Mapping[str, Mapping[str, ArrayLike]], digits: int = 12) -> Self:
+        """Return the series of several load cases below one another, in the first column their names.
+
+        Parameters
+        ----------
+        file : str
+        cases : mapping of str to mapping of str to array, shape (n,)
+            Load case -> title with unit -> values; a column that one lacks is empty there.
+        digits : int, optional
+            As of the class.
+
+        Returns
+        -------
+        Series
+        """
+        counts = {name: len(np.asarray(next(iter(columns.values())))) for name, columns in cases.items()}
+        found: dict[str, ArrayLike] = {"load case": [name for name, count in counts.items() for _ in range(count)]}
+        for title in dict.fromkeys(title for columns in cases.values() for title in columns):
+            every = [columns.get(title, np.full(counts[name], np.nan)) for name, columns in cases.items()]
+            found[title] = np.concatenate([np.asarray(values) for values in every])
+        return cls(file=file, columns=found, digits=digits)
 
     def rows(self) -> Iterator[tuple[Any, ...]]:
         """Yield one tuple for each value of the columns."""

@@ -20,7 +20,7 @@ def _report():
     from alula.reports.turnable.moving import LINKAGE, check_linkage
     from alula.reports.turnable.pack import data_block
 
-    result = solved.by_hand("four-bar-synthesis")
+    result = solved.told("four-bar-synthesis")
     return render(result, {}, models={LINKAGE: data_block(check_linkage(result))})
 
 

@@ -8,11 +8,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from alula.fea.common.verdict import Verdict
+from alula.reports.figures.sheet.chart import Chart
 from alula.reports.figures.study.curves import Panel, curves
 from alula.reports.figures.study.many import MOST_LINES, categories, parallel, pareto
 from alula.reports.figures.study.maps import verdict_map
 from alula.reports.figures.study.spread import histogram, tornado
-from alula.reports.figures.study.style import MOST_MARKS, marked, png
+from alula.reports.figures.study.style import MOST_MARKS, chart, marked
 from alula.reports.study.columns import Parameter, Response, StudyColumns
 from alula.reports.study.regression import regression
 
@@ -35,13 +36,13 @@ class StudyPicture:
         Of its file, without ``.png``.
     title : str
     caption : str
-    png : bytes
+    drawn : Chart
     """
 
     name: str
     title: str
     caption: str
-    png: bytes
+    drawn: Chart
 
 
 def pictures(study: StudyColumns) -> tuple[tuple[StudyPicture, ...], tuple[str, ...]]:
@@ -63,7 +64,7 @@ def pictures(study: StudyColumns) -> tuple[tuple[StudyPicture, ...], tuple[str, 
             notes.append(one)
         else:
             name, title, caption, figure = one
-            found.append(StudyPicture(name=name, title=title, caption=caption, png=png(figure)))
+            found.append(StudyPicture(name=name, title=title, caption=caption, drawn=chart(figure)))
     return tuple(found), tuple(dict.fromkeys(notes))
 
 

@@ -11,6 +11,7 @@ from told import result_record
 
 from alula.fea.buckling.wall import wall_stress
 from alula.fea.check.run import check_case
+from alula.fea.findings.of_check import with_harmonic
 from alula.fea.outcomes.unchecked import caveats, unchecked
 from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.fea.vibration.over_motion import pose_frequencies
@@ -301,7 +302,7 @@ def test_the_harmonic_that_comes_nearest_to_the_lowest_natural_frequency_is_told
 
 
 def test_the_verdict_tells_the_nearest_harmonic_where_no_check_asks_for_frequencies():
-    result = check_case(driven(turning=10.0), fidelity="beam")
+    result = with_harmonic(check_case(driven(turning=10.0), fidelity="beam"))
     said = f'vibration (no check of type "frequency"; {nearest_harmonic(result.case)})'
     assert "harmonic of 600 rpm" in said
     assert said in headline(result)
