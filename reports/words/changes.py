@@ -2,11 +2,10 @@
 
 import shlex
 
-from alula.fea.common.change import MaterialChange, VerdictChange
+from alula.fea.common.change import MaterialChange, VerdictChange, rounded
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
-from alula.fea.sizing.changes import rounded
 from alula.reports.words.numbers import joined, number, plain, sentence
 from alula.reports.words.wording import named
 
