@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from alula.fea.common.change import MaterialChange, VerdictChange
+from alula.fea.common.change import MaterialChange, VerdictChange, rounded
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
