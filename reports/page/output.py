@@ -104,19 +104,25 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
             with contextlib.suppress(OSError):  # it holds the result
                 folder.rmdir()
 
+    def begin() -> None:
+        nonlocal work
+        target.mkdir(parents=True, exist_ok=True)
+        with _alone_in(target):
+            _recover(target)
+            _refuse_in_the_way(target, command, ())
+            work = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=target))
+            held.enter_context(_alone_in(work))
+
     with contextlib.ExitStack() as held, tidied(tidy):
         try:
             _refuse_no_folder(output, target)
-            target.mkdir(parents=True, exist_ok=True)
-            with _alone_in(target):
-                _recover(target)
-                _refuse_in_the_way(target, command, ())
-                work = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=target))
-                mine = locked(work)
-                if mine is not None:
-                    held.callback(os.close, mine)
+            try:
+                begin()
+            except FileNotFoundError:  # another run, which had made the folder, has failed and removed it
+                begin()
         except OSError as error:
             raise _unwritable(target, error) from None
+        assert work is not None
         try:
             _replace(target, command, work, fill)
         except OSError as error:
@@ -221,11 +227,11 @@ def _mark_last(names: Iterable[str]) -> list[str]:
 def _take_back(target: Path, work: Path) -> None:
     """Undo the moves of a run whose list is still in its working folder, as far as they were made."""
     new, old = work / _NEW, work / _OLD
+    if not _is(work / _LIST):  # killed before the first move, or after the last
+        return
     try:
         table = json.loads((work / _LIST).read_text(encoding="utf-8"))
         entering = {name: digest for name, digest in _files_in(table["files"]).items() if name not in table["kept"]}
-    except FileNotFoundError:  # killed before the first move, or after the last
-        return
     except (ValueError, LookupError, TypeError):  # half a list, and nothing was moved
         entering = {}
     for name in reversed(_mark_last(entering)):
@@ -316,7 +322,7 @@ def _remove_empty(target: Path, names: Iterable[str]) -> None:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Keep other runs from changing names in a folder meanwhile."""
+    """Hold the lock of a folder: of the output while names in it are changed, of a working folder while its run lives."""
     held = locked(folder)
     try:
         yield

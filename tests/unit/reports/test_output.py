@@ -238,6 +238,32 @@ def test_a_leftover_that_leads_elsewhere_moves_nothing(out: Path, link: str) -> 
     assert {name: files_of(out).get(name) for name in MINE} == MINE
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_leftover_whose_list_is_a_pipe_is_not_waited_for(out: Path) -> None:
+    (out / ".alula-work").mkdir()
+    os.mkfifo(out / ".alula-work" / "list.json")
+    write_folder(out, "check", fill())
+    assert files_of(out) == MINE | {"result.json": "{}", "sub/a.png": "new"}
+    assert not (out / ".alula-work").exists()
+
+
+def test_a_fresh_folder_is_made_again_where_a_failing_run_removes_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two runs into one folder that neither found there: what the second computed was lost."""
+    lock, left = output.locked, [None]
+
+    def removed(folder: Path, *, wait: bool = True) -> int | None:
+        if left:
+            left.pop()
+            folder.rmdir()
+        return lock(folder, wait=wait)
+
+    monkeypatch.setattr(output, "locked", removed)
+    write_folder(tmp_path / "deep" / "out", "check", fill())
+    assert files_of(tmp_path) == {"deep/out/result.json": "{}", "deep/out/sub/a.png": "new"}
+
+
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("crash"), KeyboardInterrupt()])
 def test_a_failure_leaves_the_earlier_result_untouched(out: Path, error: BaseException) -> None:
     before = files_of(out)
