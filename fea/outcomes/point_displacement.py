@@ -13,6 +13,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -60,7 +61,7 @@ class PointDisplacement:
     moved: LargeDisplacement
     shares: Shares
     forces: JointForces | None = None
-    why: str = ""
+    why: Reason | str = ""
 
     @classmethod
     def of(
@@ -89,7 +90,7 @@ class PointDisplacement:
         """
         link, point = at
         displacement, factor, shares = moved.points.get((link, point)), moved.factor, Shares()
-        why = f"the frame gives no displacement: {moved.sentence}"
+        why: Reason | str = reason("frame_gives_no_displacement", why=moved.reason)
         if displacement is not None and moved.state in ("small", "deformed", "off"):
             size, why = float(np.linalg.norm(displacement)), ""
             near = factor is not None and factor < SNAP
@@ -441,7 +442,7 @@ def point_outcome(
     if told.why:
         return found
     shape = "on its deformed shape" if moved.followed else "by linear theory"
-    notes = [told.no_end] if told.no_end else []
+    notes: list[Reason | str] = [told.no_end] if told.no_end else []
     notes += () if moved.frame is None else moved.frame.notes
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
@@ -461,7 +462,9 @@ def point_outcome(
         notes += unknown_lengths(case) if tilting is not None else ()
     if found.verdict is Verdict.UNDECIDED:
         notes += _remedies(told, check.maximum, links)
-    return found.because("; ".join([f"by {told.shares.model}, {shape}: {found.reason}", *notes]))
+    return found.because(
+        together(reason("point_displacement", model=told.shares.model, shape=shape, found=found.reason), *notes)
+    )
 
 
 def meshes_to_refine(

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 
 from alula.fea.buckling.buckling import NAME, factor_band, judgement
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
@@ -56,7 +57,7 @@ def solid_buckling(result: LinkResult) -> SolidBuckling | None:
     return result.buckling if isinstance(result, SolidResult) else None
 
 
-def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
+def undecided_buckling(load_case: str, link: str, why: Reason | str) -> CheckOutcome:
     """Return the outcome of a link whose factor is not known.
 
     Parameters
@@ -64,8 +65,7 @@ def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
     load_case : str
         Its name.
     link : str
-    why : str
-        For people.
+    why : Reason or str
 
     Returns
     -------
@@ -76,15 +76,13 @@ def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
 
 
 def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> CheckOutcome:
-    times = f"at {found.value:.3g}" if math.isfinite(found.value) else f"at more than {MOST:g}"
-    said = f"its solid buckles {times} times the load, {found.words}"
-    if found.least < found.value:
-        said += f"; at {found.least:.3g} times where its joints move with it"
+    least = found.least if found.least < found.value else None
+    said = reason("solid_buckles", factor=found.value, most=MOST, held=found.words, least=least)
     mesh = Source(kind=SourceKind.DISCRETISATION, detail=f"up to {found.error:.1%} of the factor")
     ends = found.least * max(1.0 - found.error, 0.0), found.most * (1.0 + found.error)
     band = factor_band(case, load_case, link, min(found.value, MOST), ends, mesh)
     outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, said)
-    return outcome.because(said + judgement(outcome, None))
+    return outcome.because(reason("buckling_judged", found=said, judgement=judgement(outcome, None)))
 
 
 def solid_growth(found: SolidBuckling | None) -> Scatter:

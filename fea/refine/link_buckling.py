@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from alula.fea.common.reason import Reason
 from alula.fea.nonlinear.large_displacement import LEAST_LINEAR
 from alula.fea.refine.error_estimate import estimate_error
 from alula.fea.refine.link_series import CHORD
@@ -32,7 +33,7 @@ class SolidBuckling:
         Joints hold it as well as they can; infinite where the value is 3 or more, so that the link cannot fail.
     error : float
         Share of the factors by which the mesh may miss them.
-    words : str
+    words : Reason or str
         How joints hold it for ``value``, for people.
     without : str
         Why they are not known; "" where they are.
@@ -42,7 +43,7 @@ class SolidBuckling:
     least: float
     most: float
     error: float
-    words: str = ""
+    words: Reason | str = ""
     without: str = ""
 
     @classmethod

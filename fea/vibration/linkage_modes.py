@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason
 from alula.fea.frame.build import ALONG_PINS, build_frame
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame, slot_normal
@@ -73,7 +74,7 @@ class LinkageModes:
     frame: LinkageFrame
     model: FrameModel
     modes: tuple[Mode, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Reason | str, ...] = ()
 
 
 def linkage_modes(
@@ -211,9 +212,9 @@ def _modes(
     return tuple(modes)
 
 
-def _notes(frame: LinkageFrame, rate: float) -> tuple[str, ...]:
+def _notes(frame: LinkageFrame, rate: float) -> tuple[Reason | str, ...]:
     """What the reader must know; ``rate`` by which an unstable pose departs [1/s]."""
-    notes = list(frame.notes)
+    notes: list[Reason | str] = list(frame.notes)
     if any(not frame.model.elements[i].rigid for i in frame.pin_beams.values()):
         notes.append(TIGHT_PINS)
     if rate > 0.0:

@@ -68,6 +68,22 @@ def plain(value: float) -> str:
     return f"{value:g}".replace("-", "−")
 
 
+def short(value: float, digits: int) -> str:
+    """Return a number with some significant digits at most, without padding zeros.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+
+    Returns
+    -------
+    str
+    """
+    text = f"{value:.{digits}g}"
+    return text.replace("-", "−") if math.isfinite(value) and "e" not in text else number(value, digits)
+
+
 def band(value: Band, digits: int = 3) -> str:
     """Return ``3.21 (2.44 to 3.21)``, the value alone where the band has no visible width, or ``3.21 (no band)``.
 
