@@ -37,6 +37,7 @@ from alula.fea.beam.column_factor import AxialForce, column_factors
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.holding import Plane, columns, holding, of_cuts
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -229,7 +230,9 @@ def buckling_outcomes(
     for link, beam in beams.items():
         if case.part_of(link).is_beam and (found := column(case, link, beam)) is not None:
             outcome = column_outcome(case, load_case, link, found, moved)
-            yield outcome.because(outcome.reason + beyond_strength({link: beam}))
+            yield outcome.because(
+                reason("buckling_judged", found=outcome.reason, judgement=beyond_strength({link: beam}))
+            )
 
 
 def column_outcome(

@@ -16,6 +16,7 @@ from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.buckling import NAME as BUCKLING
 from alula.fea.buckling.buckling import beyond_strength
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
@@ -60,13 +61,13 @@ def linkage_outcomes(
     elif value is not None and least is not None and own[0] < least:
         how = _by_itself(weakest, own[0])
         found = by_linear_theory(load_case, own[0], max(own[0], min(value, own[1])), moved.scatter, how)
-        yield found.because(found.reason + beyond_strength(beams))
+        yield found.because(reason("buckling_judged", found=found.reason, judgement=beyond_strength(beams)))
     elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
         how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
         if least < value:
             how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
         found = by_linear_theory(load_case, least, value, moved.slack, how)
-        yield found.because(found.reason + beyond_strength(beams))
+        yield found.because(reason("buckling_judged", found=found.reason, judgement=beyond_strength(beams)))
 
 
 def _by_itself(link: str, factor: float) -> str:
@@ -145,7 +146,7 @@ def _rests_on_it(outcome: CheckOutcome) -> bool:
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
     if outcome.verdict is Verdict.PASS or (outcome.subject.kind == "point" and outcome.value.unknowable):
         return outcome.not_applicable(NO_EQUILIBRIUM)
-    return outcome.because(f"{outcome.reason}; {NO_EQUILIBRIUM}")
+    return outcome.because(reason("together", reasons=[outcome.reason, NO_EQUILIBRIUM]))
 
 
 def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:

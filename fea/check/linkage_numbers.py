@@ -7,6 +7,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import reason
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
 from alula.fea.frame.case_statics import CaseStatics
 from alula.fea.frame.joint_forces import JointForces
@@ -92,7 +93,9 @@ def limit_load_outcome(name: str, check: LimitLoadCheck, load_case: str, factor:
     CheckOutcome
     """
     found = CheckOutcome.of(name, LINKAGE, load_case, Quantity.LIMIT_LOAD, factor, check.minimum)
-    return found.because(f"{factor.without if factor.unknowable else found.reason}{where}")
+    return found.because(
+        reason("buckling_judged", found=factor.without if factor.unknowable else found.reason, judgement=where)
+    )
 
 
 def _largest(

@@ -19,6 +19,7 @@ from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.at_temperature import as_known
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
@@ -393,7 +394,7 @@ def check_case(
     solved = {load_case: one.solid_shares(decided, threads) for load_case, one in by_load_case.items()}
     load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
     clock("stress")
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Reason | str, ...] = ()
     if not bare:
         warnings = (
             *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),

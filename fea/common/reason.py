@@ -25,8 +25,16 @@ class Reason:
         """Return one fact; raises ``KeyError`` for one that it has not."""
         return dict(self.facts)[name]
 
+    def __str__(self) -> str:
+        """Refuse to be a part of a text, which only ``alula.reports.sentences`` makes of it."""
+        raise TypeError(f"the reason '{self.kind}' is told by alula.reports.sentences")
 
-def reason(kind: str, **facts: Any) -> Reason:
+    def __format__(self, _: str) -> str:
+        """Refuse it in a formatted text as well."""
+        return str(self)
+
+
+def reason(kind: str, /, **facts: Any) -> Reason:
     """Return a reason.
 
     Parameters

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from alula.fea.common.reason import Reason, reason
 from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 
@@ -46,7 +47,7 @@ class Source:
     ----------
     kind : SourceKind
         What it is.
-    detail : str
+    detail : Reason or str
         Particulars such as the range that was stated; "" where there are none.
     width : float
         Ratio of the ends of the interval that it gives by itself; NaN where that is not known. It does not make two
@@ -54,13 +55,13 @@ class Source:
     """
 
     kind: SourceKind
-    detail: str = ""
+    detail: Reason | str = ""
     width: float = field(default=math.nan, compare=False)
 
     @property
-    def text(self) -> str:
+    def text(self) -> Reason | str:
         """Kind and particulars, for people and files."""
-        return f"{self.kind} ({self.detail})" if self.detail else str(self.kind)
+        return reason("source_of_error", kind=self.kind, detail=self.detail) if self.detail else str(self.kind)
 
 
 PIN_PRESSURE = Source(kind=SourceKind.PIN_PRESSURE, detail="over 180° and over 90°")

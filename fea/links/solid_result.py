@@ -10,6 +10,7 @@ from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.solid_holding import solid_holding
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason
 from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
 from alula.fea.elements.mouth import reference_surfaces
 from alula.fea.links.clamp_edge import CLAMP, EDGE, edge_stress
@@ -64,7 +65,14 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
 
 
 def solid_result(
-    case: Case, link: str, load_case: str, beam: BeamCheck, refined: RefinedSolid, *, why: str, remarks: Sequence[str]
+    case: Case,
+    link: str,
+    load_case: str,
+    beam: BeamCheck,
+    refined: RefinedSolid,
+    *,
+    why: Reason | str,
+    remarks: Sequence[Reason | str],
 ) -> SolidResult:
     """Return the result of a link under a load case that was solved.
 
@@ -78,9 +86,9 @@ def solid_result(
         The hand calculation.
     refined : RefinedSolid
         The series of meshes, solved under all load cases of the link.
-    why : str
+    why : Reason or str
         Why a solid decides the link, for people.
-    remarks : sequence of str
+    remarks : sequence of Reason or str
         What the reader must know, besides what model and meshes have to say.
 
     Returns
@@ -152,7 +160,7 @@ def solid_result(
         governing_case=variant,
         stress=stress,
         comparisons=compare_sections(body, beam, stress),
-        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved), *remarks),
+        notes=(*solid.notes, precision.reason, *_edge_notes(refined, solved), *remarks),
         decided_by="solid",
         why=why,
         brittle=material.brittle,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from alula.fea.buckling.buckling import column_outcome, worst_column
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import reason
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.other_case import widened
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
@@ -130,12 +131,17 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
         outcome = CheckOutcome.of(LAYERS, subject, load_case, Quantity.LAYERS, value, limit)
         if found is not None:
             x, y, z = (f"{at:.1f}" for at in found.location)
-            outcome = outcome.because(f"{outcome.reason}; at {_when(moved, found.pose)}, x = {x}, y = {y}, z = {z} mm")
+            outcome = outcome.because(
+                reason(
+                    "together",
+                    reasons=[outcome.reason, f"at {_when(moved, found.pose)}, x = {x}, y = {y}, z = {z} mm"],
+                )
+            )
             yield outcome if material.shear_strength_between_layers else without_shear(outcome, material.title)
         elif material.strength_across_layers is None:
             yield outcome.because(no_strength(material.title))
         else:
-            yield outcome.because(over.discretisation.sentence if over.discretisation else "its peak is not known")
+            yield outcome.because(over.discretisation.reason if over.discretisation else "its peak is not known")
 
 
 def layer_fatigue_outcomes(
@@ -168,7 +174,7 @@ def layer_fatigue_outcomes(
     pull, slip = (f"{mean:.3g} ± {amplitude:.3g} MPa" for mean, amplitude in (fatigue.tension, fatigue.shear))
     where = f"{pull} across the layers, {slip} of shear along them, at x = {x}, y = {y}, z = {z} mm"
     for outcome in fatigue_outcomes(material.fatigue_across_layers, link, load_case, fatigue, name=name):
-        told = outcome.because(f"{outcome.reason}; {where}")
+        told = outcome.because(reason("together", reasons=[outcome.reason, where]))
         yield told if material.shear_strength_between_layers else without_shear(told, material.title)
 
 
@@ -259,7 +265,7 @@ def _joints(
             else:
                 outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force), growth)
             outcome = _complete(outcome, evaluated)
-            yield outcome.because(f"under {force:.3g} N at {_when(moved, pose)}: {outcome.reason}")
+            yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
 
 
 def _at(reaction: JointReaction, pose: int) -> JointReaction:

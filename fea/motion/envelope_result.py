@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.motion.fatigue import FatigueLife
 from alula.fea.motion.linkage_history import LinkageOverMotion
@@ -224,7 +225,8 @@ class LinkEnvelope:
         Size of the finest mesh.
     units, modes : int
         Unit loads, and solutions that span the motion's loads.
-    solver, solver_reason : str
+    solver : str
+    solver_reason : Reason
         Its name, and why it was chosen.
     solver_error : float
         Largest relative error of a solution (energy norm).
@@ -250,7 +252,7 @@ class LinkEnvelope:
     units: int
     modes: int
     solver: str
-    solver_reason: str
+    solver_reason: Reason | str
     solver_error: float
     reaction: float
     imbalance: float
@@ -292,7 +294,7 @@ class EnvelopeResult:
         For every link and load case.
     verdict : Verdict
         Over all checks.
-    warnings : tuple of str
+    warnings : tuple of Reason or str
         One sentence each.
     timings : mapping of str to float
         Stage -> seconds.
@@ -311,5 +313,5 @@ class EnvelopeResult:
     clearance: Clearance | None
     checks: tuple[CheckOutcome, ...]
     verdict: Verdict
-    warnings: tuple[str, ...]
+    warnings: tuple[Reason | str, ...]
     timings: Mapping[str, float]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.theory import BeamCheck, CantileverCheck
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.frame.joint_forces import JointForces, WayToHold
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -109,12 +110,12 @@ class LinkResult:
         The hand calculation by beam theory.
     brittle : bool
         True where the largest principal stress decides, False where von Mises stress does.
-    notes : tuple of str
+    notes : tuple of Reason or str
         What the reader must know about these numbers.
     decided_by : {"beam", "solid", ""}
         Model that decided the link under all load cases; "" where a model was forced that may not decide.
-    why : str
-        Why that model, for people.
+    why : Reason or str
+        Why that model.
     layers : LayerStress or None
         Of a printed link whose layers are checked, by its solid.
     """
@@ -129,9 +130,9 @@ class LinkResult:
     location: NDArray[np.float64]
     beam: BeamCheck
     brittle: bool
-    notes: tuple[str, ...]
+    notes: tuple[Reason | str, ...]
     decided_by: str
-    why: str
+    why: Reason | str
     layers: LayerStress | None = None
 
     @property
@@ -336,7 +337,7 @@ class CheckResult:
         Over all checks.
     timings : mapping of str to float
         Stage -> seconds.
-    warnings : tuple of str
+    warnings : tuple of Reason or str
         One sentence each.
     second_opinions : tuple of SecondOpinion
         CalculiX beside our solid models, where it was asked for.
@@ -357,7 +358,7 @@ class CheckResult:
     audit: StaticsAudit | None
     verdict: Verdict
     timings: Mapping[str, float]
-    warnings: tuple[str, ...]
+    warnings: tuple[Reason | str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
     in_air: CaseMotion | None = None

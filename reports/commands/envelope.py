@@ -18,6 +18,7 @@ from alula.geometry.base.version import result_stamp
 from alula.geometry.materials.material import Material
 from alula.reports.page.motion_pages import envelope_headline
 from alula.reports.page.output import MARK, write_folder
+from alula.reports.sentences import told
 from alula.reports.tables.console import say_checks, verdict_line
 from alula.reports.tables.data import check_records, data, entries, finite
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
@@ -185,7 +186,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         "not_checked": list(unchecked(result.case, over_motion=True)),
         "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, over_motion=True)],
         "checks": check_records(result.checks),
-        "warnings": list(result.warnings),
+        "warnings": data(result.warnings),
         "timings_s": dict(result.timings),
     }
     return dict(finite(envelope, {}))
@@ -319,11 +320,11 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     say_checks(result.checks, console)
     for check in result.checks:
         if check.quantity in UNLOADED_QUANTITIES:
-            say(console, sentence(f"{check.quantity}: {check.reason}"))
+            say(console, sentence(f"{check.quantity}: {told(check.reason)}"))
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")
     for warning in result.warnings:
-        say(console, f"Warning: {warning}.", style="yellow")
+        say(console, f"Warning: {told(warning)}.", style="yellow")
 
 
 def _links(result: EnvelopeResult, console: "Console") -> None:

@@ -13,6 +13,7 @@ from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
 from alula.loads.statics.rounding import without_rounding
 from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
+from alula.reports.sentences import told
 from alula.reports.tables.record import worst_load_case
 from alula.reports.words.wording import checks_of, headline, inapplicable
 
@@ -42,7 +43,7 @@ class CheckReport(Tabled):
     @property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each."""
-        return self.result.warnings
+        return tuple(map(told, self.result.warnings))
 
     @property
     def load_cases(self) -> tuple[str, ...]:
@@ -269,7 +270,9 @@ class CheckReport(Tabled):
         pick({name: name for name in self._links}, link, "link")
         found = self._case(link, load_case).links[link]
         if not isinstance(found, SolidResult):
-            raise CaseError(f'link {link} has no stress field, since {found.why}; check the case with fidelity="solid"')
+            raise CaseError(
+                f'link {link} has no stress field, since {told(found.why)}; check the case with fidelity="solid"'
+            )
         plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))

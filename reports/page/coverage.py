@@ -7,6 +7,7 @@ from alula.fea.common.verdict import LINKAGE, Quantity, Subject
 from alula.fea.outcomes.result import CheckResult, LinkResult, SolidResult
 from alula.fea.solid.buckling_factor import MOST
 from alula.loads.case.joint_rules import clearances, rubbing_joints
+from alula.reports.sentences import told as in_words
 from alula.reports.words.numbers import joined
 
 STACKING = (
@@ -236,7 +237,7 @@ def _bands(result: CheckResult) -> str:
     if hand:
         told.append(f"{joined(hand)} {_was(hand)} not meshed: the bands come from solid models of similar parts")
     if alone:
-        reasons = [link.safety_factor.without for link in loaded]
+        reasons = [in_words(link.safety_factor.without) for link in loaded]
         why = joined(list(dict.fromkeys(filter(None, reasons))))
         told.append(f"{joined(alone)} {'has' if len(alone) == 1 else 'have'} no band for model error ({why})")
     text = "; ".join(told)

@@ -9,6 +9,7 @@ from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.loads.records.aero import AirForces
 from alula.loads.statics.rounding import without_rounding
+from alula.reports.sentences import told
 from alula.reports.tables.data import change_records
 from alula.reports.tables.frames import frame_lines
 from alula.reports.tables.friction import friction_sentence
@@ -53,11 +54,11 @@ def print_result(result: CheckResult, console: "Console") -> None:
             say_checks(case.checks, console)
         for check in case.checks:
             if check.quantity is Quantity.DRIVE_POWER:
-                say(console, f"Motor: {check.reason}.")
+                say(console, f"Motor: {told(check.reason)}.")
             elif check.quantity is Quantity.DISPLACEMENT and check.applies:
-                say(console, f"Displacement of {check.subject}: {check.reason}.")
+                say(console, f"Displacement of {check.subject}: {told(check.reason)}.")
             elif check.quantity in (Quantity.LAYER_GAP, *UNLOADED_QUANTITIES) and check.applies:
-                say(console, sentence(f"{check.quantity}: {check.reason}"))
+                say(console, sentence(f"{check.quantity}: {told(check.reason)}"))
         for line in _hand(case):
             say(console, line)
     for layers in build_directions_of(result).values():
@@ -75,7 +76,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
     if result.second_opinions:
         say_opinions(result.second_opinions, console)
     for warning in result.warnings:
-        say(console, f"Warning: {warning}", style="yellow")
+        say(console, f"Warning: {told(warning)}", style="yellow")
 
 
 SCREEN = 23
@@ -106,7 +107,7 @@ def print_screen(result: CheckResult, console: "Console") -> None:
     left = SCREEN - taken - 1  # the last line counts what is not told
     rows, warnings = worst_of_each(checks)[:MATTER], list[str]()
     least = _table_height(rows[:_LEAST], console, several=several)
-    for warning in (shortened(console, f"Warning: {text}", _WARNING) for text in result.warnings[:MATTER]):
+    for warning in (shortened(console, f"Warning: {told(text)}", _WARNING) for text in result.warnings[:MATTER]):
         if height(console, warning) <= left - least:
             warnings.append(warning)
             left -= height(console, warning)

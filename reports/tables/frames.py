@@ -13,6 +13,7 @@ from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
 from alula.loads.statics.rounding import without_rounding
 from alula.loads.statics.statics import Reactions
+from alula.reports.sentences import told
 from alula.reports.tables.data import data, entries
 from alula.reports.words.numbers import band, fixed, limit_load, number
 
@@ -195,7 +196,7 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     """
     lines = []
     if not case.forces.by_equilibrium:
-        lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
+        lines.append(f"Joint forces by a {case.forces.model}: {told(case.forces.reason)}.")
     lines.append(linkage_line(case))
     lines += filter(None, [thrust_line(case.forces, case.large_displacement.reactions)])
     if case.forces.play is not None:

@@ -5,6 +5,7 @@ from typing import Any
 from alula.fea.motion.envelope_result import LinkEnvelope
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.solid.solution import SolidSolution
+from alula.reports.sentences import told
 from alula.reports.tables.data import entries
 
 LEAST_TOLD = 1e-9
@@ -23,7 +24,8 @@ def discretisation_record(found: Discretisation) -> dict[str, Any]:
     -------
     dict
     """
-    return entries(found, "status accuracy sentence") | {
+    return entries(found, "status accuracy") | {
+        "sentence": told(found.reason),
         "stress": entries(found.stress, _SERIES),
         "displacement": entries(found.displacement, _SERIES),
         "meshes": [entries(mesh, "elements unknowns error seconds") for mesh in found.meshes],
@@ -57,4 +59,4 @@ def solver_sentence(answer: SolidSolution) -> str:
     str
     """
     error = max(answer.solver_error, LEAST_TOLD)
-    return f"Solved by {answer.solver} ({answer.solver_reason}), relative error below {error:.0e}"
+    return f"Solved by {answer.solver} ({told(answer.solver_reason)}), relative error below {error:.0e}"

@@ -13,6 +13,7 @@ from alula.geometry.base.version import result_stamp
 from alula.loads.sources.published_statics import StaticsAudit
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.caveat import Heading
+from alula.reports.sentences import told
 from alula.reports.tables.clearance import clearance_record
 from alula.reports.tables.data import change_records, check_records, data, entries, finite
 from alula.reports.tables.frames import frame_record, reaction_records
@@ -82,7 +83,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "not_checked": [str(one) for one in result.caveats if one.heading is Heading.NOT_CHECKED],
         "caveats": [entries(one, "heading topic what why") for one in result.caveats],
         "assumptions": list(result.case.assumptions),
-        "warnings": list(result.warnings),
+        "warnings": data(result.warnings),
         "timings": dict(result.timings),
     }
     nulls: dict[str, str] = {}
@@ -174,7 +175,7 @@ def _link(result: LinkResult) -> dict[str, Any]:
     bands = "von_mises_max principal_max safety_factor displacement_max"
     return entries(result, f"fidelity {bands} location notes") | {
         "decided_by": result.decided_by or None,
-        "why": result.why or None,
+        "why": told(result.why) or None,
         "layers": layer_record(result.layers),
         "beam": None
         if result.beam.without
