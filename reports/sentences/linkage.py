@@ -1,6 +1,7 @@
 """Sentences on the linkage as a whole: joint forces, frames, play, pins, displacement, mass, size, clearance."""
 
-from alula.reports.sentences.catalogue import Sentence
+from alula.fea.common.reason import Reason
+from alula.reports.sentences.catalogue import Sentence, told
 from alula.reports.words.numbers import short
 
 
@@ -26,6 +27,19 @@ def _play_lets_it_move(*, plane: float, across: float | None, without: str | Non
         tilted = f" in the plane and, as they tilt in their holes, by up to {short(across, 3)} mm across it"
     decides = "" if without is None else f"; without play the verdict would be {without}"
     return f"play of pins lets it move by up to {short(plane, 3)} mm to either side{tilted}{decides}"
+
+
+def _made_up_of(*, masses: tuple[tuple[str, float], ...], others: float | None, not_counted: tuple[str, ...]) -> str:
+    parts, left = ", ".join(f"{kind} {short(mass, 4)} g" for kind, mass in masses), ", ".join(not_counted)
+    parts = parts or "no part weighs anything"
+    if others is not None:
+        return f"{parts}, others as stated {short(others, 4)} g{f', which stand for {left}' if left else ''}"
+    return f"{parts}{f'; not counted: {left}' if left else ''}"
+
+
+def _from_side_to_side(*, first: Reason, last: Reason, not_counted: tuple[str, ...]) -> str:
+    left = f"; not counted: {', '.join(not_counted)}" if not_counted else ""
+    return f"from {told(first)} to {told(last)}{left}"
 
 
 SENTENCES: dict[str, Sentence] = {
@@ -76,4 +90,19 @@ SENTENCES: dict[str, Sentence] = {
     "no_mesh_would_decide": "finer meshes would not decide it",
     "smaller_mesh_size_would_decide": "a smaller solid.mesh_size would decide it",
     "refinement_of_link_ended": "refinement of {link} ended because {why}",
+    # Clearance, mass and size
+    "none_at_one_height": "no two links, and no link and pin that passes it, lie at one height",
+    "touch_first": "{names:and} touch first {where}",
+    "come_nearest": "{names:and} come nearest {where}",
+    "bounded_by_speed_of_outlines": "bounded by the speed of the outlines",
+    "bounded_by_acceleration_of_outlines": "bounded by the acceleration of the outlines",
+    "of_outlines": "of the outlines",
+    "layers_come_nearest": (
+        "links {links:and}, {gap:short3} mm apart along the pins without load, come nearest at x = {x:short4}, "
+        "y = {y:short4} mm"
+    ),
+    "made_up_of": _made_up_of,
+    "from_side_to_side": _from_side_to_side,
+    "side": "{name} at {axis} = {value:short5} mm",
+    "side_in_pose": "{name} at {axis} = {value:short5} mm ({coordinate} = {at:fixed2} {unit})",
 }

@@ -112,6 +112,10 @@ def _nearest_harmonic(*, highest: int, harmonic: int, frequency: float, mode: in
     )
 
 
+def _power_of_drive(*, asked: tuple[Reason, ...], side: Reason, output: Reason, drives: Reason | None) -> str:
+    return f"{''.join(map(told, asked))}; {told(side)}, {told(output)}{'' if drives is None else told(drives)}"
+
+
 SENTENCES: dict[str, Sentence] = {
     # How joints hold a link by itself
     "held": _held,
@@ -150,4 +154,38 @@ SENTENCES: dict[str, Sentence] = {
         "the pose is unstable under its loads: what moves it off grows by the factor e every {time:short3} s"
     ),
     "poses_left_out": "{count} poses were left out, in which there is no equilibrium",
+    # Motors
+    "from_mean_to_peak": "from the mean over the motion to the peak",
+    "speed_of_drive": (
+        "the drive turns at up to {fastest:short4} rpm, the motor without load at {without_load:short4} rpm"
+    ),
+    "share_of_torque": (
+        "the drive needs at most {most:short3} of the motor's torque at that speed, on average {mean:short3} of its "
+        "power; stall torque {stall:short3} N·mm, falling linearly to zero at {without_load:short4} rpm"
+    ),
+    "torque_of_drive": (
+        "the drive torque is {effective:short3} N·mm (root mean square), with an ideal flywheel {mean:short3} N·mm; "
+        "the rated torque is {rated:short3} N·mm"
+    ),
+    "asked_of_drive": ("the drive needs at most {torque:short3} N·mm and {power:short3} W, on average {mean:short3} W"),
+    "asked_over_range_of_air": (
+        " (C_N from {coefficients[0]:plain} to {coefficients[1]:plain}: at most {torque[0]:short3} to "
+        "{torque[1]:short3} N·mm and {power[0]:short3} to {power[1]:short3} W, on average {mean[0]:short3} to {mean[1]:short3} W)"
+    ),
+    "asked_without_air": (
+        "; without air at most {torque:short3} N·mm and {power:short3} W, on average {mean:short3} W"
+    ),
+    "power_of_drive": _power_of_drive,
+    "output_of_motor": "{volt:plain} V × {milliampere:plain} mA × {efficiency:plain} = {watt:short3} W",
+    "covers_peak": "the motor's output covers the peak",
+    "below_mean": "the motor's output is below the mean",
+    "covers_mean": "the motor's output covers the mean but not the peak, so a flywheel decides",
+    "carries_air": "the motor carries the air as well, for its output covers the peak",
+    "below_mean_without_air": "the motor's output is below the mean even without air",
+    "below_mean_with_air": "the motor's output is below the mean with the air, which it does not carry",
+    "covers_mean_with_air": ("the motor's output covers the mean with the air but not the peak, so a flywheel decides"),
+    "depends_on_air": (
+        "whether the motor carries the air depends on C_N, for its output covers the mean with the least alone"
+    ),
+    "can_drive": "; it can drive {mass:short3} g of carried mass (now {now:short3} g)",
 }
