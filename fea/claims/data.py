@@ -223,7 +223,7 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
         if isinstance(link, SolidResult) and link.discretisation.status != "converged":
             raise CannotRunError(
                 f"no claim on stress can be judged, since that of {name} has not converged: "
-                f"{link.discretisation.sentence}"
+                f"its meshes are {link.discretisation.status}"
             )
     worst = max(load_case.links.values(), key=_von_mises)
     points = result.case.links[worst.link].points

@@ -160,7 +160,7 @@ def solid_result(
         governing_case=variant,
         stress=stress,
         comparisons=compare_sections(body, beam, stress),
-        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved), *remarks),
+        notes=(*solid.notes, precision.reason, *_edge_notes(refined, solved), *remarks),
         decided_by="solid",
         why=why,
         brittle=material.brittle,

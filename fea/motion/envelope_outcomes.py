@@ -134,7 +134,7 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
         elif material.strength_across_layers is None:
             yield outcome.because(no_strength(material.title))
         else:
-            yield outcome.because(over.discretisation.sentence if over.discretisation else reason("peak_not_known"))
+            yield outcome.because(over.discretisation.reason if over.discretisation else reason("peak_not_known"))
 
 
 def layer_fatigue_outcomes(

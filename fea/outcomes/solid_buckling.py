@@ -14,7 +14,7 @@ from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.buckling_factor import MOST
 from alula.loads.case.case import Case
 
-NO_BEAM = "no beam stands for its buckling, and its solid was not solved; run the solid model (--fidelity solid)"
+NO_BEAM = reason("no_beam_and_no_solid")
 
 
 def solid_buckling_outcomes(case: Case, load_case: str, loaded: Mapping[str, LinkResult]) -> Iterator[CheckOutcome]:
@@ -66,6 +66,7 @@ def undecided_buckling(load_case: str, link: str, why: Reason | str) -> CheckOut
         Its name.
     link : str
     why : Reason or str
+        A text is that of an error.
 
     Returns
     -------
@@ -76,9 +77,14 @@ def undecided_buckling(load_case: str, link: str, why: Reason | str) -> CheckOut
 
 
 def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> CheckOutcome:
-    least = found.least if found.least < found.value else None
-    said = reason("solid_buckles", factor=found.value, most=MOST, held=found.words, least=least)
-    mesh = Source(kind=SourceKind.DISCRETISATION, detail=f"up to {found.error:.1%} of the factor")
+    said = reason(
+        "solid_buckles",
+        factor=found.value,
+        most=MOST,
+        held=found.holding,
+        least=found.least if found.least < found.value else None,
+    )
+    mesh = Source(kind=SourceKind.DISCRETISATION, detail=reason("up_to_share_of_factor", share=found.error))
     ends = found.least * max(1.0 - found.error, 0.0), found.most * (1.0 + found.error)
     band = factor_band(case, load_case, link, min(found.value, MOST), ends, mesh)
     outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, said)
@@ -101,5 +107,5 @@ def solid_growth(found: SolidBuckling | None) -> Scatter:
     least = found.least * (1.0 - found.error) if found is not None and not found.without else math.inf
     if not 1.0 < least < math.inf:
         return Scatter()
-    detail = f"bending towards buckling at {least:.3g} times the load"
+    detail = reason("bending_towards_buckling", factor=least)
     return Scatter(high=1.0 / (1.0 - 1.0 / least), sources=(Source(kind=SourceKind.GROWTH, detail=detail),))

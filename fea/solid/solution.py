@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason
 from alula.fea.elements.block_matrix import SymmetricBlockMatrix
 from alula.fea.elements.elasticity import assemble_stiffness
 from alula.fea.elements.mouth import Mouth
@@ -98,7 +99,7 @@ class SolidSolution:
         Every load case under every variant.
     solver : str
         Name of the solver.
-    solver_reason : str
+    solver_reason : Reason or str
         Why it was chosen.
     solver_error : float
         Largest relative error that it left in a case, in the energy norm (``alula.fea.solvers.solved``).
@@ -112,7 +113,7 @@ class SolidSolution:
     density: float
     cases: tuple[SolidCase, ...]
     solver: str
-    solver_reason: str
+    solver_reason: Reason | str
     solver_error: float
     notes: tuple[str, ...]
 

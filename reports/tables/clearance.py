@@ -2,9 +2,10 @@
 
 from typing import Any
 
-from alula.fea.whole.clearance import clearance_band, clearance_sentence
+from alula.fea.whole.clearance import clearance_band, gap_reason
 from alula.geometry.clearance.least import Gap
 from alula.loads.states.clearance import Clearance
+from alula.reports.sentences import told as in_words
 from alula.reports.tables.data import data
 from alula.reports.words.numbers import band, sentence
 
@@ -66,7 +67,7 @@ def clearance_line(found: Clearance | None) -> str | None:
     """
     if found is None:
         return None
-    told = sentence(clearance_sentence(found))
+    told = sentence(in_words(gap_reason(found)))
     return (
         told if found.least is None else f"Least gap between links in layers: {band(clearance_band(found))} mm. {told}"
     )

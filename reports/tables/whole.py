@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.whole.mass import GRAMS, mass_sentence
+from alula.fea.whole.mass import GRAMS, mass_reason
 from alula.fea.whole.size import size_band
 from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.extent import Extent, unmeasured
 from alula.loads.states.weighed import Weighed
+from alula.reports.sentences import told as in_words
 from alula.reports.tables.data import data
 
 AXES = "xyz"
@@ -56,7 +57,7 @@ def whole_table(result: CheckResult) -> WholeTable | None:
     rows: list[tuple[str, Masses]] = []
     told, others = "", None
     if asked is not None and result.mass is not None:
-        told, others = mass_sentence(result.mass, asked.others), asked.others
+        told, others = in_words(mass_reason(result.mass, asked.others)), asked.others
         for link, own in {**result.mass.links, "all links": result.mass.total}.items():
             rows.append((link, (GRAMS * own.part, GRAMS * own.pins, GRAMS * own.carried, GRAMS * own.total)))
     motion = None if result.size is None else result.size.motion

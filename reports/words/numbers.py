@@ -168,6 +168,21 @@ def joined(words: tuple[str, ...] | list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
 
 
+def ordinal(n: int) -> str:
+    """Return ``1st``, ``2nd``, ``3rd``, ``4th``.
+
+    Parameters
+    ----------
+    n : int
+        From 1 to 20.
+
+    Returns
+    -------
+    str
+    """
+    return f"{n}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(n, 'th') }"
+
+
 def turning(torque: float) -> str:
     """Return the sense of a torque about z.
 

@@ -21,16 +21,17 @@ from alula.fea.vibration.frequency_outcomes import (
     asked_frequencies,
     deciding_load_case,
     frequency_outcomes,
-    harmonic_sentence,
     least_at,
     least_frequency,
-    lowest_sentence,
+    lowest_frequency,
     most_moved,
+    nearest_or_met,
 )
 from alula.fea.vibration.harmonics import meetings
 from alula.fea.vibration.over_motion import _least_between, lowest_pose
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import catalogue
 from alula.reports.words.changes import change_sentences
 from alula.reports.words.wording import headline
 
@@ -148,11 +149,11 @@ def test_no_driving_frequency_has_no_harmonics():
     ],
 )  # fmt: skip
 def test_the_sentence_names_the_harmonic_and_where(low, high, told):
-    assert harmonic_sentence(lever(), history(low, high)) == told
+    assert catalogue.told(nearest_or_met(lever(), history(low, high))) == told
 
 
 def test_an_unstable_pose_has_no_frequency():
-    assert "does not swing but departs" in lowest_sentence(lever(), history([0.0, 20.0], [0.0, 24.0]))
+    assert "does not swing but departs" in catalogue.told(lowest_frequency(lever(), history([0.0, 20.0], [0.0, 24.0])))
 
 
 def test_the_link_that_moves_most_is_found_between_its_points_too():
