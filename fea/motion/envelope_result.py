@@ -238,7 +238,7 @@ class LinkEnvelope:
         In that pose [mm].
     no_fatigue : str
         Why there is no fatigue calculation; empty where there is one.
-    notes : tuple of str
+    notes : tuple of Reason or str
     layers : mapping of str to LayerEnvelope
         Load case -> its layers; empty where none are checked.
     """
@@ -252,14 +252,14 @@ class LinkEnvelope:
     units: int
     modes: int
     solver: str
-    solver_reason: Reason | str
+    solver_reason: Reason
     solver_error: float
     reaction: float
     imbalance: float
     field: StressField
     displacement: Real
     no_fatigue: str
-    notes: tuple[str, ...]
+    notes: tuple[Reason | str, ...]
     layers: Mapping[str, LayerEnvelope]
 
     @property

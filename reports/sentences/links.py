@@ -34,6 +34,10 @@ def _together(*, reasons: tuple[Reason | str, ...]) -> str:
     return "; ".join(map(told, reasons))
 
 
+def _size_of_system(*, unknowns: int, right_hand_sides: int) -> str:
+    return f"{unknowns:,} unknowns, {right_hand_sides} right-hand side{'' if right_hand_sides == 1 else 's'}"
+
+
 SENTENCES: dict[str, Sentence] = {
     # Meshes and their refinement
     "mesh_too_coarse": (
@@ -131,4 +135,21 @@ SENTENCES: dict[str, Sentence] = {
     "states_no_load": "it states no load",
     "together": _together,
     "under_force": "under {force:short3} N at {when}: {why}",
+    # Solutions and their solvers
+    "supports_react": "the supports react with {share:.2%} of the load in case '{case}'",
+    "nearly_incompressible": (
+        "Poisson's ratio {ratio:plain} is above {most:plain}: elements resist changes of volume, and displacements "
+        "come out too small, by 3 % at 0.4999 with four elements through a wall"
+    ),
+    "half_the_body": "half the body, {why}",
+    "chosen_by_user": "chosen by the user",
+    "size_of_system": _size_of_system,
+    "factorisation_alone_suits": "{size}: factorisation alone suits this system",
+    "too_slender_for_linear_elements": (
+        "{size}: the body is {slenderness:fixed0} times as long as wide, where linear elements lock"
+    ),
+    "linear_elements_lock": "ν = {ratio:plain} is above {most:plain}, where linear elements lock",
+    "factor_does_not_fit": "{size}: a factorisation needs about {needed:short2} GB of {left:short2} GB left",
+    "small_enough_for_factorisation": "{size}: small enough for a factorisation",
+    "iteration_takes_less_work": "{size}: more than {most:,} unknowns, up to which {solver} takes less work",
 }
