@@ -7,7 +7,7 @@ from enum import Enum, StrEnum
 from typing import Literal
 
 from alula.fea.common.band import Band
-from alula.fea.common.reason import Reason
+from alula.fea.common.reason import Reason, reason
 
 
 class Verdict(StrEnum):
@@ -417,7 +417,7 @@ def worst_of_each(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
 
 
 def reason_for(value: Band, limit: float, verdict: Verdict) -> Reason | str:
-    """Say in a few words why a band gives its verdict.
+    """Return why a band gives its verdict.
 
     Parameters
     ----------
@@ -432,12 +432,9 @@ def reason_for(value: Band, limit: float, verdict: Verdict) -> Reason | str:
     Reason or str
     """
     if value.unknowable or math.isnan(value.low):
-        return value.without or "it is not known"
-    band = f"its band {value.low:.3g} to {value.high:.3g}".replace("inf", "∞")
-    if verdict is Verdict.UNDECIDED:
-        return f"{band} holds the limit {limit:g}, so it may pass or fail"
-    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
-    return f"{band} lies wholly {side} of the limit {limit:g}"
+        return value.without or reason("not_known")
+    kind = {Verdict.UNDECIDED: "band_holds_limit", Verdict.PASS: "band_keeps_limit", Verdict.FAIL: "band_misses_limit"}
+    return reason(kind[verdict], low=value.low, high=value.high, limit=limit)
 
 
 def overall(verdicts: Iterable[Verdict]) -> Verdict:

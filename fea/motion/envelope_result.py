@@ -198,15 +198,15 @@ class LayerEnvelope:
     location : ndarray, shape (3,)
         Where, in the link's frame [mm].
     fatigue : LayerFatigue or None
-    no_fatigue : str
-        Why there is no fatigue of layers although it is asked for; empty where there is one, or none is asked for.
+    no_fatigue : Reason or None
+        Why there is no fatigue of layers although it is asked for; None where there is one, or none is asked for.
     """
 
     safety_factor: Band
     pose: int
     location: Real
     fatigue: LayerFatigue | None
-    no_fatigue: str
+    no_fatigue: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -236,8 +236,8 @@ class LinkEnvelope:
         Of the worst pose under the worst load case.
     displacement : ndarray, shape (nodes, 3)
         In that pose [mm].
-    no_fatigue : str
-        Why there is no fatigue calculation; empty where there is one.
+    no_fatigue : Reason or None
+        Why there is no fatigue calculation; None where there is one.
     notes : tuple of Reason or str
     layers : mapping of str to LayerEnvelope
         Load case -> its layers; empty where none are checked.
@@ -252,13 +252,13 @@ class LinkEnvelope:
     units: int
     modes: int
     solver: str
-    solver_reason: Reason
+    solver_reason: Reason | str
     solver_error: float
     reaction: float
     imbalance: float
     field: StressField
     displacement: Real
-    no_fatigue: str
+    no_fatigue: Reason | None
     notes: tuple[Reason | str, ...]
     layers: Mapping[str, LayerEnvelope]
 

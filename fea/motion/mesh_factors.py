@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.common.reason import reason
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source
 from alula.fea.motion.envelope_result import VariantCurve
 from alula.fea.refine.discretisation import Discretisation, discretisation_source, judged
@@ -19,7 +19,7 @@ from alula.loads.records.bearing import Span
 
 Real = NDArray[np.float64]
 
-ONE_MESH = "the error of its one mesh is not estimated"
+ONE_MESH = reason("error_of_one_mesh_unknown")
 AGREEMENT = 5e-3
 """Relative accuracy of the peak of a pose by unit loads, compared with a direct solution."""
 
@@ -31,7 +31,7 @@ class MeshFactors:
         self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
         self.discretisation: Discretisation | None = None
         self.sources: tuple[Source, ...] = ()
-        self.without = ONE_MESH
+        self.without: Reason | str = ONE_MESH
         self._refined: dict[tuple[Span, Transfer | None], float] = {}
         self._size = math.inf
 

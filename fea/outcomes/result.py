@@ -162,12 +162,12 @@ class HandResult(LinkResult):
 
     Attributes
     ----------
-    next_cost : str
+    next_cost : Reason or None
         What a solid model would have cost; "" where it was not weighed.
     """
 
     fidelity = "beam"
-    next_cost: str
+    next_cost: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,7 +232,7 @@ class LinkageNumbers:
     case: Case
     moved: LargeDisplacement
     forces: JointForces
-    largest: Callable[[], tuple[Band, str]]
+    largest: Callable[[], tuple[Band, Reason | str]]
 
     @property
     def limit_load(self) -> Band:
@@ -240,7 +240,7 @@ class LinkageNumbers:
         return self.moved.limit_load
 
     @cached_property
-    def displacement_and_place(self) -> tuple[Band, str]:
+    def displacement_and_place(self) -> tuple[Band, Reason | str]:
         """The largest displacement [mm], and its place for people; "" where it is not known."""
         return self.largest()
 
@@ -250,8 +250,8 @@ class LinkageNumbers:
         return self.displacement_and_place[0]
 
     @property
-    def where(self) -> str:
-        """The place that moves most, for people; "" where it is not known."""
+    def where(self) -> Reason | str:
+        """The place that moves most; "" where it is not known."""
         return self.displacement_and_place[1]
 
     @property

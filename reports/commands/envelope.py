@@ -199,7 +199,7 @@ def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
         "load_cases": {
             name: _load_case_record(result, envelope, material) for name, envelope in link.load_cases.items()
         },
-        "no_fatigue": link.no_fatigue or None,
+        "no_fatigue": data(link.no_fatigue),
         "unit_loads": link.units,
         "solutions": link.modes,
         **solver_record(link),
@@ -307,7 +307,7 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     missing: dict[str, list[str]] = {}
     for name, link in result.links.items():
         if link.no_fatigue:
-            missing.setdefault(link.no_fatigue, []).append(name)
+            missing.setdefault(told(link.no_fatigue), []).append(name)
     for why, names in missing.items():
         say(console, f"No fatigue of {', '.join(names)}: {why}.")
     for name, over in result.linkage.items():

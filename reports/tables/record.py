@@ -200,7 +200,7 @@ def _by_model(result: LinkResult) -> dict[str, Any]:
         }
     assert isinstance(result, HandResult)
     solid = ("elements", "unknowns", "governing", "discretisation", "solver", "solver_reason", "solver_error")
-    return {"next_cost": result.next_cost or None, "variants": [], **dict.fromkeys(solid)}
+    return {"next_cost": data(result.next_cost), "variants": [], **dict.fromkeys(solid)}
 
 
 def _worst_link(result: CheckResult, link: str) -> dict[str, Any]:
