@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from alula.fea.common.band import Band
-from alula.fea.common.reason import Reason, reason
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -148,7 +148,7 @@ def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> Chec
         why = reason("neither_direction_nor_shear_strength", part=part, material=material.title)
     else:
         why = reason("no_build_direction", part=part)
-    return outcome.because(reason("together", reasons=[outcome.reason, why]))
+    return outcome.because(together(outcome.reason, why))
 
 
 def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutcome:
@@ -158,7 +158,7 @@ def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutco
     why = outcome.reason
     if outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
         why = reason("open_for_meshes", found=why, why=meshes.stopped)
-    outcome = outcome.because(reason("together", reasons=[why, found.peak]))
+    outcome = outcome.because(together(why, found.peak))
     return outcome if found.layers.between is not None else without_shear(outcome, title)
 
 

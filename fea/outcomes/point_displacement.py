@@ -13,7 +13,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
-from alula.fea.common.reason import Reason, reason
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -441,8 +441,7 @@ def point_outcome(
     found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why or "")
     if told.why:
         return found
-    notes: list[Reason | str] = [] if told.no_end is None else [told.no_end]
-    notes += () if moved.frame is None else moved.frame.notes
+    notes: list[Reason | str | None] = [told.no_end, *(() if moved.frame is None else moved.frame.notes)]
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
         notes.append(reason("pins_may_sink_beyond_limit" if beyond else "pins_may_sink", most=told.sinking))
@@ -465,7 +464,7 @@ def point_outcome(
         model=told.shares.model,
         found=found.reason,
     )
-    return found.because(reason("together", reasons=[by_model, *notes]))
+    return found.because(together(by_model, *notes))
 
 
 def meshes_to_refine(

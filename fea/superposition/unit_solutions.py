@@ -72,7 +72,7 @@ class UnitSolutions:
     projection: Real
     units: int
     solver: str
-    solver_reason: Reason | str
+    solver_reason: Reason
     solver_error: float
 
     @cached_property

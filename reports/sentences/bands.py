@@ -1,7 +1,12 @@
 """Sentences on numbers and their bands: beside which side of a limit they lie, and what the bands cover."""
 
-from alula.reports.sentences.catalogue import Sentence
+from alula.fea.common.reason import Reason
+from alula.reports.sentences.catalogue import Sentence, told
 from alula.reports.words.numbers import short
+
+
+def _together(reasons: tuple[Reason | str, ...]) -> str:
+    return "; ".join(map(told, reasons))
 
 
 def _play(ends: tuple[float, float], joints: tuple[str, ...]) -> str:
@@ -14,6 +19,7 @@ def _friction(ranges: tuple[tuple[float, float, tuple[str, ...]], ...]) -> str:
 
 
 SENTENCES: dict[str, Sentence] = {
+    "together": _together,
     "not_known": "it is not known",
     "band_holds_limit": "its band {low:short3} to {high:short3} holds the limit {limit:plain}, so it may pass or fail",
     "band_keeps_limit": (
@@ -24,6 +30,9 @@ SENTENCES: dict[str, Sentence] = {
     ),
     "as_at_room_temperature": "{why}, and until then numbers are those of room temperature",
     # What a band covers.
+    "covers_no_model_error": "no error of the model: {why}",
+    "covers_nothing": "nothing: {why}",
+    "source_of_error": "{kind} ({detail})",
     "over_half_and_quarter": "over 180° and over 90°",
     "more_than_pin_pressure": "up to {shortfall:.0%} more than the narrower pin pressure",
     "by_faces_and_bore": "by eye-faces and by bore-shear",

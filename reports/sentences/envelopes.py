@@ -44,6 +44,7 @@ SENTENCES: dict[str, Sentence] = {
     "pose_of_motion": "{coordinate} = {value:short5} {unit}",
     "at_pose_and_place": _at_pose_and_place,
     "least_of_poses": _least_of_poses,
+    "under_force": "under {force:short3} N at {when}: {why}",
     "unstable_at_pose": (
         "at {pose} linear theory finds it unstable or at a dead point at {factor:short3} times the load"
     ),
@@ -82,6 +83,7 @@ SENTENCES: dict[str, Sentence] = {
     "peak_not_known": "its peak is not known",
     "peak_without_limit": "the peak has no limit",
     "error_of_one_mesh_unknown": "the error of its one mesh is not estimated",
+    "at_worst_pose": "{found}, at the worst pose",
     "fourfold_estimate_of_layers": f"{_FOURFOLD} layers",
     "fourfold_estimate_of_pose": f"{_FOURFOLD} this pose",
     "fourfold_estimate_of_fatigue": f"{_FOURFOLD} the place where fatigue is worst",

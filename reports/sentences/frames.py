@@ -1,8 +1,10 @@
 """Sentences on the linkage's frame: joint forces, the deformed shape, buckling, and what play makes of it."""
 
+import math
+
 from alula.fea.common.reason import Reason
 from alula.reports.sentences.catalogue import Sentence, told
-from alula.reports.words.numbers import short
+from alula.reports.words.numbers import plain, short
 
 
 def _under_load_cases(load_cases: tuple[str, ...], why: Reason | str) -> str:
@@ -22,6 +24,12 @@ def _compressed_column(compression: float, where: Reason | None, factor: float, 
     held = f"free to turn on pins at {at} mm" if len(pins) > 1 else f"built in at {at} mm"
     pose = "" if where is None else f" at {told(where)}"
     return f"largest compression {short(compression, 3)} N{pose}; buckling at {short(factor, 3)} times that, {held}"
+
+
+def _solid_buckles(factor: float, most: float, held: Reason | str, least: float | None) -> str:
+    times = f"at {short(factor, 3)}" if math.isfinite(factor) else f"at more than {plain(most)}"
+    lower = "" if least is None else f"; at {short(least, 3)} times where its joints move with it"
+    return f"its solid buckles {times} times the load, {told(held)}{lower}"
 
 
 def _buckling_judged(found: Reason | str, judgement: Reason | None) -> str:
@@ -101,6 +109,7 @@ SENTENCES: dict[str, Sentence] = {
         "{why}; on its deformed shape its points move by up to {moved:short3} mm; joint forces and verdict come from "
         "that shape"
     ),
+    "frame_gives_no_displacement": "the frame gives no displacement: {why}",
     "frame_blind_to_link": "the frame takes link {link} for a beam along its axis, which does not tell",
     "linear_theory_too_high": "linear theory puts it too high",
     "steps_of_load": "steps of the load",
@@ -128,6 +137,7 @@ SENTENCES: dict[str, Sentence] = {
     # Buckling of a link; a judgement begins with what separates it.
     "compressed_column": _compressed_column,
     "buckling_judged": _buckling_judged,
+    "solid_buckles": _solid_buckles,
     "buckles_with_stiffest_joints": ", and at {most:short3} times with the stiffest joints, so it buckles",
     "stiffer_joints_raise_it": "; stiffer joints can raise this to {most:short3} times",
     "imperfections_grow": "; within {within:plain} times the load, geometric imperfections grow too much",

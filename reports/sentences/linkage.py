@@ -44,7 +44,6 @@ def _from_side_to_side(*, first: Reason, last: Reason, not_counted: tuple[str, .
 
 SENTENCES: dict[str, Sentence] = {
     # Displacement of points
-    "frame_gives_no_displacement": "the frame gives no displacement: {why}",
     "frame_is_blind": _frame_is_blind,
     "solid_tells_how_far_it_gives": _solid_tells_how_far_it_gives,
     "may_give_way_at": "may give way at {factor:short3} times the load or less, below {least:short3}",

@@ -1,10 +1,8 @@
 """Sentences on links by themselves: stress, meshes, solvers, layers, beams, buckling of one link."""
 
-import math
-
 from alula.fea.common.reason import Reason
 from alula.reports.sentences.catalogue import Sentence, told
-from alula.reports.words.numbers import fixed, plain, short
+from alula.reports.words.numbers import fixed, short
 
 
 def _error_of_meshes(
@@ -24,14 +22,8 @@ def _peak_of_layers(*, place: tuple[float, ...], tension: float, shear: float) -
     return f"largest at x = {x}, y = {y}, z = {z} mm: {across}, {short(shear, 3)} MPa of shear along them"
 
 
-def _solid_buckles(*, factor: float, most: float, held: Reason | str, least: float | None) -> str:
-    times = f"at {short(factor, 3)}" if math.isfinite(factor) else f"at more than {plain(most)}"
-    lower = "" if least is None else f"; at {short(least, 3)} times where its joints move with it"
-    return f"its solid buckles {times} times the load, {told(held)}{lower}"
-
-
-def _together(*, reasons: tuple[Reason | str, ...]) -> str:
-    return "; ".join(map(told, reasons))
+def _size_of_system(*, unknowns: int, right_hand_sides: int) -> str:
+    return f"{unknowns:,} unknowns, {right_hand_sides} right-hand side{'' if right_hand_sides == 1 else 's'}"
 
 
 SENTENCES: dict[str, Sentence] = {
@@ -83,11 +75,6 @@ SENTENCES: dict[str, Sentence] = {
     "mesh_too_coarse_for_buckling": (
         "its mesh is too coarse for a buckling factor, which may be off by more than {error:.0%}"
     ),
-    # Bands
-    "source_of_error": "{kind} ({detail})",
-    "covers_no_model_error": "no error of the model: {why}",
-    "covers_nothing": "nothing: {why}",
-    "at_worst_pose": "{found}, at the worst pose",
     # Layers
     "nothing_acts_on_link": "nothing acts on this link",
     "none_is_stated": "none is stated",
@@ -116,7 +103,6 @@ SENTENCES: dict[str, Sentence] = {
     "no_beam_and_no_solid": (
         "no beam stands for its buckling, and its solid was not solved; run the solid model (--fidelity solid)"
     ),
-    "solid_buckles": _solid_buckles,
     "up_to_share_of_factor": "up to {share:.1%} of the factor",
     "bending_towards_buckling": "bending towards buckling at {factor:short3} times the load",
     # Loads and pins
@@ -128,6 +114,21 @@ SENTENCES: dict[str, Sentence] = {
     ),
     "loads_cancel": "its loads cancel where they act, or pass by every link with a part",
     "states_no_load": "it states no load",
-    "together": _together,
-    "under_force": "under {force:short3} N at {when}: {why}",
+    # Solutions and their solvers
+    "supports_react": "the supports react with {share:.2%} of the load in case '{case}'",
+    "nearly_incompressible": (
+        "Poisson's ratio {ratio:plain} is above {most:plain}: elements resist changes of volume, and displacements "
+        "come out too small, by 3 % at 0.4999 with four elements through a wall"
+    ),
+    "half_the_body": "half the body, {why}",
+    "chosen_by_user": "chosen by the user",
+    "size_of_system": _size_of_system,
+    "factorisation_alone_suits": "{size}: factorisation alone suits this system",
+    "too_slender_for_linear_elements": (
+        "{size}: the body is {slenderness:fixed0} times as long as wide, where linear elements lock"
+    ),
+    "linear_elements_lock": "ν = {ratio:plain} is above {most:plain}, where linear elements lock",
+    "factor_does_not_fit": "{size}: a factorisation needs about {needed:short2} GB of {left:short2} GB left",
+    "small_enough_for_factorisation": "{size}: small enough for a factorisation",
+    "iteration_takes_less_work": "{size}: more than {most:,} unknowns, up to which {solver} takes less work",
 }

@@ -170,7 +170,8 @@ SENTENCES: dict[str, Sentence] = {
     "asked_of_drive": ("the drive needs at most {torque:short3} N·mm and {power:short3} W, on average {mean:short3} W"),
     "asked_over_range_of_air": (
         " (C_N from {coefficients[0]:plain} to {coefficients[1]:plain}: at most {torque[0]:short3} to "
-        "{torque[1]:short3} N·mm and {power[0]:short3} to {power[1]:short3} W, on average {mean[0]:short3} to {mean[1]:short3} W)"
+        "{torque[1]:short3} N·mm and {power[0]:short3} to {power[1]:short3} W, on average {mean[0]:short3} to "
+        "{mean[1]:short3} W)"
     ),
     "asked_without_air": (
         "; without air at most {torque:short3} N·mm and {power:short3} W, on average {mean:short3} W"
