@@ -88,6 +88,7 @@ def print_frequencies(found: "CaseFrequencies", console: "Console") -> None:
     found : CaseFrequencies
     console : rich.console.Console
     """
+    from alula.reports.sentences import told as in_words
     from alula.reports.tables.frequencies import history_sentence, mode_rows
     from alula.reports.words.numbers import band
     from alula.reports.words.terminal import say, say_table
@@ -117,7 +118,7 @@ def print_frequencies(found: "CaseFrequencies", console: "Console") -> None:
             ],
         )
         for note in history.lowest.notes:
-            say(console, f"Note: {note}.")
+            say(console, f"Note: {in_words(note)}.")
     links = [row for row in rows if not row["load_case"]]
     if links:
         say(console, "\nLinks by themselves")

@@ -9,7 +9,8 @@ import numpy as np
 
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
 from alula.geometry.base.version import result_stamp
-from alula.reports.tables.data import entries, finite
+from alula.reports.sentences import told
+from alula.reports.tables.data import data, entries, finite
 from alula.reports.words.numbers import number
 from alula.reports.words.terminal import say, say_table
 from alula.reports.words.wording import besides
@@ -56,8 +57,8 @@ def as_json(result: ToleranceResult) -> str:
             for one in result.numbers
         ],
         "corner": None if result.corner is None else entries(result.corner, "number value low high deviations"),
-        "left_out": list(result.left_out),
-        "notes": list(result.notes),
+        "left_out": data(result.left_out),
+        "notes": data(result.notes),
         "caveats": [entries(one, "heading topic what why") for one in result.caveats],
         "timings": dict(result.timings),
     }
@@ -115,7 +116,7 @@ def print_tolerance(result: ToleranceResult, console: "Console") -> None:
     _say_what_matters(result, console)
     _say_corner(result, console)
     for note in result.notes:
-        say(console, f"Note: {note}.")
+        say(console, f"Note: {told(note)}.")
     if left := besides(result.caveats):
         say(console, left)
 

@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.outcomes.result import CheckResult
 from alula.reports.check.changes import change_sentences, change_title, size_command
+from alula.reports.sentences import told
 
 
 def data(value: Any) -> Any:
@@ -19,16 +21,19 @@ def data(value: Any) -> Any:
     Parameters
     ----------
     value : object
-        A band becomes an object with its sources of error, an array or tuple a list, an enumeration its text.
+        A reason becomes its sentence, a band an object with its sources of error, an array or tuple a list, an
+        enumeration its text.
 
     Returns
     -------
     object
         Of dict, list, str, int, float, bool and None.
     """
+    if isinstance(value, Reason):
+        return told(value)
     if isinstance(value, Band):
         kinds = [source.kind.name.lower() for source in value.sources]
-        return entries(value.told, "value low high") | {"holds": list(value.texts), "kinds": kinds}
+        return entries(value.told, "value low high") | {"holds": data(value.texts), "kinds": kinds}
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, Mapping):

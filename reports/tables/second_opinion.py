@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
+from alula.reports.sentences import told
 from alula.reports.tables.data import entries
 from alula.reports.words.numbers import number
 from alula.reports.words.terminal import say_table
@@ -28,7 +29,7 @@ def with_second_opinions(result: CheckResult, found: tuple[SecondOpinion, ...]) 
     -------
     CheckResult
     """
-    warnings = tuple(opinion.sentence for opinion in found if opinion.sentence)
+    warnings = tuple(told(opinion.warning) for opinion in found if opinion.warning)
     warnings += tuple(
         f"{opinion.link}: the second opinion compares stresses of one mesh whose peak is not a result"
         for opinion in found
