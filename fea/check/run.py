@@ -412,7 +412,7 @@ def check_case(
         size=whole.size,
         frequencies=whole.frequencies,
         load_cases=load_cases,
-        hand={calculation: _cantilever(case, calculation) for calculation in case.hand_calculations},
+        hand=hand_calculations(case),
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
@@ -502,6 +502,20 @@ def _bearing(
             for joint in check.joints or case.bearing_joints:
                 every = [one.joints[joint].wrench for one in (reactions, *(way.reactions for way in forces.sharings))]
                 yield bearing_outcome(case, load_case, name, check, joint, every, growth.get(joint))
+
+
+def hand_calculations(case: Case) -> dict[str, CantileverCheck]:
+    """Return the calculations by hand that a case states, by their names; they need nothing that is solved.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict of str to CantileverCheck
+    """
+    return {calculation: _cantilever(case, calculation) for calculation in case.hand_calculations}
 
 
 def _cantilever(case: Case, calculation: str) -> CantileverCheck:

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from alula.fea.check.run import check_case, effort_of
+from alula.fea.check.run import check_case, effort_of, hand_calculations
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from alula.geometry.base.errors import CannotRunError, CaseError
@@ -149,7 +149,7 @@ def case_tree(
         "beam": lambda: _check(parts["beam"]),
         "hand": lambda: {
             key: _leaves(hand, {"moment": "N*mm", "stress": "MPa", "safety_factor": ""})
-            for key, hand in parts["beam"].hand.items()
+            for key, hand in hand_calculations(case).items()
         },
         "material": lambda: {link: _material(case, link) for link in case.checked_links},
         "section": lambda: {

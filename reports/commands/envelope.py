@@ -72,7 +72,7 @@ def write_envelope(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from alula.reports.figures.envelope_figures import envelope_figure, stress_pictures
+    from alula.reports.figures.motion.envelope_figures import envelope_figure, stress_pictures
     from alula.reports.page.export import write_vtu
     from alula.reports.page.motion_pages import ENVELOPE, envelope_page
 

@@ -137,8 +137,8 @@ def write_frequencies(found: "CaseFrequencies", folder: Path, name: str) -> None
     name : str
         Of the case, as the command was given it.
     """
+    from alula.reports.figures.vibration.pictures import frequency_pictures
     from alula.reports.page.frequencies_page import PAGE, frequencies_page
-    from alula.reports.vibration.pictures import frequency_pictures
 
     pictures = frequency_pictures(found, every=True)
     (folder / "result.json").write_text(as_json(found, name) + "\n", encoding="utf-8")

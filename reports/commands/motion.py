@@ -21,9 +21,9 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
     name : str
         Of the case, as the command was given it.
     """
-    from alula.reports.figures.motion_animation import draw_animation
-    from alula.reports.motion.figures import draw_figures
-    from alula.reports.outlines.contact import contact_drawing
+    from alula.reports.figures.motion.motion_animation import draw_animation
+    from alula.reports.figures.motion.rate_figures import draw_figures
+    from alula.reports.figures.outlines.contact import contact_drawing
     from alula.reports.page.motion_pages import MOTION, motion_page
 
     (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")

@@ -105,7 +105,7 @@ def run(
     })  # fmt: skip
     variants = Variants(plan, folder)
     if pictures is not None:
-        from alula.reports.study.page import refuse_folder
+        from alula.reports.page.study_page import refuse_folder
 
         refuse_folder(output, pictures)
     if len(variants) > MANY and not yes:
@@ -118,7 +118,7 @@ def run(
 
 
 def _draw(folder: Path, output: Path, wanted: Sequence[str], told: TextIO) -> None:
-    from alula.reports.study.page import write_study
+    from alula.reports.page.study_page import write_study
 
     print(f"Pictures: {write_study(folder, output, wanted)}", file=told)
 

@@ -109,8 +109,8 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
     """
     import numpy as np
 
+    from alula.reports.figures.study.tolerance_pictures import tolerance_pictures
     from alula.reports.page.output import MARK, write_folder
-    from alula.reports.study.tolerance_pictures import tolerance_pictures
     from alula.reports.study.tolerance_table import as_json
 
     def fill(folder: Path) -> None:

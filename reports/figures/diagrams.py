@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.theory import BeamCheck
-from alula.reports.sheet.canvas import Canvas, faint
-from alula.reports.sheet.labels import heights, stacked, write_stacked
-from alula.reports.sheet.plot import Axes
-from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.labels import heights, stacked, write_stacked
+from alula.reports.figures.sheet.plot import Axes
+from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]

@@ -12,12 +12,12 @@ from alula.loads.records.applied import LineLoad, PointLoad, in_axes
 from alula.loads.records.springs import LineSpring
 from alula.loads.states.actions import stated_loads
 from alula.loads.statics.rounding import without_rounding
+from alula.reports.figures.sheet.canvas import Canvas, extent
+from alula.reports.figures.sheet.labels import along, place_labels
+from alula.reports.figures.sheet.plot import Axes, ticks, widest
+from alula.reports.figures.sheet.silhouette import curves, outlines, silhouette
+from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
 from alula.reports.figures.sprung import coil, spiral, stop_mark
-from alula.reports.sheet.canvas import Canvas, extent
-from alula.reports.sheet.labels import along, place_labels
-from alula.reports.sheet.plot import Axes, ticks, widest
-from alula.reports.sheet.silhouette import curves, outlines, silhouette
-from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
 from alula.reports.words.numbers import number, turning
 
 Real = NDArray[np.float64]

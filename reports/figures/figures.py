@@ -21,10 +21,10 @@ from alula.geometry.base import child
 from alula.geometry.base.child_server import ChildEndedError, ServerPool
 from alula.geometry.base.system_libraries import OSMESA, loads
 from alula.reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
-from alula.reports.sheet.canvas import SIZE, Canvas, faint
-from alula.reports.sheet.labels import heights, stacked, write_stacked
-from alula.reports.sheet.plot import Axes
-from alula.reports.sheet.style import INK, WIDTH
+from alula.reports.figures.sheet.canvas import SIZE, Canvas, faint
+from alula.reports.figures.sheet.labels import heights, stacked, write_stacked
+from alula.reports.figures.sheet.plot import Axes
+from alula.reports.figures.sheet.style import INK, WIDTH
 from alula.reports.words.numbers import fixed, number, plain
 
 Real = NDArray[np.float64]

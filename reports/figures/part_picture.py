@@ -11,10 +11,10 @@ from alula.geometry.imported.facts import Bore, PartFacts, PartSurface
 from alula.reports.figures.face_labels import FaceSpot, face_spot, is_seen
 from alula.reports.figures.figures import rendered, scale_bar
 from alula.reports.figures.scene import Rendering, View, axes_of
-from alula.reports.sheet.canvas import SIZE, Canvas, faint
-from alula.reports.sheet.labels import place_labels
-from alula.reports.sheet.plot import Axes
-from alula.reports.sheet.style import GROUND, INK, LOAD, WIDTH
+from alula.reports.figures.sheet.canvas import SIZE, Canvas, faint
+from alula.reports.figures.sheet.labels import place_labels
+from alula.reports.figures.sheet.plot import Axes
+from alula.reports.figures.sheet.style import GROUND, INK, LOAD, WIDTH
 
 Real = NDArray[np.float64]
 

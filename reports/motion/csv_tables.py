@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.figures.joint_paths import moving_points, owners
+from alula.reports.motion.joint_paths import moving_points, owners
 from alula.reports.motion.play import drive_play, point_play
 from alula.reports.motion.rates import QUANTITIES, Series, Values, series
 from alula.reports.tables.springs import motion_springs

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.loose_motion import LooseMotion, loose_motion
-from alula.reports.figures.joint_paths import loosest, moving_points
+from alula.reports.motion.joint_paths import loosest, moving_points
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]

@@ -11,7 +11,7 @@ from alula.geometry.base.version import result_stamp
 from alula.loads.states.case_motion import CaseMotion, with_inertia
 from alula.loads.states.clearance import clearance
 from alula.loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
-from alula.reports.figures.joint_paths import moving_points, path_length
+from alula.reports.motion.joint_paths import moving_points, path_length
 from alula.reports.motion.play import motion_play_record
 from alula.reports.motion.rates import QUANTITIES, Series, extremes, finite_or_none, rates_record, series, told
 from alula.reports.tables.clearance import clearance_record

@@ -131,7 +131,7 @@ class CheckReport(Tabled):
         CaseError
             For a case without layers.
         """
-        from alula.reports.outlines.assembly import assembly_drawing
+        from alula.reports.figures.outlines.assembly import assembly_drawing
 
         if self.result.clearance is None:
             layer = layer_of(self.result.case.links)
@@ -150,7 +150,7 @@ class CheckReport(Tabled):
         CaseError
             For a case without layers and without a check of size.
         """
-        from alula.reports.outlines.box import box_drawing
+        from alula.reports.figures.outlines.box import box_drawing
 
         if self.result.size is None:
             raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
@@ -168,7 +168,7 @@ class CheckReport(Tabled):
         CaseError
             For a case without layers, and where nothing lies at one height.
         """
-        from alula.reports.outlines.contact import contact_drawing
+        from alula.reports.figures.outlines.contact import contact_drawing
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")

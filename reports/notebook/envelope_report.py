@@ -102,7 +102,7 @@ class EnvelopeReport(Tabled):
 
     def plot_safety_factors(self) -> Picture:
         """Draw the safety factor of every link over the motion."""
-        from alula.reports.figures.envelope_figures import envelope_figure
+        from alula.reports.figures.motion.envelope_figures import envelope_figure
 
         return Picture(envelope_figure(self.result))
 
@@ -125,7 +125,7 @@ class EnvelopeReport(Tabled):
         CannotRunError
             Where rendering fails.
         """
-        from alula.reports.figures.envelope_figures import stress_pictures
+        from alula.reports.figures.motion.envelope_figures import stress_pictures
 
         pick(self.result.links, link, "loaded link")
         plots, warnings = stress_pictures(self.result, [link])

@@ -71,7 +71,7 @@ class FrequencyReport(Tabled):
         CaseError
             For a load case that there is not.
         """
-        from alula.reports.vibration.campbell import campbell_diagram
+        from alula.reports.figures.vibration.campbell import campbell_diagram
 
         name, history = self._history(load_case)
         case = self.result.case
@@ -95,7 +95,7 @@ class FrequencyReport(Tabled):
         CaseError
             For a load case that there is not.
         """
-        from alula.reports.vibration.shapes import shapes_drawing
+        from alula.reports.figures.vibration.shapes import shapes_drawing
 
         return Picture(shapes_drawing(self._history(load_case)[1].lowest))
 

@@ -142,7 +142,7 @@ class MotionReport(Tabled):
 
     def plot_drive(self) -> Picture:
         """Draw drive torque or force over the coordinate, a line per load case."""
-        from alula.reports.figures.motion_figures import torque_figure
+        from alula.reports.figures.motion.motion_figures import torque_figure
 
         return _picture(torque_figure(self.result))
 
@@ -162,7 +162,7 @@ class MotionReport(Tabled):
         CaseError
             For a load case that does not exist or has no speed.
         """
-        from alula.reports.motion.figures import energy_figure
+        from alula.reports.figures.motion.rate_figures import energy_figure
 
         moving = {name: found for name in self.result.torque if (found := series(self.result, name)) is not None}
         return _picture(energy_figure(self.result, load_case, pick(moving, load_case, "load case with a speed")))
@@ -170,7 +170,7 @@ class MotionReport(Tabled):
     def plot_linkage(self) -> Picture:
         """Draw the linkage at a few poses, with the paths of its points."""
         from alula.loads.states.loose_motion import loose_motion
-        from alula.reports.figures.motion_figures import paths_figure
+        from alula.reports.figures.motion.motion_figures import paths_figure
 
         return _picture(paths_figure(self.result.motion, loose_motion(self.result)))
 
@@ -189,7 +189,8 @@ class MotionReport(Tabled):
 def _picture(figure: object) -> Picture:
     from matplotlib.figure import Figure
 
-    from alula.reports.figures.motion_figures import DPI, quiet_glyphs
+    from alula.reports.figures.motion.motion_figures import DPI
+    from alula.reports.figures.sheet.style import quiet_glyphs
 
     assert isinstance(figure, Figure)
     stream = io.BytesIO()

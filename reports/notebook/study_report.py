@@ -43,7 +43,7 @@ class StudyReport(Tabled):
     @property
     def pictures(self) -> Mapping[str, Picture]:
         """What ``alula study show`` draws of the variants, by the title of each picture."""
-        from alula.reports.study.choice import pictures
+        from alula.reports.figures.study.choice import pictures
         from alula.reports.study.columns import read_study
 
         with Store.reading(self.folder) as store:

@@ -58,7 +58,7 @@ class ToleranceReport(Tabled):
         CaseError
             For a number that there is not.
         """
-        from alula.reports.study.tolerance_pictures import spread_picture
+        from alula.reports.figures.study.tolerance_pictures import spread_picture
 
         return Picture(spread_picture(pick(self.numbers, number, "number")))
 

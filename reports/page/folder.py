@@ -8,6 +8,7 @@ from pathlib import Path
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
+from alula.reports.figures.vibration.pictures import campbell_name, shapes_name
 from alula.reports.page.claims_page import CLAIMS, write_claims
 from alula.reports.page.output import MARK, write_folder
 from alula.reports.page.pictures import (
@@ -20,7 +21,6 @@ from alula.reports.page.pictures import (
     stress_name,
 )
 from alula.reports.tables.record import as_json, worst_load_case
-from alula.reports.vibration.pictures import campbell_name, shapes_name
 
 REPORT = "report.html"
 PICTURES = "pictures"

@@ -5,9 +5,9 @@ from typing import Any
 
 from alula.fea.vibration.frequency_outcomes import deciding_load_case
 from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.reports.figures.vibration.pictures import campbell_name, shapes_name
 from alula.reports.page.template import fill
 from alula.reports.tables.frequencies import LEFT_OUT, history_sentence, mode_rows
-from alula.reports.vibration.pictures import campbell_name, shapes_name
 
 PAGE = "frequencies.html"
 

@@ -128,11 +128,11 @@ def draw_pictures(
     from alula.reports.figures.diagrams import internal_force_diagram
     from alula.reports.figures.drawings import linkage_drawing
     from alula.reports.figures.figures import stress_plots
-    from alula.reports.motion.air_figures import case_air_pictures
-    from alula.reports.outlines.assembly import assembly_drawing
-    from alula.reports.outlines.box import box_drawing
-    from alula.reports.outlines.contact import contact_drawing
-    from alula.reports.vibration.pictures import frequency_pictures
+    from alula.reports.figures.motion.air_figures import case_air_pictures
+    from alula.reports.figures.outlines.assembly import assembly_drawing
+    from alula.reports.figures.outlines.box import box_drawing
+    from alula.reports.figures.outlines.contact import contact_drawing
+    from alula.reports.figures.vibration.pictures import frequency_pictures
 
     worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
     points = {link: result.case.links[link].points for link in worst}

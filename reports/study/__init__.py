@@ -1,4 +1,4 @@
-"""Pictures and tables of studies and of samples, and ``study.html``, the page that holds them.
+"""What studies and samples tell: the columns of a study, its rows for the console, regression, tables of samples.
 
-Hands on ``read_study``, ``pictures`` and ``write_study``; ``histogram`` and ``tornado`` take plain arrays.
+Hands on ``read_study``.
 """

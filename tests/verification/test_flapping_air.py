@@ -19,7 +19,7 @@ from alula.loads.records.load_case import LoadCase
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.flapping import PIECES, flapping_loads, in_air
 from alula.loads.states.kinetostatics import work
-from alula.reports.motion.air_figures import air_figures
+from alula.reports.figures.motion.air_figures import air_figures
 from alula.reports.tables.loads import air_lines, motion_air_record
 
 RHO, C_N, L, C = 1.2e-12, 2.0, 300.0, 80.0  # tonne/mm^3, -, mm, mm

@@ -68,7 +68,7 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
 
 
 def test_figures_of_it_are_drawn(tmp_path) -> None:
-    from alula.reports.motion.figures import draw_figures
+    from alula.reports.figures.motion.rate_figures import draw_figures
 
     draw_figures(solve_case_motion(validate(piston_entries())), tmp_path)
     assert {path.suffix for path in tmp_path.iterdir()} == {".png"}

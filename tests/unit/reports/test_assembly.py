@@ -8,12 +8,12 @@ from legible import assert_legible, written
 
 from alula.loads.states.clearance import clearance
 from alula.loads.states.extent import extent
-from alula.reports.outlines.assembly import LAYERS, Placed, assembly_sheet, layer_colours
-from alula.reports.outlines.box import box_sheet
-from alula.reports.outlines.contact import contact_sheet
-from alula.reports.sheet.canvas import faint
-from alula.reports.sheet.marks import Area, Stroke
-from alula.reports.sheet.style import INK, JOINT_FORCE
+from alula.reports.figures.outlines.assembly import LAYERS, Placed, assembly_sheet, layer_colours
+from alula.reports.figures.outlines.box import box_sheet
+from alula.reports.figures.outlines.contact import contact_sheet
+from alula.reports.figures.sheet.canvas import faint
+from alula.reports.figures.sheet.marks import Area, Stroke
+from alula.reports.figures.sheet.style import INK, JOINT_FORCE
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_outlines_are_drawn_to_scale(found):
 
 
 def test_a_hole_is_cut_out_of_what_is_drawn():
-    from alula.reports.outlines.assembly import rings
+    from alula.reports.figures.outlines.assembly import rings
 
     square = shapely.box(0.0, 0.0, 10.0, 10.0).difference(shapely.box(4.0, 4.0, 6.0, 6.0))
     [ring] = rings(square)

@@ -11,10 +11,10 @@ from alula.fea.beam.loads import BeamLoads, PointLoad
 from alula.fea.beam.theory import check_beam
 from alula.loads.records.load_case import LoadCase
 from alula.reports.figures import diagrams, drawings
-from alula.reports.sheet import plot, style
-from alula.reports.sheet.canvas import Canvas
-from alula.reports.sheet.labels import along, place_labels
-from alula.reports.sheet.marks import Area, Stroke
+from alula.reports.figures.sheet import plot, style
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.labels import along, place_labels
+from alula.reports.figures.sheet.marks import Area, Stroke
 
 
 def drawn(result, load_case="weight"):

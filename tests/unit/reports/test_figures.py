@@ -8,7 +8,7 @@ from matplotlib.image import imread
 
 from alula.reports.figures import figures
 from alula.reports.figures import scene as scenes
-from alula.reports.sheet import style
+from alula.reports.figures.sheet import style
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 # Seen from outside counter-clockwise.

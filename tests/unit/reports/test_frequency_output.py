@@ -18,11 +18,11 @@ from alula.fea.common.band import Band
 from alula.fea.vibration.over_motion import case_frequencies
 from alula.geometry.base.errors import CaseError
 from alula.reports.commands.frequencies import as_json
-from alula.reports.sheet.marks import Area, Stroke
-from alula.reports.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
+from alula.reports.figures.sheet.marks import Area, Stroke
+from alula.reports.figures.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
+from alula.reports.figures.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_sheet
+from alula.reports.figures.vibration.shapes import axis_lines, shapes_sheet
 from alula.reports.tables.record import field_units
-from alula.reports.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_sheet
-from alula.reports.vibration.shapes import axis_lines, shapes_sheet
 
 
 @cache

@@ -163,7 +163,7 @@ def test_the_animation_moves_and_is_small(folder):
 
 def test_a_second_run_replaces_the_first_and_nothing_else(folder, tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "alula.reports.figures.motion_animation.draw_animation", lambda motion, path: path.write_bytes(b"GIF")
+        "alula.reports.figures.motion.motion_animation.draw_animation", lambda motion, path: path.write_bytes(b"GIF")
     )
     home = Path(shutil.copytree(folder.parents[1], tmp_path / "home"))
     folder = home / "out" / "motion"

@@ -14,9 +14,9 @@ import pytest
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.figures.motion_figures import angles_figure, forces_figure, torque_figure
+from alula.reports.figures.motion.motion_figures import angles_figure, forces_figure, torque_figure
+from alula.reports.figures.motion.rate_figures import energy_figure, rate_figures
 from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.figures import energy_figure, rate_figures
 from alula.reports.motion.lines import motion_lines
 from alula.reports.motion.rate_rows import ends
 from alula.reports.motion.rates import series, vector_extremes

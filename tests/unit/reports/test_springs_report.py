@@ -11,11 +11,11 @@ from alula.fea.check.run import check_case
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.figures.drawings import linkage_drawing
+from alula.reports.figures.sheet.style import SPRING
 from alula.reports.figures.sprung import coil, spiral, stop_mark
 from alula.reports.motion.csv_tables import write_tables
 from alula.reports.page.coverage import not_covered
 from alula.reports.page.html import render
-from alula.reports.sheet.style import SPRING
 from alula.reports.tables.record import result_record
 from alula.reports.tables.springs import holding_sentence, spring_sentences
 

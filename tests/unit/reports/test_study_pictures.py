@@ -17,17 +17,17 @@ from alula.fea.study.margin import least_margin, margin, margin_band, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
-from alula.reports.study import style
-from alula.reports.study.choice import chosen
+from alula.reports.figures.study import style
+from alula.reports.figures.study.choice import chosen
+from alula.reports.figures.study.curves import curves
+from alula.reports.figures.study.many import front, parallel, pareto
+from alula.reports.figures.study.maps import verdict_map
+from alula.reports.figures.study.spread import histogram, tornado
+from alula.reports.figures.study.style import LOOKS
+from alula.reports.page.study_page import write_study
 from alula.reports.study.columns import Parameter, Response, read_study
-from alula.reports.study.curves import curves
-from alula.reports.study.many import front, parallel, pareto
-from alula.reports.study.maps import verdict_map
-from alula.reports.study.page import write_study
 from alula.reports.study.regression import regression
 from alula.reports.study.rows import ALIKE, Chosen, Row
-from alula.reports.study.spread import histogram, tornado
-from alula.reports.study.style import LOOKS
 
 CSS = Path(__file__).resolve().parents[3] / "reports" / "templates" / "report.css"
 
@@ -325,8 +325,8 @@ def test_the_page_of_many_points_is_bounded_and_says_how(tmp_path, monkeypatch):
     """The table holds the ends and the undecided; a map some marks of every panel, the front all of its own."""
     factors = [1.0 + 0.01 * ((37 * i) % 200) for i in range(200)]  # 1 to 2.99, each once, in no order
     points = [({"a.x": f"{i % 20} mm", "a.y": f"{i // 20} mm"}, answer(f, mass=f)) for i, f in enumerate(factors)]
-    monkeypatch.setattr("alula.reports.study.choice.MOST_MARKS", 50)
-    monkeypatch.setattr("alula.reports.study.many.MOST_MARKS", 50)
+    monkeypatch.setattr("alula.reports.figures.study.choice.MOST_MARKS", 50)
+    monkeypatch.setattr("alula.reports.figures.study.many.MOST_MARKS", 50)
     study = columns_of(tmp_path / "s", points)
     assert study.rows[0].position == factors.index(2.99)
     assert study.rows[-1].position == factors.index(1.0)

@@ -10,10 +10,10 @@ from alula.fea.whole.size import size_band
 from alula.geometry.clearance.reach import Standing
 from alula.geometry.linkage.placement import Placement
 from alula.loads.states.extent import Extent
-from alula.reports.outlines.assembly import draw
-from alula.reports.sheet.canvas import Canvas, faint
-from alula.reports.sheet.plot import Axes, ticks, widest
-from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, WIDTH
+from alula.reports.figures.outlines.assembly import draw
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.plot import Axes, ticks, widest
+from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, WIDTH
 from alula.reports.words.numbers import plain
 
 Real = NDArray[np.float64]

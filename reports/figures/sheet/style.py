@@ -1,6 +1,9 @@
 """Colours, letters and size that all pictures share, and a matplotlib figure as PNG."""
 
 import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 INK = "#1c2733"
@@ -41,3 +44,11 @@ def as_png(figure: Any) -> bytes:
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
     return stream.getvalue()
+
+
+@contextmanager
+def quiet_glyphs() -> Iterator[None]:
+    """Names may hold letters that the figures' font lacks; a box in their place is no reason to warn."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        yield

@@ -6,8 +6,8 @@ import re
 import numpy as np
 
 from alula.fea.tolerance.result import ToleranceNumber, ToleranceResult
-from alula.reports.study.spread import histogram, tornado
-from alula.reports.study.style import png
+from alula.reports.figures.study.spread import histogram, tornado
+from alula.reports.figures.study.style import png
 
 MOST = 6
 """Numbers that are drawn: those that come nearest to their limits."""

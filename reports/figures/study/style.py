@@ -12,8 +12,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.reports.figures.motion_figures import quiet_glyphs
-from alula.reports.sheet.style import DPI, GROUND, INK, LOAD, STYLE, as_png
+from alula.reports.figures.sheet.style import DPI, GROUND, INK, LOAD, STYLE, as_png, quiet_glyphs
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]

@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from alula.geometry.clearance.least import Gap
 from alula.loads.states.clearance import Clearance
-from alula.reports.outlines.assembly import FILL, LAYERS, Placed, border, dark, draw
-from alula.reports.sheet.canvas import Canvas, extent, faint
-from alula.reports.sheet.labels import place_labels
-from alula.reports.sheet.plot import Axes, ticks, widest
-from alula.reports.sheet.style import JOINT_FORCE, WIDTH
+from alula.reports.figures.outlines.assembly import FILL, LAYERS, Placed, border, dark, draw
+from alula.reports.figures.sheet.canvas import Canvas, extent, faint
+from alula.reports.figures.sheet.labels import place_labels
+from alula.reports.figures.sheet.plot import Axes, ticks, widest
+from alula.reports.figures.sheet.style import JOINT_FORCE, WIDTH
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]

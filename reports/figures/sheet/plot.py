@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from alula.reports.sheet.canvas import Canvas, extent
-from alula.reports.sheet.style import GRID, GROUND, INK
+from alula.reports.figures.sheet.canvas import Canvas, extent
+from alula.reports.figures.sheet.style import GRID, GROUND, INK
 
 Real = NDArray[np.float64]
 

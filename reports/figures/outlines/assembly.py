@@ -12,10 +12,10 @@ from alula.geometry.linkage.placement import Placement
 from alula.loads.case.case import Case
 from alula.loads.case.forks import levels
 from alula.loads.states.clearance import Assembly, Clearance
-from alula.reports.sheet.canvas import Canvas, faint
-from alula.reports.sheet.labels import place_labels
-from alula.reports.sheet.plot import Axes, ticks, widest
-from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.labels import place_labels
+from alula.reports.figures.sheet.plot import Axes, ticks, widest
+from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
 from alula.reports.words.numbers import plain
 
 Real = NDArray[np.float64]

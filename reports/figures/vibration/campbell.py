@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from alula.fea.vibration.harmonics import HIGHEST, Meeting, meetings, ordinal
 from alula.fea.vibration.over_motion import FrequencyHistory
-from alula.reports.sheet.canvas import Canvas, faint
-from alula.reports.sheet.plot import Axes, ticks, widest
-from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.plot import Axes, ticks, widest
+from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, WIDTH
 
 Real = NDArray[np.float64]
 COLOURS = ("#0067a8", "#00795a", "#7a4fa3", "#8a5200")

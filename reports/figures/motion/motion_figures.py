@@ -1,8 +1,6 @@
 """Figures of a motion, drawn without a display: link directions, joint paths, drive torque, joint forces."""
 
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -16,7 +14,7 @@ from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.loose_motion import LooseMotion, loose_motion
-from alula.reports.figures.joint_paths import loosest, moving_points
+from alula.reports.motion.joint_paths import loosest, moving_points
 
 Real = NDArray[np.float64]
 
@@ -30,14 +28,6 @@ _STRAY = 20
 """Of how many directions one is drawn where play shades a path."""
 _CLIP, _HEADROOM = 4.0, 1.6
 """Beside a dead point of the drive the axis ends at these multiples of the median and of the ends' values."""
-
-
-@contextmanager
-def quiet_glyphs() -> Iterator[None]:
-    """Names may hold letters that the figures' font lacks; a box in their place is no reason to warn."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        yield
 
 
 def angles_figure(result: CaseMotion) -> Figure:

@@ -12,12 +12,12 @@ from alula.fea.common.verdict import Verdict
 from alula.fea.study.store import NAME, Store
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import built_in_cases
+from alula.reports.figures.study.choice import StudyPicture, pictures
+from alula.reports.figures.study.style import LOOKS, tick
 from alula.reports.page.output import place, refuse_unusable, write_folder
 from alula.reports.page.template import fill
-from alula.reports.study.choice import StudyPicture, pictures
 from alula.reports.study.columns import Parameter, StudyColumns, read_study
 from alula.reports.study.rows import ALIKE, Row, number_text
-from alula.reports.study.style import LOOKS, tick
 from alula.reports.words.numbers import joined, number
 
 PAGE = "study.html"

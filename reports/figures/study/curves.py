@@ -7,9 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.reports.sheet.style import GROUND, INK, WIDTH
-from alula.reports.study.columns import Parameter, Response
-from alula.reports.study.style import (
+from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
+from alula.reports.figures.study.style import (
     LOOKS,
     Words,
     legend,
@@ -20,6 +19,7 @@ from alula.reports.study.style import (
     styled,
     wants_decades,
 )
+from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
 Panel = tuple[str, NDArray[np.bool_]]

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.loose_motion import loose_motion
-from alula.reports.figures.motion_figures import (
+from alula.reports.figures.motion.air_figures import air_figures
+from alula.reports.figures.motion.motion_figures import (
     COLOURS,
     DASHES,
     DPI,
@@ -18,10 +19,9 @@ from alula.reports.figures.motion_figures import (
     legend,
     over_angle,
     paths_figure,
-    quiet_glyphs,
     torque_figure,
 )  # fmt: skip
-from alula.reports.motion.air_figures import air_figures
+from alula.reports.figures.sheet.style import quiet_glyphs
 from alula.reports.motion.rate_rows import told_speed
 from alula.reports.motion.rates import QUANTITIES, Series, Values, series
 

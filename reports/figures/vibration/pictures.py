@@ -2,8 +2,8 @@
 
 from alula.fea.vibration.frequency_outcomes import deciding_load_case, unit
 from alula.fea.vibration.over_motion import CaseFrequencies
-from alula.reports.vibration.campbell import campbell_diagram
-from alula.reports.vibration.shapes import shapes_drawing
+from alula.reports.figures.vibration.campbell import campbell_diagram
+from alula.reports.figures.vibration.shapes import shapes_drawing
 
 
 def shapes_name(load_case: str) -> str:

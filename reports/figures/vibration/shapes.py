@@ -10,9 +10,9 @@ from alula.fea.frame.model import FrameModel
 from alula.fea.vibration.harmonics import in_words
 from alula.fea.vibration.linkage_modes import LinkageModes
 from alula.fea.vibration.modes import Mode
-from alula.reports.sheet.canvas import Canvas
-from alula.reports.sheet.plot import ticks
-from alula.reports.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.plot import ticks
+from alula.reports.figures.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
 from alula.reports.words.numbers import band, plain
 
 Real = NDArray[np.float64]

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from alula.fea.common.verdict import Quantity, Subject
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
-from alula.reports.figures.motion_figures import COLOURS, DASHES, quiet_glyphs
-from alula.reports.sheet.style import GROUND, INK, STYLE, WIDTH, as_png
+from alula.reports.figures.motion.motion_figures import COLOURS, DASHES
+from alula.reports.figures.sheet.style import GROUND, INK, STYLE, WIDTH, as_png, quiet_glyphs
 from alula.reports.words.numbers import number, plain
 
 Real = NDArray[np.float64]

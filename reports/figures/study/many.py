@@ -7,10 +7,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.reports.sheet.style import GROUND, INK, WIDTH
-from alula.reports.study.columns import Parameter, Response
-from alula.reports.study.curves import reach
-from alula.reports.study.style import (
+from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
+from alula.reports.figures.study.curves import reach
+from alula.reports.figures.study.style import (
     LOOKS,
     MOST_MARKS,
     Words,
@@ -25,6 +24,7 @@ from alula.reports.study.style import (
     tick,
     wants_decades,
 )
+from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
 MOST_LINES = 300

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.reports.sheet.canvas import Canvas, extent, faint
+from alula.reports.figures.sheet.canvas import Canvas, extent, faint
 
 Real = NDArray[np.float64]
 

@@ -7,10 +7,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.reports.sheet.style import INK
-from alula.reports.study.columns import Parameter, Response
-from alula.reports.study.curves import Panel, name_axes, subplots
-from alula.reports.study.style import (
+from alula.reports.figures.sheet.style import INK
+from alula.reports.figures.study.curves import Panel, name_axes, subplots
+from alula.reports.figures.study.style import (
     LOOKS,
     Words,
     legend,
@@ -22,6 +21,7 @@ from alula.reports.study.style import (
     tick,
     wants_decades,
 )
+from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
 _TINT = 0.22

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from alula.reports.sheet.marks import Area, Box, Raster, Stroke, Text
-from alula.reports.sheet.style import DPI, INK
+from alula.reports.figures.sheet.marks import Area, Box, Raster, Stroke, Text
+from alula.reports.figures.sheet.style import DPI, INK
 
 Real = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LOAD, WIDTH
-from alula.reports.study.style import LOOKS, Words, limit_handle, present, scale, styled, wants_decades
+from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, LOAD, WIDTH
+from alula.reports.figures.study.style import LOOKS, Words, limit_handle, present, scale, styled, wants_decades
 from alula.reports.words.numbers import fixed, number
 
 Real = NDArray[np.float64]

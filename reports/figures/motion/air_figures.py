@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from alula.fea.whole.air_range import air_range
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.figures.motion_figures import DPI, legend, over_angle
+from alula.reports.figures.motion.motion_figures import DPI, legend, over_angle
 from alula.reports.tables.loads import motion_air_record
 
 Real = NDArray[np.float64]

@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from alula.fea.common.verdict import Verdict
+from alula.reports.figures.study.curves import Panel, curves
+from alula.reports.figures.study.many import MOST_LINES, categories, parallel, pareto
+from alula.reports.figures.study.maps import verdict_map
+from alula.reports.figures.study.spread import histogram, tornado
+from alula.reports.figures.study.style import MOST_MARKS, marked, png
 from alula.reports.study.columns import Parameter, Response, StudyColumns
-from alula.reports.study.curves import Panel, curves
-from alula.reports.study.many import MOST_LINES, categories, parallel, pareto
-from alula.reports.study.maps import verdict_map
 from alula.reports.study.regression import regression
-from alula.reports.study.spread import histogram, tornado
-from alula.reports.study.style import MOST_MARKS, marked, png
 
 MOST_PANELS = 6
 """Combinations of words that have a panel each; with more of them the study is drawn in parallel coordinates."""
