@@ -1,11 +1,11 @@
-"""Sections on the terminal: paragraphs and tables; no pictures, nothing folded, no notes on how to read."""
+"""Sections on the terminal: paragraphs and tables; no pictures, no notes on how to read."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from alula.fea.common.verdict import Verdict
 from alula.reports.sections.markup import as_plain
-from alula.reports.sections.section import Beside, Cell, Group, Items, Mark, Part, Section, Table, Text
+from alula.reports.sections.section import Beside, Cell, Folded, Group, Items, Mark, Part, Section, Table, Text
 from alula.reports.words.terminal import say, say_table
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def print_parts(parts: Iterable[Part], console: "Console") -> None:
                 say(console, as_plain(f"- {item}" if isinstance(item, str) else f"{item[0]}: {item[1]}"), style=style)
         elif isinstance(part, Table):
             print_table(part, console)
-        elif isinstance(part, Beside):
+        elif isinstance(part, Beside) or (isinstance(part, Folded) and part.told):
             print_parts(part.parts, console)
         elif isinstance(part, Group) and any(map(_told, part.parts)):
             say(console, "")
@@ -83,6 +83,6 @@ def _styled(cell: Cell) -> "str | Styled":
 
 def _told(part: Part) -> bool:
     """Whether a console tells anything of a part."""
-    if isinstance(part, Beside | Group):
+    if isinstance(part, Beside | Group) or (isinstance(part, Folded) and part.told):
         return any(map(_told, part.parts))
     return isinstance(part, Table) or (isinstance(part, Text | Items) and part.kind != "note")

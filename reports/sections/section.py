@@ -162,6 +162,8 @@ class Table:
         A line of text below some rows, by their places.
     apart : frozenset of int
         Rows that stand out.
+    under : tuple of (str, str)
+        What is the same in all rows and told above the table, such as the load case, as columns for notebooks.
     kind : str
         ``checks`` for one that a narrow page shows as cards, ``keep`` for one that is not broken in print, or "".
     """
@@ -172,6 +174,7 @@ class Table:
     caption: str = ""
     below: Mapping[int, str] = field(default_factory=dict)
     apart: frozenset[int] = frozenset()
+    under: tuple[tuple[str, str], ...] = ()
     kind: str = ""
 
     @classmethod
@@ -200,7 +203,7 @@ class Table:
         return [self._record(row) for row in self.rows]
 
     def _record(self, row: tuple[Cell, ...]) -> dict[str, str | float | None]:
-        found: dict[str, str | float | None] = {}
+        found: dict[str, str | float | None] = dict(self.under)
         for i, (column, cell) in enumerate(zip(self.columns, row, strict=True)):
             name, every = as_name(column), [other[i] for other in self.rows]
             if column.text or not any(isinstance(one, Number) for one in every):
@@ -249,7 +252,7 @@ class Text:
     numbers: tuple[Number, ...] = ()
 
 
-def say(template: str, kind: str = "", **facts: object) -> Text:
+def say(template: str, kind: str = "", /, **facts: object) -> Text:
     """Return a paragraph that knows its numbers.
 
     Parameters
@@ -315,18 +318,22 @@ class Picture:
 
 @dataclass(frozen=True)
 class Folded:
-    """Parts that a page shows when a reader opens them, and a console not at all.
+    """Parts that a page shows when a reader opens them.
 
     Attributes
     ----------
     title : str
     parts : tuple of Part
     opened : bool
+        True where the page shows them from the start.
+    told : bool
+        True where a console tells them too.
     """
 
     title: str
     parts: "tuple[Part, ...]"
     opened: bool = False
+    told: bool = False
 
 
 @dataclass(frozen=True)
@@ -434,8 +441,8 @@ def parts_of(parts: Iterable[Part]) -> Iterator[Part]:
             yield from parts_of(part.parts)
 
 
-def tables_of(sections: Iterable[Section]) -> dict[str, Table]:
-    """Return the tables that have a name, by it.
+def tables_of(sections: Iterable[Section]) -> dict[str, list[dict[str, str | float | None]]]:
+    """Return the rows of the tables that have a name, by it; those of tables of one name together.
 
     Parameters
     ----------
@@ -443,21 +450,18 @@ def tables_of(sections: Iterable[Section]) -> dict[str, Table]:
 
     Returns
     -------
-    dict of str to Table
-        Tables of one name and the same columns are one.
+    dict of str to list of dict
+        All rows of a table have the same columns; a cell that there is not is None.
     """
-    found: dict[str, Table] = {}
+    found: dict[str, list[dict[str, str | float | None]]] = {}
     for section in sections:
         for part in parts_of(section.parts):
             if isinstance(part, Table) and part.key:
-                known = found.get(part.key)
-                found[part.key] = part if known is None else _together(known, part)
+                found.setdefault(part.key, []).extend(part.records)
+    for key, rows in found.items():
+        names = dict.fromkeys(name for row in rows for name in row)
+        found[key] = [{name: row.get(name) for name in names} for row in rows]
     return found
-
-
-def _together(first: Table, second: Table) -> Table:
-    assert first.columns == second.columns, f"tables named {first.key} differ in their columns"
-    return Table(key=first.key, columns=first.columns, rows=(*first.rows, *second.rows), caption=first.caption)
 
 
 def numbers_of(parts: Iterable[Part]) -> Iterator[Number]:

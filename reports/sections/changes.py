@@ -1,11 +1,17 @@
-"""What would change a verdict, in sentences."""
+"""What would change a verdict: factors on loads, strengths, sources of the band, the command that finds a size."""
 
 import shlex
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
 from alula.fea.sizing.changes import MaterialChange, VerdictChange, rounded
+from alula.reports.sections.data import entries
+from alula.reports.sections.markup import code
+from alula.reports.sections.section import Items, Section
+from alula.reports.sentences import told as told_reason
 from alula.reports.words.numbers import joined, number, plain, sentence
 from alula.reports.words.wording import named
 
@@ -25,6 +31,64 @@ _NARROWED: dict[SourceKind, str] = {
     SourceKind.BUILD: "build_direction of the part",
 }
 """What narrows a source of error, of those that an entry of the case or an option narrows."""
+
+
+def changes_section(result: CheckResult, found: Sequence[VerdictChange]) -> Section:
+    """Return what would change the verdict of the checks that decide it.
+
+    Parameters
+    ----------
+    result : CheckResult
+    found : sequence of VerdictChange
+
+    Returns
+    -------
+    Section
+    """
+    records = change_records(result, found)
+    return Section(
+        key="changes",
+        title="What would change it",
+        parts=(Items(tuple((f"{sentence(one['title'])[:-1]} ({one['verdict']})", _told(one)) for one in records)),)
+        if records
+        else (),
+        data={"changes": records},
+    )
+
+
+def _told(record: Mapping[str, Any]) -> str:
+    size = f" Find the size: {code(record['command'])}" if record["command"] else ""
+    return " ".join(record["sentences"]) + size
+
+
+def change_records(result: CheckResult, found: Sequence[VerdictChange]) -> list[dict[str, Any]]:
+    """Return what would change the verdict of the checks that decide it, as entries of ``result.json``.
+
+    Parameters
+    ----------
+    result : CheckResult
+    found : sequence of VerdictChange
+
+    Returns
+    -------
+    list of dict
+    """
+    several = len(result.load_cases) > 1
+    return [
+        {
+            **entries(change.check, "name link load_case quantity verdict margin"),
+            "load_factor": change.load,
+            "faster": change.faster,
+            "linear_until": change.until,
+            "material": None if change.material is None else entries(change.material, "what material stated needed"),
+            "widest": [source.kind.name.lower() for source in change.widest],
+            "size": None if change.size is None else entries(change.size, "entry first last"),
+            "title": change_title(change, several=several),
+            "sentences": change_sentences(change, result),
+            "command": size_command(change, result) or None,
+        }
+        for change in found
+    ]
 
 
 def change_title(change: VerdictChange, *, several: bool) -> str:
@@ -62,7 +126,7 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
         told.append("Other loads and materials were tried by hand calculation; with none within reach does it pass.")
     elif check.verdict is Verdict.UNDECIDED and not told:
         known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
-        told.append(_of_itself(check) if known else sentence(check.reason))
+        told.append(_of_itself(check) if known else sentence(told_reason(check.reason)))
     if change.widest:
         told.append(_of_sources(change, result))
     if not told:
