@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from alula.fea.common.verdict import Verdict
 from alula.reports.sections.markup import as_plain
 from alula.reports.sections.section import Beside, Cell, Folded, Group, Items, Mark, Part, Section, Table, Text
-from alula.reports.words.terminal import say, say_table
+from alula.reports.words.terminal import say, say_command, say_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -49,7 +49,10 @@ def print_sections(sections: Iterable[Section], console: "Console") -> None:
 def print_parts(parts: Iterable[Part], console: "Console") -> None:
     """Print parts of a section."""
     for part in parts:
-        if isinstance(part, Text) and part.kind != "note":
+        if isinstance(part, Text) and part.kind == "command":
+            intro, _, command = as_plain(part.text).partition(": ")
+            say_command(console, f"{intro}:", command)
+        elif isinstance(part, Text) and part.kind != "note":
             say(console, as_plain(part.text), style="yellow" if part.kind == "apart" else "")
         elif isinstance(part, Items) and part.kind != "note":
             style = "yellow" if part.kind == "warnings" else ""

@@ -25,6 +25,8 @@ MOST_ROWS = 40
 """Points in the table; of more, a third each of the best, the first undecided and the worst."""
 MARGIN = "least margin (1 at the limit)"
 SAFETY_FACTOR = "least safety factor"
+_Kept = dict[str, "array[float]"]
+"""Name of a number -> place of a point, value, low and high, one point after another."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,7 +108,8 @@ def read_study(store: Store, wanted: Sequence[str] = (), most: int = MOST_ROWS) 
     """
     facts = store.facts()
     outcome, position, stated, merits = list[str](), list[int](), list[Mapping[str, object]](), list[Any]()
-    numbers, ours = dict[str, array[float]](), dict[str, array[float]]()
+    numbers: _Kept = {}
+    ours: _Kept = {}
     limiting, sentences, limits = Counter[str](), dict[tuple[str, str], list[int]](), set[float]()
     for point, row in enumerate(study_rows(store)):
         outcome.append(row.outcome)
@@ -159,12 +162,12 @@ def read_study(store: Store, wanted: Sequence[str] = (), most: int = MOST_ROWS) 
     )
 
 
-def _add(kept: dict[str, "array[float]"], name: str, point: int, ends: tuple[float, float, float]) -> None:
+def _add(kept: _Kept, name: str, point: int, ends: tuple[float, float, float]) -> None:
     """Keep value, low and high of a point."""
     kept.setdefault(name, array("d")).extend((point, *ends))
 
 
-def _response(kept: Mapping[str, "array[float]"], name: str, count: int, limit: float = np.nan) -> Response | None:
+def _response(kept: _Kept, name: str, count: int, limit: float = np.nan) -> Response | None:
     """Return the numbers of a name for all points; None where no point has it."""
     if name not in kept:
         return None
@@ -183,9 +186,7 @@ def _least(found: Sequence[VariantNumber]) -> tuple[float, float, float]:
     return float(value), float(low) if known.all() else 0.0, float(high)
 
 
-def _chosen(
-    numbers: Mapping[str, "array[float]"], count: int, wanted: Sequence[str], *, checked: bool
-) -> tuple[tuple[Response, ...], int]:
+def _chosen(numbers: _Kept, count: int, wanted: Sequence[str], *, checked: bool) -> tuple[tuple[Response, ...], int]:
     """Return the numbers to be drawn, and how many more there are."""
     columns = (_response(numbers, name, count) for name in numbers)
     varying = [column for column in columns if column is not None and _varies(column.value)]

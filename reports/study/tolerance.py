@@ -1,29 +1,27 @@
-"""A case under its tolerances, for the terminal and as plain data."""
+"""A case under its tolerances: how its numbers spread, how likely they pass, what matters, and the worst corner."""
 
-import json
 import math
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
+from alula.fea.common.band import Band
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.geometry.base.version import result_stamp
-from alula.reports.tables.data import entries, finite
-from alula.reports.words.numbers import number
-from alula.reports.words.terminal import say, say_table
+from alula.reports.sections.data import entries
+from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, say, words
+from alula.reports.sentences import told
+from alula.reports.words.numbers import sentence
 from alula.reports.words.wording import besides
 
-if TYPE_CHECKING:
-    from rich.console import Console
-
-SHARES = (1.0, 50.0, 99.0)
 MOST = 8
-"""Tolerances that the table names."""
+"""Tolerances that a table names."""
+_ALL = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
 
 
-def as_json(result: ToleranceResult) -> str:
-    """Return the result as JSON: percentiles in place of samples.
+def names(result: ToleranceResult) -> tuple[str, ...]:
+    """Return the names of all numbers: quantity, subject and load case, and the check where two ask the same.
 
     Parameters
     ----------
@@ -31,25 +29,129 @@ def as_json(result: ToleranceResult) -> str:
 
     Returns
     -------
-    str
+    tuple of str
     """
-    names = "check subject load_case quantity unit limit at_least nominal"
-    record: dict[str, Any] = {
-        "case": result.nominal.name,
-        "samples": result.samples,
-        "seed": result.seed,
+    found = [one.title + (f", {one.load_case}" if one.load_case else "") for one in result.numbers]
+    alike = Counter(found)
+    return tuple(
+        f"{one.check}: {name}" if alike[name] > 1 else name for one, name in zip(result.numbers, found, strict=True)
+    )
+
+
+def tolerance_sections(result: ToleranceResult) -> tuple[Section, ...]:
+    """Return what is told of a case under its tolerances.
+
+    Parameters
+    ----------
+    result : ToleranceResult
+
+    Returns
+    -------
+    tuple of Section
+    """
+    return (
+        Section(
+            key="numbers",
+            title=f"{result.samples:,} samples of {len(result.tolerances)} tolerances",
+            short="Numbers",
+            parts=(_numbers(result),),
+            data=_record(result),
+        ),
+        Section(key="passes", title="Probability", short="Probability", parts=tuple(_passes(result))),
+        Section(key="causes", title="What matters", short="What matters", parts=tuple(_causes(result))),
+        Section(key="notes", title="Not covered", short="Not covered", parts=tuple(_notes(result))),
+    )
+
+
+def _numbers(result: ToleranceResult) -> Table:
+    columns = [words("number"), words("unit")]
+    columns += map(Column, ("nominal", "1 %", "median", "99 %", "limit", "passes", "passes possibly"))
+
+    def cells(name: str, one: ToleranceNumber) -> tuple[Cell, ...]:
+        sense = "≥" if one.at_least else "≤"
+        return (
+            name,
+            "" if one.unit == "1" else one.unit,
+            *(Number(value, digits=3) for value in (one.nominal[0], *one.percentiles(1.0, 50.0, 99.0).tolist())),
+            "" if math.isnan(one.limit) else Number(one.limit, stated=True, sense=sense),
+            *("" if found is None else Number(found.value, probable=True) for found in (one.certain, one.possible)),
+        )
+
+    return Table(
+        key="numbers",
+        columns=tuple(columns),
+        rows=tuple(map(cells, names(result), result.numbers)),
+    )
+
+
+def _passes(result: ToleranceResult) -> Iterator[Text]:
+    every = "every check that is covered" if result.left_out else "every check"
+    yield _likely(f"{every} passes with a probability of", result.certain)
+    if result.possible.count > result.certain.count:
+        ending = ", with the samples whose bands hold a limit, which are undecided"
+        yield _likely(f"{every} passes possibly with", result.possible, ending)
+    corner = result.corner
+    if corner is None:
+        return
+    closest = result.numbers[corner.number]
+    what = f"worst corner for the {closest.title}"
+    if math.isnan(corner.value):
+        yield say("{what}: the linkage has no equilibrium there", what=what)
+    else:
+        unit = "" if closest.unit == "1" else closest.unit
+        value = Number(Band(value=corner.value, low=corner.low, high=corner.high), unit)
+        yield say("{what}: {value}, all tolerances at their worse ends", what=what, value=value)
+
+
+def _likely(what: str, found: Probability, ending: str = "") -> Text:
+    share, low, high = (Number(value, probable=True) for value in (found.value, found.low, found.high))
+    return say(
+        "{what} {share} (95 % confidence: {low} to {high}){ending}",
+        what=what, share=share, low=low, high=high, ending=ending,
+    )  # fmt: skip
+
+
+def _causes(result: ToleranceResult) -> Iterator[Table]:
+    """The Sobol' indices of the check closest to its limit and of the drive."""
+    closest = None if result.corner is None else result.numbers[result.corner.number]
+    for name, one in zip(names(result), result.numbers, strict=True):
+        if (one is not closest and one.certain is not None) or not np.isfinite(one.total).any():
+            continue
+        order = [i for i in np.argsort(-one.total).tolist() if one.total[i] >= 0.005][:MOST]
+        shares = [(max(float(one.first[i]), 0.0), float(one.total[i])) for i in order]
+        yield Table(
+            key="causes",
+            columns=(words("tolerance"), Column("by itself"), Column("in all")),
+            rows=tuple(
+                (result.tolerances[i], Number(first, decimals=2), Number(total, decimals=2))
+                for i, (first, total) in zip(order, shares, strict=True)
+            ),
+            caption=f"Sobol' indices of the {one.title}, shares of its variance",
+            under=(("number", name),),
+        )
+
+
+def _notes(result: ToleranceResult) -> Iterator[Text]:
+    for note in result.notes:
+        yield Text(sentence(told(note)))
+    if left := besides(result.caveats):
+        yield Text(left)
+
+
+def _record(result: ToleranceResult) -> dict[str, Any]:
+    """Percentiles in place of samples."""
+    fields = "check subject load_case quantity unit limit at_least nominal"
+    return {
         "every_check_passes": {"certain": _probability(result.certain), "possible": _probability(result.possible)},
         "does_not_assemble": _probability(result.apart),
         "dead_point": _probability(result.dead),
         "tolerances": list(result.tolerances),
         "numbers": [
-            entries(one, names)
+            entries(one, fields)
             | {
-                "percentiles": {
-                    f"{share:g}": p for share, p in zip(_ALL, one.percentiles(*_ALL).tolist(), strict=True)
-                },
-                "certain": None if one.certain is None else _probability(one.certain),
-                "possible": None if one.possible is None else _probability(one.possible),
+                "percentiles": dict(zip(map("{:g}".format, _ALL), one.percentiles(*_ALL).tolist(), strict=True)),
+                "certain": _probability(one.certain),
+                "possible": _probability(one.possible),
                 "first_order": one.first.tolist(),
                 "total": one.total.tolist(),
             }
@@ -57,108 +159,11 @@ def as_json(result: ToleranceResult) -> str:
         ],
         "corner": None if result.corner is None else entries(result.corner, "number value low high deviations"),
         "left_out": list(result.left_out),
-        "notes": list(result.notes),
+        "notes": [told(note) for note in result.notes],
         "caveats": [entries(one, "heading topic what why") for one in result.caveats],
         "timings": dict(result.timings),
     }
-    nulls: dict[str, str] = {}
-    record = finite(record, nulls)
-    return json.dumps(result_stamp() | record | {"nulls": nulls}, indent=2, ensure_ascii=False, allow_nan=False)
 
 
-_ALL = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
-
-
-def _probability(found: Probability) -> dict[str, Any]:
-    return entries(found, "value low high count samples")
-
-
-def print_tolerance(result: ToleranceResult, console: "Console") -> None:
-    """Print the result.
-
-    Parameters
-    ----------
-    result : ToleranceResult
-    console : Console
-    """
-    titles = (
-        ("number", False),
-        ("subject", False),
-        ("unit", False),
-        ("nominal", True),
-        ("1 %", True),
-        ("median", True),
-        ("99 %", True),
-    )
-    columns = (*titles, ("limit", True), ("passes", True))
-    several = len(result.nominal.load_cases) > 1
-    alike = Counter((one.quantity, one.subject, one.load_case) for one in result.numbers)
-    rows = [
-        (
-            one.quantity if alike[one.quantity, one.subject, one.load_case] == 1 else f"{one.check}: {one.quantity}",
-            one.subject + (f", {one.load_case}" if several else ""),
-            "" if one.unit == "1" else one.unit,
-            number(one.nominal[0], 3),
-            *(number(value, 3) for value in one.percentiles(*SHARES).tolist()),
-            "" if math.isnan(one.limit) else f"{'≥' if one.at_least else '≤'} {one.limit:g}",
-            "" if one.certain is None or one.possible is None else _between(one.certain, one.possible),
-        )
-        for one in result.numbers
-    ]
-    say_table(console, columns, rows, title=f"{result.samples:,} samples of {len(result.tolerances)} tolerances")
-    say(console, "")
-    every = "Every check that is covered" if result.left_out else "Every check"
-    say(console, f"{every} passes with a probability of {_interval(result.certain)}.")
-    if result.possible.count > result.certain.count:
-        undecided = "with the samples whose bands hold a limit, which are undecided"
-        say(console, f"{every} passes possibly with {_interval(result.possible)}, {undecided}.")
-    _say_what_matters(result, console)
-    _say_corner(result, console)
-    for note in result.notes:
-        say(console, f"Note: {note}.")
-    if left := besides(result.caveats):
-        say(console, left)
-
-
-def _between(certain: Probability, possible: Probability) -> str:
-    low, high = _percent(certain.value), _percent(possible.value)
-    return low if low == high else f"{low} to {high}"
-
-
-def _percent(share: float) -> str:
-    text = f"{100.0 * share:.2f}"
-    if (text == "100.00" and share < 1.0) or (text == "0.00" and share > 0.0):
-        return f"{'>' if share > 0.5 else '<'} {'99.99' if share > 0.5 else '0.01'} %"
-    return f"{text.rstrip('0').rstrip('.')} %"
-
-
-def _interval(found: Probability) -> str:
-    return f"{_percent(found.value)} (95 % confidence: {_percent(found.low)} to {_percent(found.high)})"
-
-
-def _closest(result: ToleranceResult) -> ToleranceNumber | None:
-    return None if result.corner is None else result.numbers[result.corner.number]
-
-
-def _say_what_matters(result: ToleranceResult, console: "Console") -> None:
-    """Print the Sobol' indices of the check closest to its limit and of the drive."""
-    closest = _closest(result)
-    shown = [one for one in result.numbers if one is closest or one.certain is None]
-    for one in (one for one in shown if np.isfinite(one.total).any()):
-        order = [i for i in np.argsort(-one.total).tolist() if one.total[i] >= 0.005][:MOST]
-        title = f"What matters for the {one.title} (Sobol' indices, shares of its variance)"
-        rows = [(result.tolerances[i], f"{max(one.first[i], 0.0):.2f}", f"{one.total[i]:.2f}") for i in order]
-        say_table(console, (("tolerance", False), ("by itself", True), ("in all", True)), rows, title=title)
-
-
-def _say_corner(result: ToleranceResult, console: "Console") -> None:
-    corner, closest = result.corner, _closest(result)
-    if corner is None or closest is None:
-        return
-    what = f"the {closest.title}"
-    if math.isnan(corner.value):
-        say(console, f"Worst corner for {what}: the linkage has no equilibrium there.")
-    else:
-        unit = "" if closest.unit == "1" else f" {closest.unit}"
-        ends = f"{number(corner.value, 3)} ({number(corner.low, 3)} to {number(corner.high, 3)}){unit}"
-        say(console, f"Worst corner for {what}: {ends}, all tolerances at their worse ends.")
+def _probability(found: Probability | None) -> dict[str, Any] | None:
+    return None if found is None else entries(found, "value low high count samples")
