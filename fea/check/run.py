@@ -48,7 +48,6 @@ from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.solution import require_compressible
 from alula.fea.superposition.solid_shares import Shares, solid_shares
-from alula.fea.whole.air_range import motion_in_air
 from alula.fea.whole.layer_gaps import layer_gap_outcomes
 from alula.fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
 from alula.geometry.base.errors import CaseError
@@ -417,7 +416,6 @@ def check_case(
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
         warnings=warnings,
-        in_air=None if bare else motion_in_air(case),
     )
 
 

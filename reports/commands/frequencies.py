@@ -144,7 +144,7 @@ def write_frequencies(found: "CaseFrequencies", folder: Path, name: str) -> None
     (folder / "result.json").write_text(as_json(found, name) + "\n", encoding="utf-8")
     _write_table(found, folder / "frequencies.csv")
     for title, picture in pictures.items():
-        (folder / f"{title}.png").write_bytes(picture)
+        (folder / f"{title}.png").write_bytes(picture.png())
     (folder / PAGE).write_text(frequencies_page(found, pictures, name=name), encoding="utf-8")
 
 

@@ -186,7 +186,7 @@ def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], 
     if picture is None:
         progress(f"Warning: no picture: {trouble}")
     else:
-        (folder / PICTURE).write_bytes(picture)
+        (folder / PICTURE).write_bytes(picture.png())
     if text := part_entries(found):
         (folder / ENTRIES).write_text(text, encoding="utf-8")
     (folder / RECORD).write_text(as_json(found) + "\n", encoding="utf-8")

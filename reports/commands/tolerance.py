@@ -121,7 +121,7 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
         }
         np.savez_compressed(folder / SAMPLES, deviations=result.deviations, **arrays)
         for name, picture in tolerance_pictures(result).items():
-            (folder / name).write_bytes(picture)
+            (folder / name).write_bytes(picture.png())
 
     write_folder(target, "tolerance", fill)
 

@@ -104,7 +104,7 @@ class EnvelopeReport(Tabled):
         """Draw the safety factor of every link over the motion."""
         from alula.reports.figures.motion.envelope_figures import envelope_figure
 
-        return Picture(envelope_figure(self.result))
+        return Picture(envelope_figure(self.result).png())
 
     def plot_stress(self, link: str) -> Picture:
         """Draw the stress of a link at its worst pose under its worst load case.
@@ -131,7 +131,7 @@ class EnvelopeReport(Tabled):
         plots, warnings = stress_pictures(self.result, [link])
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link])
+        return Picture(plots[link].png())
 
     def __str__(self) -> str:
         return f"{self.headline}\n\n{self.table()}"

@@ -76,7 +76,7 @@ class FrequencyReport(Tabled):
         name, history = self._history(load_case)
         case = self.result.case
         coordinate = "pose" if case.motion is None else case.motion_coordinate
-        return Picture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name))
+        return Picture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name).png())
 
     def plot_shapes(self, load_case: str | None = None) -> Picture:
         """Draw the shapes of the lowest natural frequencies, in the pose where the first is least.
@@ -97,7 +97,7 @@ class FrequencyReport(Tabled):
         """
         from alula.reports.figures.vibration.shapes import shapes_drawing
 
-        return Picture(shapes_drawing(self._history(load_case)[1].lowest))
+        return Picture(shapes_drawing(self._history(load_case)[1].lowest).png())
 
     def _history(self, load_case: str | None) -> tuple[str, FrequencyHistory]:
         name = deciding_load_case(self.result) if load_case is None else load_case

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from alula.fea.study.store import Store
-from alula.reports.notebook.shown import Picture, Table, Tabled, pick
-from alula.reports.sections.section import tables_of
+from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
 from alula.reports.study.columns import read_study
 from alula.reports.study.page import pictures_of
 from alula.reports.study.rows import study_rows
@@ -45,16 +44,15 @@ class StudyReport(Tabled):
         """
         with Store.reading(self.folder) as store:
             if of == "points":
-                return Table(tuple(points_table(list(study_rows(store))).records))
-            tables = tables_of(study_sections(read_study(store)))
-        return Table(tuple(pick(tables, of, "table")))
+                return Table.of([points_table(list(study_rows(store)))], {"nearest": "nearest to its limit"})
+            return table_of(study_sections(read_study(store)), of)
 
     @property
     def pictures(self) -> Mapping[str, Picture]:
         """What ``alula study show`` draws of the variants, by the title of each picture."""
         with Store.reading(self.folder) as store:
             found = pictures_of(study_sections(read_study(store)))
-        return {one.alt: Picture(one.draw()) for one in found if one.draw is not None}
+        return {one.alt: Picture(one.draw().png()) for one in found if one.draw is not None}
 
     def __str__(self) -> str:
         return str(self.table())

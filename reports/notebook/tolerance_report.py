@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.reports.notebook.shown import Picture, Table, Tabled, pick
-from alula.reports.sections.section import tables_of
+from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
 from alula.reports.study.tolerance import names, tolerance_sections
 
 
@@ -44,7 +43,7 @@ class ToleranceReport(Tabled):
         -------
         Table
         """
-        return Table(tuple(pick(tables_of(tolerance_sections(self.result)), of, "table")))
+        return table_of(tolerance_sections(self.result), of, {"sense": "limit sense"})
 
     def plot_spread(self, number: str) -> Picture:
         """Draw how a number spreads over the samples, with its limit.
@@ -65,7 +64,7 @@ class ToleranceReport(Tabled):
         """
         from alula.reports.figures.study.tolerance_pictures import spread_picture
 
-        return Picture(spread_picture(pick(self.numbers, number, "number")))
+        return Picture(spread_picture(pick(self.numbers, number, "number")).png())
 
     def __str__(self) -> str:
         return str(self.table())

@@ -2,7 +2,9 @@
 
 import csv
 import io
+import math
 from collections.abc import Iterable
+from typing import Any
 
 from alula.reports.sections.section import Section, Series
 
@@ -21,8 +23,14 @@ def as_csv(series: Series) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(series.columns)
-    writer.writerows(series.rows())
+    writer.writerows([_written(cell, series.digits) for cell in row] for row in series.rows())
     return stream.getvalue()
+
+
+def _written(cell: Any, digits: int | None) -> Any:
+    if digits is None or not isinstance(cell, float):
+        return cell
+    return f"{cell:.{digits}g}" if math.isfinite(cell) else ""
 
 
 def files_of(sections: Iterable[Section]) -> dict[str, str]:

@@ -151,13 +151,13 @@ def clearance_text(found: Clearance) -> Text:
 
 
 def _assembly(found: Clearance) -> Any:
-    from alula.reports.outlines.assembly import assembly_drawing
+    from alula.reports.figures.outlines.assembly import assembly_drawing
 
     return assembly_drawing(found)
 
 
 def _contact(found: Clearance) -> Any:
-    from alula.reports.outlines.contact import contact_drawing
+    from alula.reports.figures.outlines.contact import contact_drawing
 
     return contact_drawing(found)
 

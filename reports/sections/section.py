@@ -5,7 +5,7 @@ Console, page, notebook, ``result.json`` and CSV show sections and know no featu
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -133,6 +133,8 @@ class Column:
         True for text, which stands at the left.
     wraps : bool
         True for text of which lines may break.
+    hidden : bool
+        True for one that notebooks alone have.
     """
 
     title: str
@@ -140,6 +142,7 @@ class Column:
     role: str = field(default="", kw_only=True)
     text: bool = field(default=False, kw_only=True)
     wraps: bool = field(default=False, kw_only=True)
+    hidden: bool = field(default=False, kw_only=True)
 
     @property
     def head(self) -> str:
@@ -147,9 +150,9 @@ class Column:
         return f"{self.title} [{self.unit}]" if self.unit else self.title
 
 
-def words(title: str, *, role: str = "", wraps: bool = False) -> Column:
+def words(title: str, *, role: str = "", wraps: bool = False, hidden: bool = False) -> Column:
     """Return a column of text."""
-    return Column(title, text=True, role=role, wraps=wraps)
+    return Column(title, text=True, role=role, wraps=wraps, hidden=hidden)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,6 +206,15 @@ class Table:
         return cls(columns=tuple(columns[i] for i in kept), rows=cells, **more)  # type: ignore[misc, arg-type]
 
     @property
+    def shown(self) -> Self:
+        """The table without the columns that notebooks alone have."""
+        kept = [i for i, column in enumerate(self.columns) if not column.hidden]
+        if len(kept) == len(self.columns):
+            return self
+        rows = tuple(tuple(row[i] for i in kept) for row in self.rows)
+        return replace(self, columns=tuple(self.columns[i] for i in kept), rows=rows)
+
+    @property
     def records(self) -> list[dict[str, str | float | None]]:
         """Rows as plain data for notebooks: of a band value, ``low`` and ``high``; a cell's own unit in ``unit``."""
         return [self._record(row) for row in self.rows]
@@ -247,8 +259,7 @@ class Text:
         With the marks of ``alula.reports.sections.markup``.
     kind : str
         "" for what was found; ``note`` for how it is to be read, which the page alone tells; ``small`` and ``lead`` as
-        they are set on the page; ``apart`` for a warning; ``command`` for a sentence that ends with a command, after a
-        colon, which a console prints on a line of its own.
+        they are set on the page; ``apart`` for a warning.
     numbers : tuple of Number
         Those that stand in it.
     """
@@ -377,7 +388,22 @@ class Group:
     remark: str = ""
 
 
-Part = Text | Items | Table | Picture | Folded | Beside | Group
+@dataclass(frozen=True)
+class Command:
+    """A command that a reader may run: on a line of its own, which a shell takes as it is copied.
+
+    Attributes
+    ----------
+    text : str
+        What it is for.
+    command : str
+    """
+
+    text: str
+    command: str
+
+
+Part = Text | Items | Table | Picture | Folded | Beside | Group | Command
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -390,10 +416,36 @@ class Series:
         Its name.
     columns : mapping of str to array, shape (n,)
         Title with unit -> values.
+    digits : int or None
+        Significant ones, with nothing in place of what is unknown or unbounded; None for numbers in full.
     """
 
     file: str
     columns: Mapping[str, ArrayLike]
+    digits: int | None = None
+
+    @classmethod
+    def below(cls, file: str, cases: Mapping[str, Mapping[str, ArrayLike]], digits: int = 12) -> Self:
+        """Return the series of several load cases below one another, in the first column their names.
+
+        Parameters
+        ----------
+        file : str
+        cases : mapping of str to mapping of str to array, shape (n,)
+            Load case -> title with unit -> values; a column that one lacks is empty there.
+        digits : int, optional
+            As of the class.
+
+        Returns
+        -------
+        Series
+        """
+        counts = {name: len(np.asarray(next(iter(columns.values())))) for name, columns in cases.items()}
+        found: dict[str, ArrayLike] = {"load case": [name for name, count in counts.items() for _ in range(count)]}
+        for title in dict.fromkeys(title for columns in cases.values() for title in columns):
+            every = [columns.get(title, np.full(counts[name], np.nan)) for name, columns in cases.items()]
+            found[title] = np.concatenate([np.asarray(values) for values in every])
+        return cls(file=file, columns=found, digits=digits)
 
     def rows(self) -> Iterator[tuple[Any, ...]]:
         """Yield one tuple for each value of the columns."""

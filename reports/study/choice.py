@@ -64,15 +64,15 @@ def picture_sections(study: StudyColumns) -> Iterator[Section]:
         yield Section(key="not-drawn", title="Not drawn", parts=tuple(Text(note, "note") for note in notes))
 
 
-def _shown(name: str, title: str, caption: str, draw: Callable[[], bytes], *above: Part) -> Section:
+def _shown(name: str, title: str, caption: str, draw: Callable[[], Any], *above: Part) -> Section:
     picture = Picture(name=name, alt=title, caption=caption, draw=draw)
     return Section(key=name, title=title, short=title, parts=(*above, picture))
 
 
-def _later(figure: str, *args: Any, **options: Any) -> Callable[[], bytes]:
+def _later(figure: str, *args: Any, **options: Any) -> Callable[[], Any]:
     """Return what draws a picture when it is wanted: what draws is imported then."""
 
-    def draw() -> bytes:
+    def draw() -> Any:
         from alula.reports.figures.study import curves, many, maps, spread, style
 
         drawing: dict[str, Callable[..., Any]] = {
@@ -84,7 +84,7 @@ def _later(figure: str, *args: Any, **options: Any) -> Callable[[], bytes]:
             "histogram": spread.histogram,
             "tornado": spread.tornado,
         }
-        return style.png(drawing[figure](*args, **options))
+        return style.chart(drawing[figure](*args, **options))
 
     return draw
 

@@ -54,8 +54,8 @@ def write_study(folder: Path, output: Path, wanted: Sequence[str] = ()) -> Path:
     def fill(target: Path) -> None:
         (target / PAGE).write_text(as_page(page, drawn), encoding="utf-8")
         (target / FOLDER).mkdir()
-        for name, png in drawn.items():
-            (target / FOLDER / f"{name}.png").write_bytes(png)
+        for name, picture in drawn.items():
+            (target / FOLDER / f"{name}.png").write_bytes(picture.png())
 
     write_folder(output, COMMAND, fill)
     return output / COMMAND / PAGE

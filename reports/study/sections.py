@@ -12,7 +12,7 @@ import numpy as np
 from alula.loads.case.case_file import built_in_cases
 from alula.reports.figures.study.points import OUTCOMES, Parameter
 from alula.reports.sections.markup import bold, code, entry
-from alula.reports.sections.section import Cell, Column, Items, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Cell, Column, Command, Items, Mark, Number, Part, Section, Table, Text, say, words
 from alula.reports.study.choice import picture_sections
 from alula.reports.study.columns import StudyColumns
 from alula.reports.study.rows import Row, checked, title
@@ -195,7 +195,7 @@ def _points(study: StudyColumns) -> tuple[Part, ...]:
         all_rows, file = (code(f"alula study show FOLDER {option}") for option in (f"--most {count}", "--csv FILE"))
         found.append(Text(f"{more} more points: {all_rows}; {file} writes every number of them with its band."))
     if command := _command(study):
-        found.append(Text(f"The report of the best point: {code(command)}", "command"))
+        found.append(Command("The report of the best point:", command))
     return tuple(found)
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.sizing.changes import changes
-from alula.reports.words.changes import change_sentences, change_title, size_command
+from alula.reports.check.changes import change_sentences, change_title, size_command
 
 
 def data(value: Any) -> Any:
@@ -79,6 +78,7 @@ def change_records(result: CheckResult) -> list[dict[str, Any]]:
     Parameters
     ----------
     result : CheckResult
+        With what ``alula.fea.findings.of_check`` finds besides.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def change_records(result: CheckResult) -> list[dict[str, Any]]:
             "sentences": change_sentences(change, result),
             "command": size_command(change, result) or None,
         }
-        for change in changes(result)
+        for change in result.changes
     ]
 
 

@@ -1,4 +1,4 @@
-"""The curve of an envelope: safety factor of every link over the drive angle (matplotlib, PNG)."""
+"""The curve of an envelope: safety factor of every link over the drive angle."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from alula.fea.common.verdict import Quantity, Subject
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from alula.reports.figures.motion.motion_figures import COLOURS, DASHES
-from alula.reports.figures.sheet.style import GROUND, INK, STYLE, WIDTH, as_png, quiet_glyphs
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.chart import Chart
+from alula.reports.figures.sheet.style import GROUND, INK, STYLE, WIDTH, quiet_glyphs
 from alula.reports.words.numbers import number, plain
 
 Real = NDArray[np.float64]
@@ -23,7 +25,7 @@ _PANEL = 2.1
 """Height of a panel [inches]."""
 
 
-def envelope_figure(result: EnvelopeResult) -> bytes:
+def envelope_figure(result: EnvelopeResult) -> Chart:
     """Draw a panel per link: safety factor of each load case, band, least value and limit.
 
     Parameters
@@ -32,8 +34,7 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
 
     Returns
     -------
-    bytes
-        A PNG.
+    Chart
     """
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -73,10 +74,10 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
         )
         for text in legend.get_texts():
             text.set_parse_math(False)
-        return as_png(figure)
+        return Chart(figure, style=STYLE)
 
 
-def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[str, bytes], tuple[str, ...]]:
+def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[str, Canvas], tuple[str, ...]]:
     """Draw the stress of links at their worst poses.
 
     Parameters
@@ -88,7 +89,7 @@ def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[
     Returns
     -------
     tuple
-        Link -> PNG, and warnings.
+        Link -> Canvas, and warnings.
     """
     from alula.reports.figures.figures import plots_of
     from alula.reports.figures.scene import scene_from

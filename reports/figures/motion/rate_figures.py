@@ -1,14 +1,13 @@
-"""All figures of a motion as files; those of speeds, accelerations, energy and shaking are drawn here."""
+"""All figures of a motion; those of speeds, accelerations, energy and shaking are drawn here."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.loose_motion import loose_motion
 from alula.reports.figures.motion.air_figures import air_figures
 from alula.reports.figures.motion.motion_figures import (
     COLOURS,
@@ -21,7 +20,7 @@ from alula.reports.figures.motion.motion_figures import (
     paths_figure,
     torque_figure,
 )  # fmt: skip
-from alula.reports.figures.sheet.style import quiet_glyphs
+from alula.reports.figures.sheet.chart import Chart
 from alula.reports.motion.rate_rows import told_speed
 from alula.reports.motion.rates import QUANTITIES, Series, Values, series
 
@@ -29,35 +28,29 @@ _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
-def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
-    """Draw all figures of a motion as PNG files.
+def motion_pictures(found: MotionFindings) -> dict[str, Chart]:
+    """Draw all figures of a motion.
 
     Parameters
     ----------
-    result : CaseMotion
-    folder : Path
-        Folder to write into.
+    found : MotionFindings
 
     Returns
     -------
-    list of Path
-        The files.
+    dict of str to Chart
+        By the name of the file, without its ending.
     """
+    result = found.moved
     figures = {
         "link-angles": angles_figure(result),
-        "paths": paths_figure(result.motion, loose_motion(result)),
-        "torque": torque_figure(result),
+        "paths": paths_figure(result.motion, found.play),
+        "torque": torque_figure(result, found.play),
     }
     for i, load_case in enumerate(result.forces):
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
-    figures |= air_figures(result) | rate_figures(result)
-    paths = []
-    with quiet_glyphs():
-        for name, figure in figures.items():
-            paths.append(folder / f"{name}.png")
-            figure.savefig(paths[-1], dpi=DPI)
-    return paths
+    figures |= air_figures(found.air) | rate_figures(result)
+    return {name: Chart(figure, dpi=DPI) for name, figure in figures.items()}
 
 
 def rate_figures(result: CaseMotion) -> dict[str, Figure]:

@@ -1,4 +1,4 @@
-"""The links in their layers, seen from above and from the side, as PNG."""
+"""The links in their layers, seen from above and from the side."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -31,22 +31,6 @@ _RIGHT, _ABOVE, _BELOW, _LETTERS, _ROW = 16.0, 18.0, 40.0, 8.5, 13.0
 _MARGIN = 0.04
 """Room about the outlines over the size of what is drawn."""
 _STRETCHES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-
-
-def assembly_drawing(found: Clearance) -> bytes:
-    """Draw the links and pins in the stated pose: from above to scale, and from the side with their heights.
-
-    Parameters
-    ----------
-    found : Clearance
-        Whose outlines are drawn.
-
-    Returns
-    -------
-    bytes
-        A PNG.
-    """
-    return assembly_sheet(found).png()
 
 
 class Placed:
@@ -195,8 +179,8 @@ def layer_colours(case: Case) -> dict[str, str]:
     return {link: LAYERS[every.index(z) % len(LAYERS)] for link, z in case.heights.items()}
 
 
-def assembly_sheet(found: Clearance) -> Canvas:
-    """Return the sheet of ``assembly_drawing``.
+def assembly_drawing(found: Clearance) -> Canvas:
+    """Draw the links and pins in the stated pose: from above to scale, and from the side with their heights.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The box about a linkage over its motion, from above and from the side, as PNG."""
+"""The box about a linkage over its motion, from above and from the side."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -28,7 +28,7 @@ _PAD = (14.0, 24.0, 30.0, 14.0)
 _STRETCHES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 
-def box_drawing(found: Extent, limits: Sequence[float] = ()) -> bytes:
+def box_drawing(found: Extent, limits: Sequence[float] = ()) -> Canvas:
     """Draw the outlines at poses of the motion, with the box about all of them and its lengths.
 
     Parameters
@@ -36,23 +36,6 @@ def box_drawing(found: Extent, limits: Sequence[float] = ()) -> bytes:
     found : Extent
     limits : sequence of float, optional
         Greatest lengths along x, y and z, of a check [mm].
-
-    Returns
-    -------
-    bytes
-        A PNG.
-    """
-    return box_sheet(found, limits).png()
-
-
-def box_sheet(found: Extent, limits: Sequence[float] = ()) -> Canvas:
-    """Return the sheet of ``box_drawing``.
-
-    Parameters
-    ----------
-    found : Extent
-    limits : sequence of float, optional
-        As of ``box_drawing``.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Two outlines of links in layers where they touch first, or come nearest, as PNG."""
+"""Two outlines of links in layers where they touch first, or come nearest."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from alula.geometry.clearance.least import Gap
 from alula.loads.states.clearance import Clearance
 from alula.reports.figures.outlines.assembly import FILL, LAYERS, Placed, border, dark, draw
-from alula.reports.figures.sheet.canvas import Canvas, extent, faint
+from alula.reports.figures.sheet.canvas import Canvas, faint
 from alula.reports.figures.sheet.labels import place_labels
+from alula.reports.figures.sheet.letters import extent
 from alula.reports.figures.sheet.plot import Axes, ticks, widest
 from alula.reports.figures.sheet.style import JOINT_FORCE, WIDTH
 from alula.reports.words.numbers import number
@@ -23,24 +24,8 @@ _MARGIN, _CLOSE = 0.04, 0.1
 """Room about the outlines, and half the width of a close-up, over the size of what is drawn."""
 
 
-def contact_drawing(found: Clearance) -> bytes:
+def contact_drawing(found: Clearance) -> Canvas:
     """Draw the two outlines that touch first, or come nearest, at that pose, with a close-up.
-
-    Parameters
-    ----------
-    found : Clearance
-        With a gap at least.
-
-    Returns
-    -------
-    bytes
-        A PNG.
-    """
-    return contact_sheet(found).png()
-
-
-def contact_sheet(found: Clearance) -> Canvas:
-    """Return the sheet of ``contact_drawing``.
 
     Parameters
     ----------

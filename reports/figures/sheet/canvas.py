@@ -1,32 +1,22 @@
-"""A sheet of lines, areas, pictures and text, and the sheet as PNG.
+"""A sheet of lines, areas, pictures and text, which is asked for as PNG or as SVG.
 
 Pillow draws it, at a tenth of matplotlib's processor time for the pictures of a report. Places are in points
 (1/72 inch) from the upper left corner, x to the right, y down. What is drawn stays listed until it is asked for as PNG;
 later lines and areas cover earlier ones, and text covers all.
 """
 
-import io
-from functools import cache
-from importlib.util import find_spec
-from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from alula.reports.figures.sheet.marks import Area, Box, Raster, Stroke, Text
-from alula.reports.figures.sheet.style import DPI, INK
+from alula.reports.figures.sheet.drawing import Plotted
+from alula.reports.figures.sheet.letters import SHARES, SIZE, extent
+from alula.reports.figures.sheet.marks import Area, Box, Mark, Raster, Stroke, Text
+from alula.reports.figures.sheet.style import INK
+from alula.reports.figures.sheet.svg import as_svg
 
 Real = NDArray[np.float64]
-
-SIZE = 9.0
-"""Of letters [points]."""
-_FINE = 2
-"""Lines and areas are drawn this much larger and averaged, which makes their edges smooth."""
-_SHARES = {"left": 0.0, "center": 0.5, "right": 1.0, "top": 0.0, "middle": 0.5, "bottom": 1.0}
-_LINE, _RISE = 1.2, 0.77
-"""Height from line to line of a text, and from its top to the base of its first line, in sizes of its letters."""
 
 
 class Canvas:
@@ -40,12 +30,15 @@ class Canvas:
         [points].
     marks : list of Stroke, Area or Raster
     texts : list of Text
+    plotted : list of Plotted
+        Its curves, in the units of their axes.
     """
 
     def __init__(self, width: float, height: float) -> None:
         self.width, self.height = width, height
-        self.marks: list[Stroke | Area | Raster] = []
+        self.marks: list[Mark] = []
         self.texts: list[Text] = []
+        self.plotted: list[Plotted] = []
 
     def line(
         self, points: ArrayLike, colour: str, width: float = 1.0, dashes: tuple[float, float] | None = None
@@ -94,7 +87,8 @@ class Canvas:
         width : float
             Of the line [points].
         """
-        self.line(_circle(at, radius), colour, width)
+        points, circle = _circle(at, radius)
+        self.marks.append(Stroke(points=points, colour=colour, width=width, dashes=None, circle=circle))
 
     def disc(self, at: ArrayLike, radius: float, colour: str, edge: str | None = None, width: float = 1.0) -> None:
         """Fill a circle.
@@ -111,7 +105,8 @@ class Canvas:
         width : float, optional
             Of that line [points].
         """
-        self.area(_circle(at, radius), colour)
+        points, circle = _circle(at, radius)
+        self.marks.append(Area(points=points, colour=colour, circle=circle))
         if edge is not None:
             self.ring(at, radius, edge, width)
 
@@ -187,7 +182,7 @@ class Canvas:
         if turned:
             wide, tall = tall, wide
         x, y = np.asarray(at, dtype=np.float64)
-        left, top = x - wide * _SHARES[side], y - tall * _SHARES[level]
+        left, top = x - wide * SHARES[side], y - tall * SHARES[level]
         box = (float(left), float(top), float(left + wide), float(top + tall))
         written = Text(text=text, box=box, colour=colour, size=size, bold=bold, side=side, halo=halo, turned=turned)
         self.texts.append(written)
@@ -200,19 +195,26 @@ class Canvas:
         -------
         bytes
         """
-        from PIL import Image, ImageDraw
+        from alula.reports.figures.sheet.pixels import as_pixels
 
-        wide, tall = (round(length * DPI / 72.0) for length in (self.width, self.height))
-        fine = Image.new("RGB", (wide * _FINE, tall * _FINE), "white")
-        draw = ImageDraw.Draw(fine)
-        for mark in self.marks:
-            _mark(fine, draw, mark)
-        sheet = fine.reduce(_FINE)
-        for text in self.texts:
-            _write(sheet, text)
-        stream = io.BytesIO()
-        sheet.save(stream, format="PNG", dpi=(DPI, DPI))
-        return stream.getvalue()
+        return as_pixels(self.width, self.height, self.marks, self.texts)
+
+    def svg(self, alt: str = "") -> str:
+        """Return the sheet as SVG, an element of a page.
+
+        Parameters
+        ----------
+        alt : str, optional
+            What it shows, for who does not see it.
+
+        Returns
+        -------
+        str
+        """
+        return as_svg(self.width, self.height, self.marks, self.texts, alt)
+
+    element = svg
+    """Of a page."""
 
 
 def faint(colour: str, share: float) -> str:
@@ -233,94 +235,8 @@ def faint(colour: str, share: float) -> str:
     return "#" + "".join(f"{round(255 + share * (part - 255)):02x}" for part in parts)
 
 
-def extent(text: str, size: float = SIZE, *, bold: bool = False) -> tuple[float, float]:
-    """Return width and height of a text.
-
-    Parameters
-    ----------
-    text : str
-    size : float, optional
-        Of its letters [points].
-    bold : bool, optional
-
-    Returns
-    -------
-    tuple of 2 float
-        [points].
-    """
-    lines = text.split("\n")
-    pixels = max(_font(size, bold).getlength(line) for line in lines)
-    return float(pixels) * 72.0 / DPI, size * (1.0 + _LINE * (len(lines) - 1))
-
-
-@cache
-def _font(size: float, bold: bool) -> Any:
-    """Return a font that comes with matplotlib, which need not be imported for it."""
-    from PIL import ImageFont
-
-    home = find_spec("matplotlib")
-    assert home is not None
-    assert home.origin is not None
-    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
-    path = Path(home.origin).parent / "mpl-data" / "fonts" / "ttf" / name
-    return ImageFont.truetype(str(path), size * DPI / 72.0, layout_engine=ImageFont.Layout.BASIC)
-
-
-def _circle(at: ArrayLike, radius: float) -> Real:
+def _circle(at: ArrayLike, radius: float) -> tuple[Real, tuple[float, float, float]]:
+    """Return points on a circle, and the circle."""
     turn = 2.0 * np.pi * np.arange(50) / 48  # beyond the whole, so that its ends meet
-    return np.asarray(at) + radius * np.column_stack([np.cos(turn), np.sin(turn)])
-
-
-def _mark(image: Any, draw: Any, mark: Stroke | Area | Raster) -> None:
-    scale = _FINE * DPI / 72.0
-    if isinstance(mark, Raster):
-        from PIL import Image
-
-        # On whole pixels of the sheet, so that a picture of that size stays as it is.
-        left, top, right, bottom = mark.box
-        left, top, wide, tall = (round(length * DPI / 72.0) for length in (left, top, right - left, bottom - top))
-        wide, tall = max(wide, 1), max(tall, 1)
-        sized = Image.fromarray(mark.pixels).resize((wide, tall), Image.Resampling.LANCZOS)
-        image.paste(sized.resize((_FINE * wide, _FINE * tall), Image.Resampling.NEAREST), (_FINE * left, _FINE * top))
-        return
-    at = mark.points * scale
-    if isinstance(mark, Area):
-        draw.polygon(at.ravel().tolist(), fill=mark.colour)
-        return
-    width = max(1, round(mark.width * scale))
-    for piece in [at] if mark.dashes is None else _dashed(at, *(length * scale for length in mark.dashes)):
-        draw.line(piece.ravel().tolist(), fill=mark.colour, width=width, joint="curve")
-
-
-def _dashed(points: Real, dash: float, gap: float) -> list[Real]:
-    """Return the dashes of the straight pieces of a line."""
-    found: list[Real] = []
-    for a, b in pairwise(points):
-        length = float(np.linalg.norm(b - a))
-        starts = np.arange(0.0, length, dash + gap)
-        found += [a + np.outer([start, min(start + dash, length)], (b - a) / length) for start in starts]
-    return found
-
-
-def _write(sheet: Any, text: Text) -> None:
-    from PIL import Image, ImageDraw
-
-    scale, font = DPI / 72.0, _font(text.size, text.bold)
-    left, top, right, bottom = (side * scale for side in text.box)
-    along = _SHARES[text.side]
-    rows = [(line, text.size * scale * (_RISE + _LINE * k)) for k, line in enumerate(text.text.split("\n"))]
-    if text.turned:
-        wide, tall = round(bottom - top), round(right - left)
-        mask = Image.new("L", (wide, tall + round(0.3 * text.size * scale)))
-        turned = ImageDraw.Draw(mask)
-        for line, base in rows:
-            turned.text((wide / 2.0, base), line, fill=255, font=font, anchor="ms")
-        sheet.paste(text.colour, (round(left), round(top)), mask.transpose(Image.Transpose.ROTATE_90))
-        return
-    draw = ImageDraw.Draw(sheet)
-    anchor = {"left": "ls", "center": "ms", "right": "rs"}[text.side]
-    for rim in (True, False) if text.halo > 0.0 else (False,):
-        for line, base in rows:
-            more = {"stroke_width": text.halo * scale / 2.0, "fill": "white", "stroke_fill": "white"} if rim else {}
-            draw.text((left + along * (right - left), top + base), line,
-                      **({"fill": text.colour, "font": font, "anchor": anchor} | more))  # fmt: skip
+    x, y = np.asarray(at, dtype=np.float64)
+    return np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn)]), (float(x), float(y), float(radius))

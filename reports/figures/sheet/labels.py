@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.reports.figures.sheet.canvas import Canvas, extent, faint
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.letters import extent
 
 Real = NDArray[np.float64]
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.reports.figures.sheet.letters import LINE, RISE, SHARES, extent
+
 Real = NDArray[np.float64]
 Box = tuple[float, float, float, float]
 """Left, top, right, bottom [points]."""
@@ -23,12 +25,15 @@ class Stroke:
         [points].
     dashes : tuple of 2 float or None
         Lengths of dash and gap [points]; None for a whole line.
+    circle : tuple of 3 float or None
+        x, y and radius of the circle that the points are on [points]; None for any other line.
     """
 
     points: Real
     colour: str
     width: float
     dashes: tuple[float, float] | None
+    circle: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,10 +45,13 @@ class Area:
     points : ndarray, shape (n, 2)
         [points].
     colour : str
+    circle : tuple of 3 float or None
+        As of a line.
     """
 
     points: Real
     colour: str
+    circle: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,6 +68,9 @@ class Raster:
 
     pixels: NDArray[np.uint8]
     box: Box
+
+
+Mark = Stroke | Area | Raster
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,3 +102,21 @@ class Text:
     side: str
     halo: float
     turned: bool
+
+    def lines(self) -> list[tuple[str, tuple[float, float], float]]:
+        """Return its lines, from the first.
+
+        Returns
+        -------
+        list of tuple
+            The line, where its anchor is on its base, and its width [points]; the anchor of a text that runs upwards
+            is its middle.
+        """
+        left, top, right, bottom = self.box
+        found = []
+        for k, line in enumerate(self.text.split("\n")):
+            base = self.size * (RISE + LINE * k)
+            at = (left + base, (top + bottom) / 2.0) if self.turned else (
+                left + SHARES[self.side] * (right - left), top + base)  # fmt: skip
+            found.append((line, at, extent(line, self.size, bold=self.bold)[0]))
+        return found

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from alula.reports.figures.sheet.canvas import Canvas, extent
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.drawing import Plotted
+from alula.reports.figures.sheet.letters import extent
 from alula.reports.figures.sheet.style import GRID, GROUND, INK
 
 Real = NDArray[np.float64]
@@ -54,6 +56,55 @@ class Axes:
         x = left + (values[..., 0] - self.x[0]) / (self.x[1] - self.x[0]) * (right - left)
         y = bottom + (values[..., 1] - self.y[0]) / (self.y[1] - self.y[0]) * (top - bottom)
         return np.stack([x, y], axis=-1)
+
+    def curve(
+        self,
+        sheet: Canvas,
+        x: Real,
+        y: Real,
+        colour: str,
+        width: float,
+        *,
+        name: str,
+        labels: tuple[str, str],
+        dashes: tuple[float, float] | None = None,
+    ) -> None:
+        """Draw a curve, of which the sheet can tell what it shows.
+
+        Parameters
+        ----------
+        sheet : Canvas
+        x, y : array, shape (n,)
+        colour : str
+        width : float
+            Of the line [points].
+        name : str
+        labels : tuple of 2 str
+            Of the axes.
+        dashes : tuple of 2 float, optional
+            As of ``Canvas.line``.
+        """
+        points = self.at(np.column_stack([x, y]))
+        sheet.line(points, colour, width, dashes)
+        shown = self.values(points)
+        sheet.plotted.append(Plotted(name=name, x=shown[:, 0], y=shown[:, 1], x_label=labels[0], y_label=labels[1]))
+
+    def values(self, points: Real) -> Real:
+        """Return the values that places on the sheet stand for.
+
+        Parameters
+        ----------
+        points : array, shape (n, 2)
+            [points].
+
+        Returns
+        -------
+        array, shape (n, 2)
+        """
+        left, top, right, bottom = self.box
+        share = (points - (left, bottom)) / (right - left, top - bottom)
+        low, high = np.array([self.x, self.y]).T
+        return np.asarray(low + share * (high - low), dtype=np.float64)
 
     def scale_x(self, sheet: Canvas, label: str, *, most: int = 9, grid: bool = False) -> None:
         """Draw ticks, numbers and label below the rectangle.

@@ -1,10 +1,8 @@
-"""Colours, letters and size that all pictures share, and a matplotlib figure as PNG."""
+"""Colours, letters and size that all pictures share."""
 
-import io
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 INK = "#1c2733"
 LINK = "#9fb1c1"
@@ -28,22 +26,6 @@ STYLE = {
     "axes.linewidth": 0.6,
 }
 """Of what matplotlib draws."""
-
-
-def as_png(figure: Any) -> bytes:
-    """Return a matplotlib figure as PNG, without a date, so that equal drawings are equal bytes.
-
-    Parameters
-    ----------
-    figure : object
-
-    Returns
-    -------
-    bytes
-    """
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """What all pictures of studies share: colour and mark of an outcome, scales, legends."""
 
 import functools
-import io
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -12,7 +11,8 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.reports.figures.sheet.style import DPI, GROUND, INK, LOAD, STYLE, as_png, quiet_glyphs
+from alula.reports.figures.sheet.chart import Chart
+from alula.reports.figures.sheet.style import GROUND, INK, LOAD, STYLE
 from alula.reports.figures.study.points import OUTCOMES
 from alula.reports.words.numbers import number
 
@@ -78,8 +78,8 @@ def styled(draw: Callable[_Given, Figure]) -> Callable[_Given, Figure]:
     return inner
 
 
-def png(figure: Figure) -> bytes:
-    """Return a figure as PNG of 256 colours, a third of the bytes.
+def chart(figure: Figure) -> Chart:
+    """Return a figure as a picture, with the letters and lines of all pictures.
 
     Parameters
     ----------
@@ -87,18 +87,9 @@ def png(figure: Figure) -> bytes:
 
     Returns
     -------
-    bytes
+    Chart
     """
-    from PIL import Image
-
-    with rc_context(_STYLE), quiet_glyphs():
-        drawn = as_png(figure)
-    stream = io.BytesIO()
-    picture = Image.open(io.BytesIO(drawn)).convert("RGB")
-    picture.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-        stream, format="PNG", optimize=True, dpi=(DPI, DPI)
-    )
-    return stream.getvalue()
+    return Chart(figure, few=True, style=_STYLE)
 
 
 def present(outcome: Words) -> list[str]:

@@ -6,14 +6,15 @@ import re
 import numpy as np
 
 from alula.fea.tolerance.result import ToleranceNumber, ToleranceResult
+from alula.reports.figures.sheet.chart import Chart
 from alula.reports.figures.study.spread import histogram, tornado
-from alula.reports.figures.study.style import png
+from alula.reports.figures.study.style import chart
 
 MOST = 6
 """Numbers that are drawn: those that come nearest to their limits."""
 
 
-def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
+def tolerance_pictures(result: ToleranceResult) -> dict[str, Chart]:
     """Draw the numbers of a case under its tolerances.
 
     Parameters
@@ -22,21 +23,21 @@ def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
 
     Returns
     -------
-    dict of str to bytes
-        Name of the file -> PNG: a histogram of each number that comes nearest to its limit and of the drive torque,
+    dict of str to Chart
+        By the name of the file: a histogram of each number that comes nearest to its limit and of the drive torque,
         with the indices of its tolerances where they are known.
     """
     asked = [one for one in result.numbers if one.certain is not None and not math.isnan(one.closeness)]
     nearest = sorted(asked, key=lambda one: -one.closeness)[:MOST]
     drawn = [*nearest, *(one for one in result.numbers if one.certain is None)]
-    found: dict[str, bytes] = {}
+    found: dict[str, Chart] = {}
     for one in drawn:
         name = _file_name(one)
         found[f"spread-{name}.png"] = spread_picture(one)
         if np.isfinite(one.total).any() and len(result.tolerances) > 1:
             label = f"Sobol' index of the {one.title}"
             texts = "by itself", "in all"
-            found[f"causes-{name}.png"] = png(
+            found[f"causes-{name}.png"] = chart(
                 tornado(
                     result.tolerances, one.first, one.total, label=label, texts=texts, unsigned=[True] * len(one.total)
                 )
@@ -44,7 +45,7 @@ def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
     return found
 
 
-def spread_picture(one: ToleranceNumber) -> bytes:
+def spread_picture(one: ToleranceNumber) -> Chart:
     """Draw how a number spreads over the samples.
 
     Parameters
@@ -53,11 +54,11 @@ def spread_picture(one: ToleranceNumber) -> bytes:
 
     Returns
     -------
-    bytes
-        A PNG: a histogram, with the limit and the verdicts where something is asked of the number.
+    Chart
+        A histogram, with the limit and the verdicts where something is asked of the number.
     """
     outcome = None if one.certain is None else _outcomes(one)
-    return png(
+    return chart(
         histogram(one.values, one.limit, label=_title(one), outcome=outcome, at_least=one.at_least, counted="samples")
     )
 

@@ -1,4 +1,4 @@
-"""Natural frequencies over the motion, and over the speed of the drive (Campbell's diagram), as PNG.
+"""Natural frequencies over the motion, and over the speed of the drive (Campbell's diagram).
 
 W. Campbell, The Protection of Steam-Turbine Disk Wheels from Axial Vibration, Transactions of the ASME 46 (1924).
 """
@@ -21,6 +21,7 @@ COLOURS = ("#0067a8", "#00795a", "#7a4fa3", "#8a5200")
 """Of the natural frequencies, from the lowest up; they begin anew after the last."""
 _HEIGHT, _ABOVE, _BELOW, _RIGHT, _LETTERS = 230.0, 20.0, 88.0, 26.0, 8.5
 """Of the panels, the room about them and the size of letters [points]."""
+_SPEED, _FREQUENCY = "speed of the drive [rpm]", "frequency [Hz]"
 UPPER_ENDS = "Bands that go down to 0 are not filled: thin lines are their upper ends"
 NO_BANDS = "Frequencies without a band are lines alone"
 _SHORT = 3.0
@@ -33,7 +34,7 @@ _FAR = 4.0
 """Natural frequencies that begin above so many times the least one and the driving frequency are not drawn."""
 
 
-def campbell_diagram(history: FrequencyHistory, *, coordinate: str, unit: str, load_case: str) -> bytes:
+def campbell_diagram(history: FrequencyHistory, *, coordinate: str, unit: str, load_case: str) -> Canvas:
     """Draw natural frequencies over the motion with the harmonics of the drive, and over the speed of the drive.
 
     Parameters
@@ -46,22 +47,6 @@ def campbell_diagram(history: FrequencyHistory, *, coordinate: str, unit: str, l
         In which its values are told.
     load_case : str
         Its name.
-
-    Returns
-    -------
-    bytes
-        A PNG.
-    """
-    return campbell_sheet(history, coordinate=coordinate, unit=unit, load_case=load_case).png()
-
-
-def campbell_sheet(history: FrequencyHistory, *, coordinate: str, unit: str, load_case: str) -> Canvas:
-    """Return the sheet of ``campbell_diagram``.
-
-    Parameters
-    ----------
-    history, coordinate, unit, load_case
-        As of that.
 
     Returns
     -------
@@ -136,17 +121,21 @@ def _over_motion(sheet: Canvas, axes: Axes, history: FrequencyHistory, at: Real,
     for k in reversed(np.flatnonzero(filled[:shown])):
         edge = np.vstack([np.column_stack([x, low[:, k]]), np.column_stack([x, high[:, k]])[::-1]])
         sheet.area(axes.at(edge), faint(_colour(k), 0.28))
-    for _, level in _drawn(_levels(history, axes), axes):
-        sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), GROUND, 0.6, dashes=(4.0, 2.5))
+    for harmonic, level in _drawn(_levels(history, axes), axes):
+        ends, name = np.array(axes.x), f"{harmonic}×"
+        axes.curve(
+            sheet, ends, np.full(2, level), GROUND, 0.6, name=name, labels=(label, _FREQUENCY), dashes=(4.0, 2.5)
+        )
     for k in range(shown):
         for curve, width, there in ((low, 0.5, filled[k]), (high, 0.5, True), (value, 1.5, True)):
             if there and np.isfinite(curve[:, k]).all():
-                sheet.line(axes.at(np.column_stack([x, curve[:, k]])), _colour(k), width)
+                name = ordinal(k + 1) + ("" if curve is value else ", band")
+                axes.curve(sheet, x, curve[:, k], _colour(k), width, name=name, labels=(label, _FREQUENCY))
     _mark(sheet, axes, history, shown, at)
     axes.frame(sheet)
     if moves:
         axes.scale_x(sheet, label, most=6)
-    axes.scale_y(sheet, "frequency [Hz]", label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
+    axes.scale_y(sheet, _FREQUENCY, label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
     _name_harmonics(sheet, axes, _levels(history, axes))
 
 
@@ -203,26 +192,28 @@ def _over_speed(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int
         corners = [(x, y) for x, y in zip((*axes.x, *axes.x[::-1]), (low[k], low[k], high[k], high[k]), strict=True)]
         sheet.area(axes.at(corners), faint(_colour(k), 0.28))
         for level, width in ((low[k], 0.8), (high[k], 0.8), (upper[k], 0.5)):
-            sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), _colour(k), width)
+            ends, name = np.array(axes.x), f"{ordinal(k + 1)}, band"
+            axes.curve(sheet, ends, np.full(2, level), _colour(k), width, name=name, labels=(_SPEED, _FREQUENCY))
     drawn = {harmonic for harmonic, _ in _drawn(_rays(axes), axes)}
     for harmonic in range(1, HIGHEST + 1):
         rise = harmonic / 60.0
         end = min(axes.x[1], axes.y[1] / rise)
         if harmonic in drawn:
-            sheet.line(axes.at([(0.0, 0.0), (end, rise * end)]), GROUND, 0.6, dashes=(4.0, 2.5))
+            ray, labels = np.array([0.0, end]), (_SPEED, _FREQUENCY)
+            axes.curve(sheet, ray, rise * ray, GROUND, 0.6, name=f"{harmonic}×", labels=labels, dashes=(4.0, 2.5))
         for k in (k for k in range(shown) if filled[k]):
             first, last = low[k] / rise, min(high[k] / rise, end)
             if first <= last:
-                ray = axes.at([(first, rise * first), (last, rise * last)])
-                sheet.line(ray, JOINT_FORCE, 2.0)
+                sheet.line(axes.at([(first, rise * first), (last, rise * last)]), JOINT_FORCE, 2.0)
     stated = 60.0 * history.driving
-    sheet.line(axes.at([(stated, 0.0), (stated, axes.y[1])]), INK, 1.2)
+    upright, name = np.array([0.0, axes.y[1]]), "stated speed"
+    axes.curve(sheet, np.full(2, stated), upright, INK, 1.2, name=name, labels=(_SPEED, _FREQUENCY))
     for _, level in _levels(history, axes):
         if np.any(filled & (low <= level) & (level <= high)):
             sheet.ring(axes.at([stated, level]), 3.6, JOINT_FORCE, 1.3)
     axes.frame(sheet)
-    axes.scale_x(sheet, "speed of the drive [rpm]", most=5)
-    axes.scale_y(sheet, "frequency [Hz]", label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
+    axes.scale_x(sheet, _SPEED, most=5)
+    axes.scale_y(sheet, _FREQUENCY, label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
     _name_rays(sheet, axes)
 
 

@@ -2,6 +2,7 @@
 
 from alula.fea.vibration.frequency_outcomes import deciding_load_case, unit
 from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.vibration.campbell import campbell_diagram
 from alula.reports.figures.vibration.shapes import shapes_drawing
 
@@ -34,7 +35,7 @@ def campbell_name(load_case: str) -> str:
     return f"campbell-{load_case}"
 
 
-def frequency_pictures(found: CaseFrequencies | None, *, every: bool = False) -> dict[str, bytes]:
+def frequency_pictures(found: CaseFrequencies | None, *, every: bool = False) -> dict[str, Canvas]:
     """Draw shapes and diagram of the load case that decides, or of every one.
 
     Parameters
@@ -44,12 +45,12 @@ def frequency_pictures(found: CaseFrequencies | None, *, every: bool = False) ->
 
     Returns
     -------
-    dict of str to bytes
-        Name -> PNG; nothing where frequencies were not computed.
+    dict of str to Canvas
+        By name; nothing where frequencies were not computed.
     """
     if found is None:
         return {}
-    case, drawn = found.case, dict[str, bytes]()
+    case, drawn = found.case, dict[str, Canvas]()
     for name in found.histories if every else [deciding_load_case(found)]:
         history = found.histories[name]
         coordinate = "pose" if case.motion is None else case.motion_coordinate

@@ -1,4 +1,4 @@
-"""The shapes in which a linkage vibrates at its lowest natural frequencies, as PNG."""
+"""The shapes in which a linkage vibrates at its lowest natural frequencies."""
 
 import math
 from collections.abc import Sequence
@@ -30,25 +30,10 @@ _STEPS = 6
 """Straight pieces in which an element is drawn."""
 
 
-def shapes_drawing(found: LinkageModes) -> bytes:
+def shapes_drawing(found: LinkageModes) -> Canvas:
     """Draw the first shapes of a linkage in a pose: undeformed grey, deformed coloured, each as large as is legible.
 
     Shapes in the plane are seen along the pins, others from the side.
-
-    Parameters
-    ----------
-    found : LinkageModes
-
-    Returns
-    -------
-    bytes
-        A PNG.
-    """
-    return shapes_sheet(found).png()
-
-
-def shapes_sheet(found: LinkageModes) -> Canvas:
-    """Return the sheet of ``shapes_drawing``.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ def solid(result):
 def test_a_solid_link_gets_a_picture(solid):
     pictures, warnings = figures.stress_plots(solid, POINTS)
     assert warnings == ()
-    image = imread(io.BytesIO(pictures["GF"]))[..., :3]
+    image = imread(io.BytesIO(pictures["GF"].png()))[..., :3]
     assert image.shape[1] == round(style.WIDTH * style.DPI)
     # The body's colours: red against blue, which neither ink nor paper nor grey has.
     coloured = (image[..., 0] - image[..., 2]) > 0.15

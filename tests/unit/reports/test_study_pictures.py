@@ -27,7 +27,7 @@ from alula.reports.figures.study.points import OUTCOMES, Parameter, Response
 from alula.reports.figures.study.spread import histogram, tornado
 from alula.reports.figures.study.style import LOOKS
 from alula.reports.renderers.console import print_sections
-from alula.reports.sections.section import Text, numbers_of, parts_of, tables_of
+from alula.reports.sections.section import Command, numbers_of, parts_of, tables_of
 from alula.reports.study.choice import picture_sections
 from alula.reports.study.columns import read_study
 from alula.reports.study.page import pictures_of, write_study
@@ -341,14 +341,12 @@ def test_the_page_of_many_points_is_bounded_and_says_how(tmp_path, monkeypatch):
     shown = [row.position for row in study.rows if row.answer.verdict is Verdict.UNDECIDED]
     assert shown == undecided[: len(shown)]
     assert len(study.rows) == 3 * len(shown) <= 40
-    monkeypatch.setattr("alula.reports.figures.study.style.png", lambda figure: figure)
     drawn = {picture.name: picture for picture in pictures_of(list(picture_sections(study)))}
     for name, extra in (("map", 0), ("pareto", 120)):
         assert "of the 200 points" in drawn[name].caption
-        lines = drawn[name].draw().axes[0].lines
+        lines = drawn[name].draw().figure.axes[0].lines
         count = sum(len(line.get_xdata()) for line in lines if line.get_label() in LOOKS)
         assert 50 <= count <= 50 + extra
-    monkeypatch.undo()
     page = write_study(tmp_path / "s", tmp_path / "out").read_text(encoding="utf-8")
     assert "the first undecided ones, and the worst" in page
     few = columns_of(tmp_path / "few", points[:40])
@@ -413,7 +411,7 @@ def test_console_page_notebook_and_store_tell_the_same_of_a_study(tmp_path):
     assert [row["standardised coefficient"] for row in tables["sensitivity"]] == pytest.approx(
         sorted(regression(study.parameters, study.margin).coefficients, key=abs, reverse=True)
     )
-    [command] = [part.text for part in parts if isinstance(part, Text) and part.kind == "command"]
+    [command] = [part.command for part in parts if isinstance(part, Command)]
     assert "--set 'a=3 mm' --set 'b=2 mm' --set 'c=1 mm'" in command
     asked = points_table(rows, ["mass of the linkage [g]"]).records
     assert [row["mass of the linkage [g]"] for row in asked] == [row.mass for row in rows]
