@@ -8,7 +8,6 @@ from alula.fea.common.change import MaterialChange, VerdictChange, rounded
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
-from alula.fea.sizing.changes import rounded
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Command, Items, Part, Section
 from alula.reports.sentences import told as told_reason
