@@ -72,7 +72,7 @@ def as_json(found: "CaseFrequencies", name: str) -> str:
     str
     """
     from alula.geometry.base.version import result_stamp
-    from alula.reports.tables.data import finite
+    from alula.reports.renderers.record import finite
     from alula.reports.tables.frequencies import frequencies_record
 
     record: dict[str, Any] = {**result_stamp(), "case": name, "title": found.case.title, "units": UNITS}

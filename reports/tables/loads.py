@@ -19,7 +19,7 @@ from alula.loads.records.carried import CarriedSpread
 from alula.loads.records.load_case import LoadCase
 from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.flapping import flapping_loads, wing_reynolds, wing_span
-from alula.reports.tables.data import entries
+from alula.reports.sections.data import entries
 from alula.reports.words.numbers import joined, number, plain
 
 Real = NDArray[np.float64]
