@@ -1,4 +1,4 @@
-"""Curves of pictures, read back from what they tell, against the results that they are of, in the units of their labels.
+"""Curves of pictures, read back from what they tell, against the results they are of, in the units of their labels.
 
 Powers were once drawn in milliwatts over an axis in watts.
 """
@@ -140,8 +140,8 @@ def test_the_spread_of_a_number_under_tolerances():
     values = np.random.default_rng(1).normal(350.0, 20.0, 500)
     none = np.zeros(0)
     number = ToleranceNumber(
-        check="", subject="crank", load_case="lift", quantity="drive torque", unit="N·mm", limit=math.nan, at_least=True,
-        nominal=(350.0, 350.0, 350.0), values=values, low=values, high=values, certain=None, possible=None,
+        check="", subject="crank", load_case="lift", quantity="drive torque", unit="N·mm", limit=math.nan,
+        at_least=True, nominal=(350.0, 350.0, 350.0), values=values, low=values, high=values, certain=None, possible=None,
         first=none, total=none,
     )  # fmt: skip
     picture = spread_picture(number)
