@@ -141,8 +141,8 @@ def test_the_spread_of_a_number_under_tolerances():
     none = np.zeros(0)
     number = ToleranceNumber(
         check="", subject="crank", load_case="lift", quantity="drive torque", unit="N·mm", limit=math.nan,
-        at_least=True, nominal=(350.0, 350.0, 350.0), values=values, low=values, high=values, certain=None, possible=None,
-        first=none, total=none,
+        at_least=True, nominal=(350.0, 350.0, 350.0), values=values, low=values, high=values, certain=None,
+        possible=None, first=none, total=none,
     )  # fmt: skip
     picture = spread_picture(number)
     [bars] = [one for one in picture.plotted if len(one.y) > 2]
