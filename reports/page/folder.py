@@ -1,13 +1,14 @@
 """The output folder of a check: report, result, pictures and VTU files."""
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
+from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.figures.vibration.pictures import campbell_name, shapes_name
 from alula.reports.page.claims_page import CLAIMS, write_claims
 from alula.reports.page.output import MARK, write_folder
@@ -92,6 +93,15 @@ def write_report(
             _write_fields(result, folder / FIELDS)
             models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
             pictures, warnings = drawn.result()
+            files = beside.submit(_write_pictures, pictures, folder / PICTURES)  # packing them lets others run
+            tell(folder, warnings, pictures, models)
+            files.result()
+        if decks is not None and result.second_opinions:
+            shutil.copytree(decks, folder / DECKS)
+
+    def tell(
+        folder: Path, warnings: tuple[str, ...], pictures: Mapping[str, Drawing], models: Mapping[str, str]
+    ) -> None:
         # The result itself where it can be: it knows already what was worked out for the console.
         told = replace(result, warnings=(*result.warnings, *warnings)) if warnings else result
         for warning in warnings:
@@ -99,13 +109,14 @@ def write_report(
         published = write_claims(told, folder, REPORT)
         (folder / REPORT).write_text(render(told, pictures, published, models), encoding="utf-8")
         (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
-        (folder / PICTURES).mkdir()
-        for name, picture in pictures.items():
-            (folder / PICTURES / f"{name}.png").write_bytes(picture.png())
-        if decks is not None and result.second_opinions:
-            shutil.copytree(decks, folder / DECKS)
 
     write_folder(target, "check", fill)
+
+
+def _write_pictures(pictures: Mapping[str, Drawing], folder: Path) -> None:
+    folder.mkdir()
+    for name, picture in pictures.items():
+        (folder / f"{name}.png").write_bytes(picture.png())
 
 
 def _write_fields(result: CheckResult, folder: Path) -> None:
