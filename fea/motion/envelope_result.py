@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.motion.fatigue import FatigueLife
 from alula.fea.motion.linkage_history import LinkageOverMotion
@@ -17,6 +18,7 @@ from alula.loads.case.case import Case
 from alula.loads.records.bearing import Span
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.clearance import Clearance
+from alula.loads.states.drive_work import DriveWork
 from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
@@ -197,15 +199,15 @@ class LayerEnvelope:
     location : ndarray, shape (3,)
         Where, in the link's frame [mm].
     fatigue : LayerFatigue or None
-    no_fatigue : str
-        Why there is no fatigue of layers although it is asked for; empty where there is one, or none is asked for.
+    no_fatigue : Reason or None
+        Why there is no fatigue of layers although it is asked for; None where there is one, or none is asked for.
     """
 
     safety_factor: Band
     pose: int
     location: Real
     fatigue: LayerFatigue | None
-    no_fatigue: str
+    no_fatigue: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -224,7 +226,8 @@ class LinkEnvelope:
         Size of the finest mesh.
     units, modes : int
         Unit loads, and solutions that span the motion's loads.
-    solver, solver_reason : str
+    solver : str
+    solver_reason : Reason
         Its name, and why it was chosen.
     solver_error : float
         Largest relative error of a solution (energy norm).
@@ -234,9 +237,9 @@ class LinkEnvelope:
         Of the worst pose under the worst load case.
     displacement : ndarray, shape (nodes, 3)
         In that pose [mm].
-    no_fatigue : str
-        Why there is no fatigue calculation; empty where there is one.
-    notes : tuple of str
+    no_fatigue : Reason or None
+        Why there is no fatigue calculation; None where there is one.
+    notes : tuple of Reason or str
     layers : mapping of str to LayerEnvelope
         Load case -> its layers; empty where none are checked.
     """
@@ -250,14 +253,14 @@ class LinkEnvelope:
     units: int
     modes: int
     solver: str
-    solver_reason: str
+    solver_reason: Reason | str
     solver_error: float
     reaction: float
     imbalance: float
     field: StressField
     displacement: Real
-    no_fatigue: str
-    notes: tuple[str, ...]
+    no_fatigue: Reason | None
+    notes: tuple[Reason | str, ...]
     layers: Mapping[str, LayerEnvelope]
 
     @property
@@ -286,13 +289,15 @@ class EnvelopeResult:
         Links on which nothing acts.
     linkage : mapping of str to LinkageOverMotion
         Load case -> numbers of the linkage as a whole.
+    work : mapping of str to DriveWork
+        Load case -> what the drive does, with the ends of what friction may be; empty where no joint rubs.
     clearance : Clearance or None
         The gaps between links; None where no layers are stated.
     checks : tuple of CheckOutcome
         For every link and load case.
     verdict : Verdict
         Over all checks.
-    warnings : tuple of str
+    warnings : tuple of Reason or str
         One sentence each.
     timings : mapping of str to float
         Stage -> seconds.
@@ -308,8 +313,9 @@ class EnvelopeResult:
     links: Mapping[str, LinkEnvelope]
     idle: tuple[str, ...]
     linkage: Mapping[str, LinkageOverMotion]
+    work: Mapping[str, DriveWork]
     clearance: Clearance | None
     checks: tuple[CheckOutcome, ...]
     verdict: Verdict
-    warnings: tuple[str, ...]
+    warnings: tuple[Reason | str, ...]
     timings: Mapping[str, float]

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.theory import BeamCheck, CantileverCheck
 from alula.fea.common.band import Band
+from alula.fea.common.change import VerdictChange
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.frame.joint_forces import JointForces, WayToHold
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -22,14 +24,14 @@ from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.solution import SolidCase, SolidSolution
 from alula.fea.solid.stress import StressField
-from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.materials.material import stress_measure
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.sources.published_statics import StaticsAudit
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange
 from alula.loads.states.clearance import Clearance
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.extent import Extent
@@ -109,12 +111,12 @@ class LinkResult:
         The hand calculation by beam theory.
     brittle : bool
         True where the largest principal stress decides, False where von Mises stress does.
-    notes : tuple of str
+    notes : tuple of Reason or str
         What the reader must know about these numbers.
     decided_by : {"beam", "solid", ""}
         Model that decided the link under all load cases; "" where a model was forced that may not decide.
-    why : str
-        Why that model, for people.
+    why : Reason or str
+        Why that model.
     layers : LayerStress or None
         Of a printed link whose layers are checked, by its solid.
     """
@@ -129,9 +131,9 @@ class LinkResult:
     location: NDArray[np.float64]
     beam: BeamCheck
     brittle: bool
-    notes: tuple[str, ...]
+    notes: tuple[Reason | str, ...]
     decided_by: str
-    why: str
+    why: Reason | str
     layers: LayerStress | None = None
 
     @property
@@ -161,12 +163,12 @@ class HandResult(LinkResult):
 
     Attributes
     ----------
-    next_cost : str
+    next_cost : Reason or None
         What a solid model would have cost; "" where it was not weighed.
     """
 
     fidelity = "beam"
-    next_cost: str
+    next_cost: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,7 +233,7 @@ class LinkageNumbers:
     case: Case
     moved: LargeDisplacement
     forces: JointForces
-    largest: Callable[[], tuple[Band, str]]
+    largest: Callable[[], tuple[Band, Reason | str]]
 
     @property
     def limit_load(self) -> Band:
@@ -239,7 +241,7 @@ class LinkageNumbers:
         return self.moved.limit_load
 
     @cached_property
-    def displacement_and_place(self) -> tuple[Band, str]:
+    def displacement_and_place(self) -> tuple[Band, Reason | str]:
         """The largest displacement [mm], and its place for people; "" where it is not known."""
         return self.largest()
 
@@ -249,8 +251,8 @@ class LinkageNumbers:
         return self.displacement_and_place[0]
 
     @property
-    def where(self) -> str:
-        """The place that moves most, for people; "" where it is not known."""
+    def where(self) -> Reason | str:
+        """The place that moves most; "" where it is not known."""
         return self.displacement_and_place[1]
 
     @property
@@ -336,14 +338,22 @@ class CheckResult:
         Over all checks.
     timings : mapping of str to float
         Stage -> seconds.
-    warnings : tuple of str
+    warnings : tuple of Reason or str
         One sentence each.
     second_opinions : tuple of SecondOpinion
         CalculiX beside our solid models, where it was asked for.
     frequencies : CaseFrequencies or None
         Natural frequencies, where a check asks for them.
-    in_air : CaseMotion or None
-        The motion of the load cases with air; None without any, where it cannot be moved, and of a bare check.
+    changes : tuple of VerdictChange
+        What would change the verdict of the check that decides. This and what follows is what a report tells besides;
+        ``alula.fea.findings.of_check`` finds it, and a check by itself leaves it out.
+    motion : Motion or None
+        Of the case; None without one, and where the linkage does not get along it.
+    in_air : AirRange or None
+        The motion of the load cases with air; None without any, and where it cannot be moved.
+    harmonic : str
+        Which harmonic of the drive comes nearest to a natural frequency that no check asks for, as
+        ``alula.fea.vibration.harmonics.nearest_harmonic`` says.
     """
 
     name: str
@@ -357,15 +367,18 @@ class CheckResult:
     audit: StaticsAudit | None
     verdict: Verdict
     timings: Mapping[str, float]
-    warnings: tuple[str, ...]
+    warnings: tuple[Reason | str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
-    in_air: CaseMotion | None = None
+    changes: tuple[VerdictChange, ...] = ()
+    motion: Motion | None = None
+    in_air: AirRange | None = None
+    harmonic: str = ""
 
     @cached_property
     def caveats(self) -> tuple[Caveat, ...]:
-        """What a reader of the verdict must know besides; its natural frequency is found when it is first asked for."""
-        return caveats(self.case, harmonic=nearest_harmonic(self.case))
+        """What a reader of the verdict must know besides."""
+        return caveats(self.case, harmonic=self.harmonic)
 
     @property
     def frames(self) -> Mapping[str, LargeDisplacement]:

@@ -16,13 +16,16 @@ from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.outcomes.unchecked import caveats, unchecked
 from alula.geometry.base.version import result_stamp
 from alula.geometry.materials.material import Material
+from alula.reports.check.links import solver_record
 from alula.reports.page.motion_pages import envelope_headline
 from alula.reports.page.output import MARK, write_folder
+from alula.reports.renderers.record import finite
+from alula.reports.sections.checks import check_records
+from alula.reports.sections.data import data, entries
+from alula.reports.sections.friction import motion_friction_lines, motion_friction_record
+from alula.reports.sentences import told
 from alula.reports.tables.console import say_checks, verdict_line
-from alula.reports.tables.data import check_records, data, entries, finite
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
-from alula.reports.tables.friction import motion_friction_lines, motion_friction_record
-from alula.reports.tables.meshes import solver_record
 from alula.reports.words.numbers import band, fixed, number, sentence
 from alula.reports.words.terminal import say, say_table
 
@@ -161,7 +164,8 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
     dict
         Angles in degrees; infinite and unknown numbers are None.
     """
-    motion, rubbing = result.moved.motion, result.moved.rubbing
+    motion = result.moved.motion
+    friction = {name: motion_friction_record(result.moved, work, name) for name, work in result.work.items()}
     envelope = {
         **result_stamp(),
         "case": result.name,
@@ -180,12 +184,12 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         },
         "links": {name: _link_record(result, link) for name, link in result.links.items()},
         "linkage": {name: motion_linkage_record(result.moved, over) for name, over in result.linkage.items()},
-        **({"friction": {n: motion_friction_record(result.moved, n) for n in rubbing}} if rubbing else {}),
+        **({"friction": friction} if friction else {}),
         "idle_links": list(result.idle),
         "not_checked": list(unchecked(result.case, over_motion=True)),
         "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, over_motion=True)],
         "checks": check_records(result.checks),
-        "warnings": list(result.warnings),
+        "warnings": data(result.warnings),
         "timings_s": dict(result.timings),
     }
     return dict(finite(envelope, {}))
@@ -198,7 +202,7 @@ def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
         "load_cases": {
             name: _load_case_record(result, envelope, material) for name, envelope in link.load_cases.items()
         },
-        "no_fatigue": link.no_fatigue or None,
+        "no_fatigue": data(link.no_fatigue),
         "unit_loads": link.units,
         "solutions": link.modes,
         **solver_record(link),
@@ -306,7 +310,7 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     missing: dict[str, list[str]] = {}
     for name, link in result.links.items():
         if link.no_fatigue:
-            missing.setdefault(link.no_fatigue, []).append(name)
+            missing.setdefault(told(link.no_fatigue), []).append(name)
     for why, names in missing.items():
         say(console, f"No fatigue of {', '.join(names)}: {why}.")
     for name, over in result.linkage.items():
@@ -314,16 +318,16 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
             console,
             f"{f'Load case {name}: ' if len(result.linkage) > 1 else ''}{motion_linkage_line(result.moved, over)}",
         )
-    for name in result.moved.rubbing:
-        say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, name))}.")
+    for name, work in result.work.items():
+        say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, work, name))}.")
     say_checks(result.checks, console)
     for check in result.checks:
         if check.quantity in UNLOADED_QUANTITIES:
-            say(console, sentence(f"{check.quantity}: {check.reason}"))
+            say(console, sentence(f"{check.quantity}: {told(check.reason)}"))
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")
     for warning in result.warnings:
-        say(console, f"Warning: {warning}.", style="yellow")
+        say(console, f"Warning: {told(warning)}.", style="yellow")
 
 
 def _links(result: EnvelopeResult, console: "Console") -> None:

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.of_motion import PlayOverMotion
 from alula.geometry.linkage.motion import Motion
-from alula.loads.states.loose_motion import LooseMotion
 
 Real = NDArray[np.float64]
 _SAME = 1e-9
@@ -72,12 +72,13 @@ def owners(motion: Motion, label: str) -> tuple[tuple[str, str], ...]:
     )
 
 
-def loosest(loose: LooseMotion, label: str) -> tuple[str, str]:
+def loosest(motion: Motion, play: PlayOverMotion, label: str) -> tuple[str, str]:
     """Return the link and point of a path that play lets move furthest.
 
     Parameters
     ----------
-    loose : LooseMotion
+    motion : Motion
+    play : PlayOverMotion
     label : str
         As ``moving_points`` has it.
 
@@ -85,8 +86,5 @@ def loosest(loose: LooseMotion, label: str) -> tuple[str, str]:
     -------
     tuple of (str, str)
     """
-    ends = {
-        pair: np.max(np.where(loose.passes, 0.0, loose.free_motion(*pair)))
-        for pair in owners(loose.moved.motion, label)
-    }
+    ends = {pair: np.max(np.where(play.passes, 0.0, play.points[pair].free)) for pair in owners(motion, label)}
     return max(ends, key=lambda pair: float(ends[pair]))

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.of_motion import MotionFindings, PlayOverMotion, motion_findings, play_over_motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.rate_rows import whole_rows
 from alula.reports.motion.rates import QUANTITIES, rates_record, series
@@ -118,10 +120,19 @@ class MotionReport(Tabled):
             if (rates := rates_record(self.result, load_case)) is not None:
                 yield load_case, rates
 
+    @cached_property
+    def _found(self) -> MotionFindings:
+        """The motion with all that is told of it."""
+        return motion_findings(self.result)
+
+    @cached_property
+    def _play(self) -> PlayOverMotion | None:
+        return play_over_motion(self.result)
+
     def _drive_rows(self, of: str) -> Iterator[Row]:
         what, unit = self.result.effort
         at = self.result.motion.unit
-        for load_case, found in record(self.result, "")["load_cases"].items():
+        for load_case, found in record(self._found, "")["load_cases"].items():
             told = {f"drive {what} on {self.result.drive.link}": (unit, found[f"drive_{what}"])}
             told |= {f"joint {joint}": ("N", values) for joint, values in (found["joints"] or {}).items()}
             if "drive_power" in found:
@@ -143,7 +154,7 @@ class MotionReport(Tabled):
         """Draw drive torque or force over the coordinate, a line per load case."""
         from alula.reports.figures.motion.motion_figures import torque_figure
 
-        return _picture(torque_figure(self.result))
+        return _picture(torque_figure(self.result, self._play))
 
     def plot_energy(self, load_case: str) -> Picture:
         """Draw energies, power of the drive and force on the ground of a load case that has a speed.
@@ -168,10 +179,9 @@ class MotionReport(Tabled):
 
     def plot_linkage(self) -> Picture:
         """Draw the linkage at a few poses, with the paths of its points."""
-        from alula.loads.states.loose_motion import loose_motion
         from alula.reports.figures.motion.motion_figures import paths_figure
 
-        return _picture(paths_figure(self.result.motion, loose_motion(self.result)))
+        return _picture(paths_figure(self.result.motion, self._play))
 
     def __str__(self) -> str:
         return str(self.table())

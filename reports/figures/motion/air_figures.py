@@ -4,54 +4,54 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.fea.whole.air_range import air_range
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.reports.figures.motion.motion_figures import DPI, legend, over_angle
 from alula.reports.figures.sheet.chart import Chart
-from alula.reports.tables.loads import motion_air_record
+from alula.reports.sections.air import motion_air_record
 
 Real = NDArray[np.float64]
 _SIZE = (8.0, 6.6)
 
 
-def case_air_pictures(moved: CaseMotion | None) -> dict[str, Chart]:
+def case_air_pictures(airs: AirRange | None) -> dict[str, Chart]:
     """Draw the drive with and without air over the motion of a case.
 
     Parameters
     ----------
-    moved : CaseMotion or None
-        As ``motion_in_air``.
+    airs : AirRange or None
 
     Returns
     -------
     dict of str to Chart
         By load case; empty without air, and without a motion.
     """
-    return {} if moved is None else {name: Chart(air_figure(moved, name), dpi=DPI) for name in moved.torque}
+    return {} if airs is None else {name: Chart(air_figure(airs, name), dpi=DPI) for name in airs.stated.torque}
 
 
-def air_figures(result: CaseMotion) -> dict[str, Figure]:
+def air_figures(airs: AirRange | None) -> dict[str, Figure]:
     """Draw drive torque and power of every load case with air, with and without it.
 
     Parameters
     ----------
-    result : CaseMotion
+    airs : AirRange or None
 
     Returns
     -------
     dict of str to Figure
-        Name of the file, without its ending -> figure.
+        Name of the file, without its ending -> figure; empty without air.
     """
-    names = [name for name in result.torque if motion_air_record(result, name) is not None]
-    return {"air" if len(names) == 1 else f"air-{i + 1}": air_figure(result, name) for i, name in enumerate(names)}
+    if airs is None:
+        return {}
+    names = [name for name in airs.stated.torque if motion_air_record(airs, name) is not None]
+    return {"air" if len(names) == 1 else f"air-{i + 1}": air_figure(airs, name) for i, name in enumerate(names)}
 
 
-def air_figure(result: CaseMotion, load_case: str) -> Figure:
+def air_figure(airs: AirRange, load_case: str) -> Figure:
     """Draw drive torque and power of a load case with air and without it, with the band of C_N.
 
     Parameters
     ----------
-    result : CaseMotion
+    airs : AirRange
     load_case : str
         One with air.
 
@@ -59,9 +59,8 @@ def air_figure(result: CaseMotion, load_case: str) -> Figure:
     -------
     Figure
     """
-    what, unit = result.effort
-    airs, air = air_range(result), result.case.load_cases[load_case].flapping
-    assert airs is not None
+    result = airs.stated
+    (what, unit), air = result.effort, result.case.load_cases[load_case].flapping
     assert air is not None
     figure, panels = over_angle(result.motion, [f"drive {what} [{unit}]", "drive power [W]"], _SIZE)
     at, (low, high) = result.motion.told(result.motion.angles), air.ends

@@ -10,10 +10,10 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
+from alula.fea.findings.of_motion import PlayOverMotion
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.loose_motion import LooseMotion, loose_motion
 from alula.reports.motion.joint_paths import loosest, moving_points
 
 Real = NDArray[np.float64]
@@ -50,7 +50,7 @@ def angles_figure(result: CaseMotion) -> Figure:
     return figure
 
 
-def torque_figure(result: CaseMotion) -> Figure:
+def torque_figure(result: CaseMotion, play: PlayOverMotion | None = None) -> Figure:
     """Draw drive torque or force over the coordinate, one line per load case, and dashed what it is without friction.
 
     A shaded band tells what play of pins makes of it.
@@ -58,6 +58,7 @@ def torque_figure(result: CaseMotion) -> Figure:
     Parameters
     ----------
     result : CaseMotion
+    play : PlayOverMotion, optional
 
     Returns
     -------
@@ -67,7 +68,7 @@ def torque_figure(result: CaseMotion) -> Figure:
     figure, [axes] = over_angle(motion, [f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]"])
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
-    _with_play(axes, result)
+    _with_play(axes, result, play)
     _without_friction(axes, result)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     _clip(axes, result, list(result.torque.values()), symmetric=True)
@@ -77,22 +78,22 @@ def torque_figure(result: CaseMotion) -> Figure:
     return figure
 
 
-def _with_play(axes: Any, result: CaseMotion) -> None:
+def _with_play(axes: Any, result: CaseMotion, play: PlayOverMotion | None) -> None:
     """Shade between the ends of the drive torque with play, and where it has none."""
-    loose, at = loose_motion(result), result.motion.told(result.motion.angles)
-    if loose is None:
+    if play is None:
         return
+    at = result.motion.told(result.motion.angles)
     for i, load_case in enumerate(result.torque):
-        ends = [np.where(np.isfinite(end), _broken(result, end), np.nan) for end in loose.effort(load_case)]
+        ends = [np.where(np.isfinite(end), _broken(result, end), np.nan) for end in play.effort[load_case]]
         label = f"{load_case} with play of pins" if len(result.torque) > 1 else "with play of pins"
         axes.fill_between(
             at, *ends, color=COLOURS[i % len(COLOURS)], alpha=0.25, linewidth=0.0, label=label, zorder=1.5
         )
-    if loose.passes.any():
+    if play.passes.any():
         style: dict[str, Any] = {"hatch": "xxx", "edgecolor": "0.75", "label": "no end: play may reach a dead point"}
         inside = axes.get_xaxis_transform()
         axes.fill_between(
-            at, 0, 1, where=loose.passes, transform=inside, facecolor="0.95", linewidth=0, zorder=0.5, **style
+            at, 0, 1, where=play.passes, transform=inside, facecolor="0.95", linewidth=0, zorder=0.5, **style
         )
 
 
@@ -144,7 +145,7 @@ def forces_figure(result: CaseMotion, load_case: str) -> Figure:
     return figure
 
 
-def paths_figure(motion: Motion, loose: LooseMotion | None = None) -> Figure:
+def paths_figure(motion: Motion, play: PlayOverMotion | None = None) -> Figure:
     """Draw the paths of the moving points and the linkage at a few poses, from light to dark.
 
     With play of pins the paths are shaded as wide as it lets their points stray with the drive held.
@@ -152,8 +153,7 @@ def paths_figure(motion: Motion, loose: LooseMotion | None = None) -> Figure:
     Parameters
     ----------
     motion : Motion
-    loose : LooseMotion, optional
-        The same with play.
+    play : PlayOverMotion, optional
 
     Returns
     -------
@@ -165,9 +165,9 @@ def paths_figure(motion: Motion, loose: LooseMotion | None = None) -> Figure:
         indices = np.unique(np.linspace(0, len(motion.angles) - 1, _POSES + 1).round().astype(int))[:-1]
     for i, (label, xy) in enumerate(moving_points(motion).items()):
         style = {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[i // len(COLOURS) % len(DASHES)]}
-        if loose is not None:
-            label += _stray(axes, loose, label, COLOURS[i % len(COLOURS)])
-        axes.plot(*xy.T, linewidth=1.6 if loose is None else 0.7, label=label, zorder=2, **style)
+        if play is not None:
+            label += _stray(axes, motion, play, label, COLOURS[i % len(COLOURS)])
+        axes.plot(*xy.T, linewidth=1.6 if play is None else 0.7, label=label, zorder=2, **style)
     for index, shade in zip(indices, np.linspace(0.78, 0.0, len(indices)), strict=True):
         colour = str(shade)
         for chain in chains(motion.linkage):
@@ -181,17 +181,17 @@ def paths_figure(motion: Motion, loose: LooseMotion | None = None) -> Figure:
         loc="left",
         fontsize=10,
     )
-    legend(axes, "path of" if loose is None else "path of, with play")
+    legend(axes, "path of" if play is None else "path of, with play")
     return figure
 
 
-def _stray(axes: Any, loose: LooseMotion, label: str, colour: str) -> str:
+def _stray(axes: Any, motion: Motion, play: PlayOverMotion, label: str, colour: str) -> str:
     """Shade where play lets the point of a path be, from pose to pose, and tell how far that is at the most."""
     from shapely import MultiPoint, unary_union
 
-    link, point = loosest(loose, label)
-    outline = loose.outline(link, point)[:, ::_STRAY] + loose.moved.motion.placement.position(link, point)[:, None]
-    rings = [np.column_stack([ring.real, ring.imag]) for ring in np.where(loose.passes[:, None], np.nan, outline)]
+    link, point = loosest(motion, play, label)
+    outline = play.points[link, point].outline[:, ::_STRAY] + motion.placement.position(link, point)[:, None]
+    rings = [np.column_stack([ring.real, ring.imag]) for ring in np.where(play.passes[:, None], np.nan, outline)]
     pairs = (np.vstack(pair) for pair in pairwise(rings))
     area = unary_union([MultiPoint(pair).convex_hull for pair in pairs if np.isfinite(pair).all()])
     for part in getattr(area, "geoms", [area]):
@@ -199,7 +199,7 @@ def _stray(axes: Any, loose: LooseMotion, label: str, colour: str) -> str:
         if curves:
             path = Path.make_compound_path(*(Path(curve, closed=True) for curve in curves))
             axes.add_patch(PathPatch(path, facecolor=colour, alpha=0.45, linewidth=0.0, zorder=1.8))
-    most, _ = loose.farthest(link, point)
+    most, _ = play.points[link, point].farthest
     return f" ± {most:.2g} mm" if np.isfinite(most) else ""
 
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.loose_motion import loose_motion
 from alula.reports.figures.motion.air_figures import air_figures
 from alula.reports.figures.motion.motion_figures import (
     COLOURS,
@@ -28,27 +28,28 @@ _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
-def motion_pictures(result: CaseMotion) -> dict[str, Chart]:
+def motion_pictures(found: MotionFindings) -> dict[str, Chart]:
     """Draw all figures of a motion.
 
     Parameters
     ----------
-    result : CaseMotion
+    found : MotionFindings
 
     Returns
     -------
     dict of str to Chart
         By the name of the file, without its ending.
     """
+    result = found.moved
     figures = {
         "link-angles": angles_figure(result),
-        "paths": paths_figure(result.motion, loose_motion(result)),
-        "torque": torque_figure(result),
+        "paths": paths_figure(result.motion, found.play),
+        "torque": torque_figure(result, found.play),
     }
     for i, load_case in enumerate(result.forces):
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
-    figures |= air_figures(result) | rate_figures(result)
+    figures |= air_figures(found.air) | rate_figures(result)
     return {name: Chart(figure, dpi=DPI) for name, figure in figures.items()}
 
 

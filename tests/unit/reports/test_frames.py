@@ -11,16 +11,15 @@ import pytest
 import solved
 from edited_cases import PLANAR, edited
 from rich.console import Console
+from told import print_result, render, result_record
 
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_text, validate
-from alula.reports.page.html import render
-from alula.reports.tables.console import print_result
+from alula.reports.sentences import told as in_words
 from alula.reports.tables.frames import frame_lines, frame_record
-from alula.reports.tables.record import result_record
 
 WING = "owl-wing-static"
 
@@ -163,7 +162,7 @@ def test_forces_out_of_the_plane_name_their_model():
     assert wrench[3] != 0.0
     assert any("spatial frame" in line for line in frame_lines(result, case))
     assert "Joint forces by a spatial frame" in section(result)
-    assert sum("spatial frame" in warning for warning in result.warnings) == 1
+    assert sum("spatial frame" in in_words(warning) for warning in result.warnings) == 1
 
 
 def test_conditions_stand_in_the_record():

@@ -3,14 +3,14 @@ from dataclasses import replace
 
 import pytest
 from html_pages import Page, stands_alone
+from told import not_covered, render
 
+from alula.fea.claims import sources
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, worst_of_each
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.page import claims_page
 from alula.reports.page.claims_page import CLAIMS
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
 from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
 from alula.reports.words.wording import checks_of
 
@@ -120,8 +120,9 @@ def test_no_zero_has_a_sign(page):
 
 def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypatch, tmp_path) -> None:
     """The report has their number and the address; a case of which nothing was published has no such page."""
-    monkeypatch.setattr(claims_page, "built_in_cases", lambda: ("owl-wing-static",))
-    told = claims_page.write_claims(replace(result, name="owl-wing-static"), tmp_path, "report.html")
+    monkeypatch.setattr(sources, "built_in_cases", lambda: ("owl-wing-static",))
+    named = replace(result, name="owl-wing-static")
+    told = claims_page.write_claims(named, sources.claims_of(named), tmp_path, "report.html")
     page = Page((tmp_path / CLAIMS).read_text(encoding="utf-8"))
     stands_alone(page, beside=("report.html",))
     assert "3 of the equations are not equilibrium equations" in page.words
@@ -130,7 +131,7 @@ def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypa
     assert "<details><summary>Figures that hold (" in page.source
     assert re.match(r"Published figures: \d+ claims: .* Published statics: 3 of 15 equations are not equ", told)
     plain = replace(result, name="elsewhere.toml", audit=None)
-    assert claims_page.write_claims(plain, tmp_path / "none", "report.html") == ""
+    assert claims_page.write_claims(plain, sources.claims_of(plain), tmp_path / "none", "report.html") == ""
     assert CLAIMS not in render(plain, {})
 
 

@@ -1,5 +1,6 @@
 """Layers of printed links over all load cases: what they hold, and which direction of building would hold best."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,8 +11,9 @@ from alula.fea.common.band import Band
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.solid.layers import Layers, build_directions
-from alula.reports.tables.data import data
-from alula.reports.words.numbers import band, fixed, number
+from alula.reports.sections.data import data
+from alula.reports.sections.section import Beside, Number, Part, Picture, Text, say
+from alula.reports.words.numbers import fixed
 
 ALIKE = 0.05
 """Gain in safety factor up to which another direction is not called better."""
@@ -51,23 +53,22 @@ class BuildDirections:
         return (x, y, z), float(self.scan[i, j])
 
     @property
-    def sentence(self) -> str:
+    def text(self) -> Text:
         """What the layers hold as built, and which direction would hold best."""
-        built = f"{self.link}: built along {direction(self.layers.normal)}, its layers have a safety factor of "
-        built += f"{band(self.safety_factor)}"
-        if self.best is None:
-            if self.safety_factor.unknowable:
-                return f"{built}; no direction of building is proposed"
-            return (
-                f"{built} by tension alone; no direction of building is proposed, since the card has no shear strength"
-            )
-        way, factor = self.best
-        if factor <= (1.0 + ALIKE) * self.safety_factor.value:
-            return f"{built}; no direction of building holds noticeably more"
-        return (
-            f"{built}; built along {direction(way)} it would be {number(factor, 3)}, the largest of all directions "
-            "(steps of 5°, by the same solution, without a band)"
-        )
+        built = f"Layers of {self.link}: built along {direction(self.layers.normal)}, its layers have a safety factor "
+        built += "of {factor}"
+        facts: dict[str, object] = {"factor": Number(self.safety_factor)}
+        if self.best is None and self.safety_factor.unknowable:
+            built += "; no direction of building is proposed"
+        elif self.best is None:
+            built += " by tension alone; no direction of building is proposed, since the card has no shear strength"
+        elif self.best[1] <= (1.0 + ALIKE) * self.safety_factor.value:
+            built += "; no direction of building holds noticeably more"
+        else:
+            built += f"; built along {direction(self.best[0])} it would be {{best}}, the largest of all directions "
+            built += "(steps of 5°, by the same solution, without a band)"
+            facts["best"] = Number(self.best[1], "", 3, derived=True)
+        return say(built, **facts)
 
 
 def direction(vector: tuple[float, float, float]) -> str:
@@ -121,8 +122,42 @@ def _over_all(link: str, cases: dict[str, LayerStress]) -> BuildDirections:
     )
 
 
+def layer_parts(found: BuildDirections) -> Iterator[Part]:
+    """Yield what the layers of a link hold, beside a map of the directions of building.
+
+    Parameters
+    ----------
+    found : BuildDirections
+
+    Yields
+    ------
+    Part
+    """
+
+    def draw() -> Any:
+        from alula.reports.figures.build_map import build_map
+
+        return build_map(found)
+
+    picture = Picture(
+        name=f"layers-{found.link}",
+        alt=f"Safety factor of the layers of link {found.link} over the direction of building",
+        caption=f"Safety factor of the layers of link {found.link} over the direction of building, least of all load "
+        "cases. Centre: along the pins; circles: 30 and 60° to them; rim: in the plane of the linkage. x runs along "
+        "the link. A direction and its opposite are the same.",
+        draw=draw,
+        kind="map",
+    )
+    counted = Text(
+        "The number counts tension normal to the layers and shear along them, (σ/R)² + (τ/S)² ≤ 1/n²; compression "
+        "normal to them neither helps nor harms.",
+        "note",
+    )
+    yield Beside((*((picture,) if found.scan is not None else ()), found.text, counted))
+
+
 def layer_record(found: LayerStress | None) -> dict[str, Any] | None:
-    """Return the layers of a link under a load case as plain data.
+    """Return the layers of a link under a load case as an entry of ``result.json``.
 
     Parameters
     ----------
@@ -131,7 +166,6 @@ def layer_record(found: LayerStress | None) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        As ``docs/result.md`` describes it.
     """
     if found is None:
         return None

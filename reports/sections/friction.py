@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.whole.rubbed_motion import work_between
 from alula.loads.records.applied import Load
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.drive_work import DriveWork
@@ -78,13 +77,15 @@ def friction_sentence(work: DriveWork, reactions: Reactions) -> str:
     return found if math.isnan(share) else f"{found}; efficiency {100.0 * share:.1f} %"
 
 
-def motion_friction_record(moved: CaseMotion, load_case: str) -> dict[str, Any]:
+def motion_friction_record(moved: CaseMotion, work: DriveWork, load_case: str) -> dict[str, Any]:
     """Return friction over a motion as plain data.
 
     Parameters
     ----------
     moved : CaseMotion
         With friction.
+    work : DriveWork
+        Under this load case, with the ends of what friction may be.
     load_case : str
 
     Returns
@@ -92,7 +93,7 @@ def motion_friction_record(moved: CaseMotion, load_case: str) -> dict[str, Any]:
     dict
         Spans are pairs of values of the coordinate in its unit.
     """
-    work, rubbing, motion = work_between(moved, load_case), moved.rubbing[load_case], moved.motion
+    rubbing, motion = moved.rubbing[load_case], moved.motion
     shares = work.efficiency[np.isfinite(work.efficiency)]
     return {
         "direction": rubbing.way,
@@ -109,26 +110,28 @@ def motion_friction_record(moved: CaseMotion, load_case: str) -> dict[str, Any]:
     }
 
 
-def motion_friction_lines(moved: CaseMotion, load_case: str) -> list[str]:
+def motion_friction_lines(moved: CaseMotion, work: DriveWork, load_case: str) -> list[str]:
     """Return friction over a motion as lines of text.
 
     Parameters
     ----------
     moved : CaseMotion
         With friction.
+    work : DriveWork
+        Under this load case, with the ends of what friction may be.
     load_case : str
 
     Returns
     -------
     list of str
     """
-    data, motion = motion_friction_record(moved, load_case), moved.motion
+    data, motion = motion_friction_record(moved, work, load_case), moved.motion
     without = moved.frictionless[load_case]
     way = told_direction(data["direction"], motion.coordinate, motion.slides)
     what, unit, torque = *moved.effort, moved.torque[load_case]
     found = [
         f"friction, driven {way}: drive {what} {_range(torque)} {unit}, without friction {_range(without)} {unit}",
-        f"with all friction that may be: drive {what} {_told(work_between(moved, load_case))} {unit}",
+        f"with all friction that may be: drive {what} {_told(work)} {unit}",
     ]
     if data["efficiency_smallest"] is not None:
         text = f"efficiency {_percent(data['efficiency_smallest'])} to {_percent(data['efficiency_largest'])} by pose"

@@ -1,11 +1,16 @@
-"""What would change a verdict, in sentences."""
+"""What would change a verdict: factors on loads, strengths, sources of the band, the command that finds a size."""
 
 import shlex
+from collections.abc import Iterator, Mapping
+from typing import Any
 
+from alula.fea.common.change import MaterialChange, VerdictChange, rounded
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
-from alula.fea.sizing.changes import MaterialChange, VerdictChange, rounded
+from alula.reports.sections.data import entries
+from alula.reports.sections.section import Command, Items, Part, Section
+from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, number, plain, sentence
 from alula.reports.words.wording import named
 
@@ -25,6 +30,62 @@ _NARROWED: dict[SourceKind, str] = {
     SourceKind.BUILD: "build_direction of the part",
 }
 """What narrows a source of error, of those that an entry of the case or an option narrows."""
+
+
+def changes_section(result: CheckResult) -> Section:
+    """Return what would change the verdict of the checks that decide it.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+    """
+    records = change_records(result)
+    return Section(
+        key="changes",
+        title="What would change it",
+        parts=tuple(part for record in records for part in _parts(record)),
+        data={"changes": records},
+    )
+
+
+def _parts(record: Mapping[str, Any]) -> Iterator[Part]:
+    title = f"{sentence(record['title'])[:-1]} ({record['verdict']})"
+    yield Items(((title, " ".join(record["sentences"])),))
+    if record["command"]:
+        yield Command("Find the size:", record["command"])
+
+
+def change_records(result: CheckResult) -> list[dict[str, Any]]:
+    """Return what would change the verdict of the checks that decide it, as entries of ``result.json``.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    list of dict
+    """
+    several = len(result.load_cases) > 1
+    return [
+        {
+            **entries(change.check, "name link load_case quantity verdict margin"),
+            "load_factor": change.load,
+            "faster": change.faster,
+            "linear_until": change.until,
+            "material": None if change.material is None else entries(change.material, "what material stated needed"),
+            "widest": [source.kind.name.lower() for source in change.widest],
+            "size": None if change.size is None else entries(change.size, "entry first last"),
+            "title": change_title(change, several=several),
+            "sentences": change_sentences(change, result),
+            "command": size_command(change, result) or None,
+        }
+        for change in result.changes
+    ]
 
 
 def change_title(change: VerdictChange, *, several: bool) -> str:
@@ -57,22 +118,22 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     list of str
     """
     check = change.check
-    told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
-    if change.refuted and not told:
-        told.append("Other loads and materials were tried by hand calculation; with none within reach does it pass.")
-    elif check.verdict is Verdict.UNDECIDED and not told:
+    found = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
+    if change.refuted and not found:
+        found.append("Other loads and materials were tried by hand calculation; with none within reach does it pass.")
+    elif check.verdict is Verdict.UNDECIDED and not found:
         known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
-        told.append(_of_itself(check) if known else sentence(check.reason))
+        found.append(_of_itself(check) if known else sentence(told(check.reason)))
     if change.widest:
-        told.append(_of_sources(change, result))
-    if not told:
-        told.append(
+        found.append(_of_sources(change, result))
+    if not found:
+        found.append(
             _of_itself(check)
             if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
             else "No factor on the loads is told: the number is not in proportion to them, since "
             + ("springs act." if result.case.sprung else "the shape of the deformed linkage counts.")
         )
-    return told
+    return found
 
 
 def size_command(change: VerdictChange, result: CheckResult) -> str:

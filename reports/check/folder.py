@@ -1,27 +1,20 @@
 """The output folder of a check: report, result, pictures and VTU files."""
 
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
+from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
+from alula.reports.check.links import worst_load_case
+from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
 from alula.reports.figures.sheet.drawing import Drawing
-from alula.reports.figures.vibration.pictures import campbell_name, shapes_name
 from alula.reports.page.claims_page import CLAIMS, write_claims
 from alula.reports.page.output import MARK, write_folder
-from alula.reports.page.pictures import (
-    ASSEMBLY,
-    CONTACT,
-    diagram_name,
-    flapping_name,
-    layers_name,
-    linkage_name,
-    stress_name,
-)
-from alula.reports.tables.record import as_json, worst_load_case
+from alula.reports.renderers.page import as_page
 
 REPORT = "report.html"
 PICTURES = "pictures"
@@ -40,10 +33,9 @@ def report_names(case: Case) -> set[str]:
     -------
     set[str]
     """
-    links, pictures = case.checked_links, {*map(linkage_name, case.load_cases), ASSEMBLY, CONTACT}
-    of_load_case = shapes_name, campbell_name, flapping_name
-    pictures |= {name(load_case) for load_case in case.load_cases for name in of_load_case}
-    pictures |= {name(link) for link in links for name in (diagram_name, layers_name, stress_name)}
+    links, pictures = case.checked_links, {"assembly", "clearance", "box"}
+    pictures |= {f"{kind}-{name}" for name in case.load_cases for kind in ("linkage", "shapes", "campbell", "air")}
+    pictures |= {f"{kind}-{name}" for name in links for kind in ("diagram", "layers", "stress")}
     return {
         REPORT,
         CLAIMS,
@@ -58,6 +50,7 @@ def write_report(
     result: CheckResult,
     target: Path,
     *,
+    claims: Sequence[ClaimResult] = (),
     decks: Path | None = None,
     progress: Callable[[str], None] = lambda message: None,
 ) -> None:
@@ -69,8 +62,11 @@ def write_report(
     Parameters
     ----------
     result : CheckResult
+        With what ``alula.fea.findings.of_check`` finds besides.
     target : Path
         The output folder.
+    claims : sequence of ClaimResult, optional
+        Of figures that were published of the case.
     decks : Path, optional
         Folder whose CalculiX decks go into ``calculix/``.
     progress : callable, optional
@@ -81,34 +77,29 @@ def write_report(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from alula.reports.page.html import render
-    from alula.reports.page.pictures import draw_pictures
     from alula.reports.turnable.link import link_models
     from alula.reports.turnable.moving import LINKAGE, check_linkage
     from alula.reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
+        told, published = result, write_claims(result, claims, folder, REPORT)
+        page = check_page(told, check_sections(told, published))
         with ThreadPoolExecutor(1) as beside:
-            drawn = beside.submit(draw_pictures, result, progress)
+            drawn = beside.submit(check_pictures, result, page, progress)
             _write_fields(result, folder / FIELDS)
             models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
             pictures, warnings = drawn.result()
             files = beside.submit(_write_pictures, pictures, folder / PICTURES)  # packing them lets others run
-            tell(folder, warnings, pictures, models)
+            if warnings:
+                for warning in warnings:
+                    progress(f"Warning: {warning}")
+                told = replace(result, warnings=(*result.warnings, *warnings))
+            sections = check_sections(told, published)
+            (folder / REPORT).write_text(as_page(check_page(told, sections), pictures, models), encoding="utf-8")
+            (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
             files.result()
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
-
-    def tell(
-        folder: Path, warnings: tuple[str, ...], pictures: Mapping[str, Drawing], models: Mapping[str, str]
-    ) -> None:
-        # The result itself where it can be: it knows already what was worked out for the console.
-        told = replace(result, warnings=(*result.warnings, *warnings)) if warnings else result
-        for warning in warnings:
-            progress(f"Warning: {warning}")
-        published = write_claims(told, folder, REPORT)
-        (folder / REPORT).write_text(render(told, pictures, published, models), encoding="utf-8")
-        (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
 
     write_folder(target, "check", fill)
 
