@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import solved
+from told import as_json
 
 from alula.loads.case.case_file import built_in_cases, read_text
-from alula.reports.tables.record import as_json
 
 FOLDER = Path(__file__).parent / "regression" / "golden"
 EXACT, ITERATED, MESHED = 1e-9, 1e-7, 1e-6
@@ -102,7 +102,7 @@ def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None
 def run(name: str) -> dict[str, float | str | None]:
     """Run the command of a golden result and return its numbers by path; hand calculations are shared with tests."""
     if name.startswith("hand-"):
-        return dict(numbers(json.loads(as_json(solved.by_hand(name.removeprefix("hand-"))))))
+        return dict(numbers(json.loads(as_json(solved.told(name.removeprefix("hand-"))))))
     from alula.reports.commands.cli import app
 
     told = io.StringIO()

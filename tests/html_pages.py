@@ -2,7 +2,7 @@
 
 from html.parser import HTMLParser
 
-VOID = {"meta", "img", "br", "hr", "link", "input"}
+VOID = {"meta", "img", "br", "hr", "link", "input", "wbr"}
 
 
 class Page(HTMLParser):
@@ -47,4 +47,5 @@ def stands_alone(page: Page, beside: tuple[str, ...] = ()) -> None:
     assert "@import" not in page.source
     ids = [value for _, name, value in page.attributes if name == "id"]
     assert len(set(ids)) == len(ids)
-    assert {value[1:] for _, name, value in page.attributes if name == "href" and value not in beside} <= set(ids)
+    links = {value for tag, name, value in page.attributes if (tag, name) == ("a", "href") and value not in beside}
+    assert {value[1:] for value in links} <= set(ids)

@@ -14,6 +14,7 @@ from edited_cases import PLANAR
 from alula.fea.check.run import check_case
 from alula.fea.claims.audit import ClaimResult
 from alula.fea.claims.sources import check_all
+from alula.fea.findings.of_check import with_findings
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.base.locks import locked
 from alula.geometry.meshing.mesh import MassProperties, mass_properties
@@ -61,6 +62,12 @@ def by_hand(name: str, *overrides: str) -> CheckResult:
     return shared(
         f"by hand {name} {overrides}", lambda: check_case(read_case(name, overrides), name=name, fidelity="beam")
     )
+
+
+@cache
+def told(name: str, *overrides: str) -> CheckResult:
+    """Return ``by_hand`` with what a report tells besides."""
+    return shared(f"told {name} {overrides}", lambda: with_findings(by_hand(name, *overrides)))
 
 
 @cache

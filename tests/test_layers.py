@@ -21,14 +21,24 @@ LAYERS = {
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
         *("refine", "superposition", "vibration", "outcomes", "whole", "links", "doubts"),
-        *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance"),
+        *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
     "reports": (
-        *("words", "tables", "sheet", "vibration", "figures", "outlines", "turnable"),
-        *("motion", "page", "study", "commands", "notebook"),
+        "words",
+        "sentences",
+        "tables",
+        "motion",
+        "figures",
+        "turnable",
+        "page",
+        "study",
+        "commands",
+        "notebook",
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
+DRAWN = ("sheet", "outlines", "vibration", "motion", "study")
+"""The folders of ``reports/figures/``; none imports another but ``sheet``, which imports none."""
 PACKAGES = tuple(LAYERS)
 OUTSIDE = ("alula", "tests", "benchmarks")
 """What stands above or beside the packages: ``alula/__init__.py`` is their public face, and a bare ``fea`` is none."""
@@ -109,6 +119,19 @@ def test_the_house_is_as_planned():
             assert len(list((ROOT / package / layer).glob("*.py"))) <= 16
 
 
+def test_all_that_draws_stands_in_one_place():
+    """The folders of ``reports/figures/`` are as planned, and share no more than the sheet."""
+    home = ROOT / "reports" / "figures"
+    assert {path.parent.name for path in home.glob("*/*.py")} == set(DRAWN)
+    for folder in DRAWN:
+        assert ast.get_docstring(ast.parse((home / folder / "__init__.py").read_text(encoding="utf-8")))
+        assert len(list((home / folder).glob("*.py"))) <= 16
+        for file in (home / folder).glob("*.py"):
+            names = [name.split(".") for _, name in imported(file.read_text(encoding="utf-8"))]
+            others = {name[3] for name in names if name[:3] == ["alula", "reports", "figures"]} & set(DRAWN)
+            assert others <= ({folder, "sheet"} if folder != "sheet" else {"sheet"}), file
+
+
 def test_imports_go_one_way_and_libraries_stay_at_home():
     assert violations(ROOT) == []
 
@@ -147,7 +170,7 @@ def test_no_module_imports_itself_by_way_of_others(tmp_path):
             "fea/check/run.py",
             "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import alula.reports.tables.record",
         ),
-        ("fea/check/run.py", "import importlib\nimportlib.import_module('alula.reports.page.html')"),
+        ("fea/check/run.py", "import importlib\nimportlib.import_module('alula.reports.renderers.page')"),
         ("fea/solvers/solve.py", "import tests.unit"),
         ("fea/solvers/solve.py", "import gmsh"),
         ("geometry/parts/part.py", "def late():\n    import gmsh"),

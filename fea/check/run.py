@@ -49,7 +49,6 @@ from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.solution import require_compressible
 from alula.fea.superposition.solid_shares import Shares, solid_shares
-from alula.fea.whole.air_range import motion_in_air
 from alula.fea.whole.layer_gaps import layer_gap_outcomes
 from alula.fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
 from alula.geometry.base.errors import CaseError
@@ -413,12 +412,11 @@ def check_case(
         size=whole.size,
         frequencies=whole.frequencies,
         load_cases=load_cases,
-        hand={calculation: _cantilever(case, calculation) for calculation in case.hand_calculations},
+        hand=hand_calculations(case),
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
         warnings=warnings,
-        in_air=None if bare else motion_in_air(case),
     )
 
 
@@ -503,6 +501,20 @@ def _bearing(
             for joint in check.joints or case.bearing_joints:
                 every = [one.joints[joint].wrench for one in (reactions, *(way.reactions for way in forces.sharings))]
                 yield bearing_outcome(case, load_case, name, check, joint, every, growth.get(joint))
+
+
+def hand_calculations(case: Case) -> dict[str, CantileverCheck]:
+    """Return the calculations by hand that a case states, by their names; they need nothing that is solved.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict of str to CantileverCheck
+    """
+    return {calculation: _cantilever(case, calculation) for calculation in case.hand_calculations}
 
 
 def _cantilever(case: Case, calculation: str) -> CantileverCheck:

@@ -80,6 +80,25 @@ def check_claims(
     return tuple(found)
 
 
+def claims_of(result: CheckResult) -> tuple[ClaimResult, ...]:
+    """Return the findings on the published figures of a case that was checked.
+
+    Those that need a solid model of the source's own parts are not judged.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of ClaimResult
+        Empty where none were published.
+    """
+    if not result.case.claims and result.name not in built_in_cases():
+        return ()
+    return check_claims(result.name, fidelity="beam", known=result)
+
+
 def check_all(*, fidelity: str = "solid", threads: int = 2) -> dict[str, tuple[ClaimResult, ...]]:
     """Re-derive the claims of every source document, by its name.
 

@@ -41,7 +41,7 @@ from alula.fea.refine.refinement import START, Effort, refine_links
 from alula.fea.solid.solution import require_compressible
 from alula.fea.superposition.solid_shares import solid_shares
 from alula.fea.whole.outcomes import unloaded_outcomes, whole_numbers
-from alula.fea.whole.rubbed_motion import rubbed_motion
+from alula.fea.whole.rubbed_motion import rubbed_motion, work_between
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.bodies.body import clamped_end
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
@@ -279,6 +279,7 @@ def envelope_case(
         links=links,
         idle=tuple(link for link in case.checked_links if link not in over.loaded),
         linkage=linkage,
+        work={load_case: work_between(moved, load_case) for load_case in moved.rubbing},
         clearance=whole.clearance,
         checks=tuple(checks),
         verdict=overall(check.verdict for check in checks),

@@ -18,6 +18,7 @@ from alula.loads.case.case import Case
 from alula.loads.records.bearing import Span
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.clearance import Clearance
+from alula.loads.states.drive_work import DriveWork
 from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
@@ -288,6 +289,8 @@ class EnvelopeResult:
         Links on which nothing acts.
     linkage : mapping of str to LinkageOverMotion
         Load case -> numbers of the linkage as a whole.
+    work : mapping of str to DriveWork
+        Load case -> what the drive does, with the ends of what friction may be; empty where no joint rubs.
     clearance : Clearance or None
         The gaps between links; None where no layers are stated.
     checks : tuple of CheckOutcome
@@ -310,6 +313,7 @@ class EnvelopeResult:
     links: Mapping[str, LinkEnvelope]
     idle: tuple[str, ...]
     linkage: Mapping[str, LinkageOverMotion]
+    work: Mapping[str, DriveWork]
     clearance: Clearance | None
     checks: tuple[CheckOutcome, ...]
     verdict: Verdict

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.theory import BeamCheck, CantileverCheck
 from alula.fea.common.band import Band
+from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.frame.joint_forces import JointForces, WayToHold
@@ -23,14 +24,14 @@ from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.solution import SolidCase, SolidSolution
 from alula.fea.solid.stress import StressField
-from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.materials.material import stress_measure
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.sources.published_statics import StaticsAudit
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange
 from alula.loads.states.clearance import Clearance
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.extent import Extent
@@ -343,8 +344,16 @@ class CheckResult:
         CalculiX beside our solid models, where it was asked for.
     frequencies : CaseFrequencies or None
         Natural frequencies, where a check asks for them.
-    in_air : CaseMotion or None
-        The motion of the load cases with air; None without any, where it cannot be moved, and of a bare check.
+    changes : tuple of VerdictChange
+        What would change the verdict of the check that decides. This and what follows is what a report tells besides;
+        ``alula.fea.findings.of_check`` finds it, and a check by itself leaves it out.
+    motion : Motion or None
+        Of the case; None without one, and where the linkage does not get along it.
+    in_air : AirRange or None
+        The motion of the load cases with air; None without any, and where it cannot be moved.
+    harmonic : str
+        Which harmonic of the drive comes nearest to a natural frequency that no check asks for, as
+        ``alula.fea.vibration.harmonics.nearest_harmonic`` says.
     """
 
     name: str
@@ -361,12 +370,15 @@ class CheckResult:
     warnings: tuple[Reason | str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
-    in_air: CaseMotion | None = None
+    changes: tuple[VerdictChange, ...] = ()
+    motion: Motion | None = None
+    in_air: AirRange | None = None
+    harmonic: str = ""
 
     @cached_property
     def caveats(self) -> tuple[Caveat, ...]:
-        """What a reader of the verdict must know besides; its natural frequency is found when it is first asked for."""
-        return caveats(self.case, harmonic=nearest_harmonic(self.case))
+        """What a reader of the verdict must know besides."""
+        return caveats(self.case, harmonic=self.harmonic)
 
     @property
     def frames(self) -> Mapping[str, LargeDisplacement]:

@@ -24,10 +24,10 @@ of a size in which none was found that passes (``alula.fea.sizing.size_range``).
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import replace
 
-from alula.fea.common.source import Source, SourceKind, widest
+from alula.fea.common.change import EXACT, MaterialChange, Property, VerdictChange, rounded
+from alula.fea.common.source import SourceKind, widest
 from alula.fea.common.verdict import (
     LINKAGE,
     MOTOR_QUANTITIES,
@@ -40,7 +40,7 @@ from alula.fea.common.verdict import (
 from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
 from alula.fea.nonlinear.stability import SNAP
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
-from alula.fea.sizing.size_range import SizeRange, size_range
+from alula.fea.sizing.size_range import size_range
 from alula.fea.sizing.tried import Scaled, Trials, goes_with_load
 from alula.geometry.materials.family import most_of_family
 from alula.geometry.materials.material import Material
@@ -51,10 +51,6 @@ TRIES = 3
 """Of each load, strength or modulus."""
 _CLOSER = 0.99
 """Factor beside the margin that is left, since the path to a limit load is followed in steps."""
-_EXACT = 1e-9
-Property = Literal[
-    "yield strength", "ultimate strength", "strength of the layers", "sustained strength", "modulus", "all moduli"
-]
 _NAMES: Mapping[str, Property] = {"yield": "yield strength", "ultimate": "ultimate strength"}
 _ENTRIES: Mapping[Property, str] = {
     "yield strength": "yield_strength",
@@ -66,85 +62,6 @@ _ENTRIES: Mapping[Property, str] = {
 }
 """Of a card."""
 _BY_DEFINITION = (Quantity.LOAD_SHARE, Quantity.LIMIT_LOAD, Quantity.BUCKLING_FACTOR)
-
-
-@dataclass(frozen=True, kw_only=True)
-class MaterialChange:
-    """A material that would take the unfavourable end of a band to its limit.
-
-    Attributes
-    ----------
-    what : Property
-        For people, too.
-    material : str
-        Name of the material; "" where it is all of them.
-    stated : float
-        Its property as it is [MPa]; 1 of all moduli together.
-    needed : float
-        The least that suffices; of a check that passes, how low it may be, and a modulus by linear theory.
-    """
-
-    what: Property
-    material: str
-    stated: float
-    needed: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class VerdictChange:
-    """What would change the verdict of a check.
-
-    Attributes
-    ----------
-    check : CheckOutcome
-    load : float or None
-        Factor on all loads of its load case that takes the unfavourable end of its band to the limit; None where that
-        does not follow.
-    faster : bool
-        True where the number changes faster than the loads: what passes may grow by less than ``load``, and for what
-        does not ``load`` suffices.
-    until : float
-        Factor on the loads up to which the number goes with them; infinite where it does so by definition.
-    material : MaterialChange or None
-    widest : tuple of Source
-        Of an open check, what most of its band comes from; several where they are not known one by one.
-    size : SizeRange or None
-        What to size with ``alula size``; None where no value was found that passes.
-    sizable : bool
-        False where the check is open for its model rather than for its number, which no size decides.
-    refuted : bool
-        True where a load or material was tried and none was found that does.
-    """
-
-    check: CheckOutcome
-    load: float | None = None
-    faster: bool = False
-    until: float = math.inf
-    material: MaterialChange | None = None
-    widest: tuple[Source, ...] = ()
-    size: SizeRange | None = None
-    sizable: bool = False
-    refuted: bool = False
-
-
-def rounded(value: float, *, up: bool, digits: int = 3) -> float:
-    """Return a number to some digits, upwards or downwards, so that it still does what it should.
-
-    Parameters
-    ----------
-    value : float
-    up : bool
-    digits : int, optional
-
-    Returns
-    -------
-    float
-    """
-    if value <= 0.0 or not math.isfinite(value):
-        return value
-    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
-    steps = math.ceil(value / step - _EXACT) if up else math.floor(value / step + _EXACT)
-    return steps * step
 
 
 def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
@@ -159,17 +76,9 @@ def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
     tuple of VerdictChange
         Of the check that the headline names; empty where nothing was checked.
     """
-    if _latest and _latest[0][0] is result:
-        return _latest[0][1]
     first = deciding(check for case in result.load_cases.values() for check in case.checks)[:1]
     trials = Trials(result=result)
-    found = tuple(_tried(trials, _change(result, check)) for check in first)
-    _latest[:] = [(result, found)]
-    return found
-
-
-_latest: list[tuple[CheckResult, tuple[VerdictChange, ...]]] = []
-"""Console, page and record ask for the same ones."""
+    return tuple(_tried(trials, _change(result, check)) for check in first)
 
 
 def _tried(trials: Trials, change: VerdictChange) -> VerdictChange:
@@ -217,7 +126,7 @@ def _held(first: float, share: Callable[[float], float]) -> float | None:
     factor = first
     for _ in range(TRIES):
         kept = share(factor)
-        if kept >= 1.0 - _EXACT:
+        if kept >= 1.0 - EXACT:
             return factor
         factor *= kept * _CLOSER
         if factor <= 0.0 or (first > 1.0 >= factor):

@@ -6,8 +6,8 @@ up to four times it, or what the case's own rules take of that. The check must p
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from alula.fea.common.change import SizeRange
 from alula.fea.common.verdict import MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.frame.displacement_band import shares_of_work
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -22,23 +22,6 @@ HOPELESS = 0.5
 _DOUBLED = math.log(2.0)
 _FARTHEST = REACHES[-1][0] ** -4
 """Margin that no size takes to 1: the most, a second moment of area, goes with its fourth power."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class SizeRange:
-    """An entry of a case, and the range in which its size may be sought.
-
-    Attributes
-    ----------
-    entry : str
-        Path, such as ``parts.tube.outer_diameter``.
-    first, last : str
-        Ends, with their unit; the case takes both.
-    """
-
-    entry: str
-    first: str
-    last: str
 
 
 def size_range(trials: Trials, check: CheckOutcome) -> SizeRange | None:

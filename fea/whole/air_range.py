@@ -5,46 +5,13 @@ it: over the range they are largest at an end.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 
 from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.flapping import in_air
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class AirRange:
-    """Motions of the load cases with air alone.
-
-    Attributes
-    ----------
-    without : CaseMotion
-        Without the air.
-    least, largest : CaseMotion
-        With the least and with the largest C_N of each load case.
-    """
-
-    without: CaseMotion
-    least: CaseMotion
-    largest: CaseMotion
-
-    def at(self, load_case: str) -> tuple[CaseMotion, ...]:
-        """Return the motions at the ends of the range; none of a load case without air or with a C_N without range.
-
-        Parameters
-        ----------
-        load_case : str
-            Its name.
-
-        Returns
-        -------
-        tuple of CaseMotion
-        """
-        least, largest = (moved.case.load_cases.get(load_case) for moved in (self.least, self.largest))
-        return () if least == largest else (self.least, self.largest)
 
 
 @lru_cache(maxsize=4)
@@ -65,11 +32,11 @@ def air_range(moved: CaseMotion) -> AirRange | None:
     found: Mapping[float | None, CaseMotion] = {
         share: rubbed_motion(in_air(moved.case, share)) for share in (None, 0.0, 1.0)
     }
-    return AirRange(without=found[None], least=found[0.0], largest=found[1.0])
+    return AirRange(stated=moved, without=found[None], least=found[0.0], largest=found[1.0])
 
 
-def motion_in_air(case: Case) -> CaseMotion | None:
-    """Return the motion of the load cases with air.
+def motion_in_air(case: Case) -> AirRange | None:
+    """Return the motion of the load cases with air, and what it is without and at either end of the range of C_N.
 
     Parameters
     ----------
@@ -77,13 +44,13 @@ def motion_in_air(case: Case) -> CaseMotion | None:
 
     Returns
     -------
-    CaseMotion or None
+    AirRange or None
         None without any, without a motion or a drive, and where the linkage does not get along it.
     """
     flapping = {name: one for name, one in case.load_cases.items() if one.flapping is not None}
     if not flapping or case.motion is None or case.drive is None:
         return None
     try:
-        return rubbed_motion(case.model_copy(update={"load_cases": flapping}))
+        return air_range(rubbed_motion(case.model_copy(update={"load_cases": flapping})))
     except CaseError:  # ``alula motion`` says why
         return None

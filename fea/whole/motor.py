@@ -19,14 +19,14 @@ from alula.fea.common.convex import least_of_convex
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind, air_source, friction_source, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from alula.fea.whole.air_range import AirRange, air_range
+from alula.fea.whole.air_range import air_range
 from alula.fea.whole.rubbed_motion import friction_range, rubbed_motion
 from alula.geometry.base.ties import TIE
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import friction_ranges
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.records.flapping import Flapping
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.kinetostatics import relative_motion
 from alula.loads.states.loose_motion import loose_motion
 

@@ -162,6 +162,41 @@ class CaseMotion:
         return ("force", "N") if self.pushes else ("torque", "N·mm")
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AirRange:
+    """A motion in air, and what it is without and at either end of the range of C_N.
+
+    Attributes
+    ----------
+    stated : CaseMotion
+        With the stated C_N.
+    without : CaseMotion
+        Without the air.
+    least, largest : CaseMotion
+        With the least and with the largest C_N of each load case.
+    """
+
+    stated: CaseMotion
+    without: CaseMotion
+    least: CaseMotion
+    largest: CaseMotion
+
+    def at(self, load_case: str) -> tuple[CaseMotion, ...]:
+        """Return the motions at the ends of the range; none of a load case without air or with a C_N without range.
+
+        Parameters
+        ----------
+        load_case : str
+            Its name.
+
+        Returns
+        -------
+        tuple of CaseMotion
+        """
+        least, largest = (moved.case.load_cases.get(load_case) for moved in (self.least, self.largest))
+        return () if least == largest else (self.least, self.largest)
+
+
 def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) -> CaseMotion:
     """Move the case's linkage as its table [motion] says and solve every load case at every pose.
 

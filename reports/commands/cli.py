@@ -98,11 +98,12 @@ def check(
 ) -> None:
     """Check a case: pose, joint forces, stress, verdict."""
     from alula.fea.check.run import check_case, effort_of
+    from alula.fea.findings.of_check import with_findings
     from alula.loads.case.case_file import read_case
-    from alula.reports.page.folder import report_names
+    from alula.reports.check.folder import report_names
+    from alula.reports.check.screen import print_result, print_screen
+    from alula.reports.check.whole_check import check_json, check_sections
     from alula.reports.page.output import refuse_unusable
-    from alula.reports.tables.console import print_result, print_screen
-    from alula.reports.tables.record import as_json
     from alula.reports.words.limits import limited
 
     if second_opinion and fidelity == "auto":
@@ -115,16 +116,25 @@ def check(
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=tell)
         decks = None
         if second_opinion:
+            from alula.fea.calculix.second_opinion import second_opinions
             from alula.geometry.base.tidying import scratch_folder
             from alula.reports.tables.second_opinion import with_second_opinions
 
             decks = scratch.enter_context(scratch_folder("alula-"))
-            result = with_second_opinions(result, decks, threads=threads, progress=progress)
-        _show(result, as_json if json else None, print_result if verbose else print_screen)
-        if output is not None:
-            from alula.reports.page.folder import write_report
+            result = with_second_opinions(result, second_opinions(result, decks, threads=threads, progress=progress))
+        result = with_findings(result)
+        sections = check_sections(result)
+        if json:
+            print(check_json(result, sections), flush=True)
+        else:
+            from rich.console import Console
 
-            write_report(result, output, decks=decks, progress=progress)
+            (print_result if verbose else print_screen)(result, sections, Console())
+        if output is not None:
+            from alula.fea.claims.sources import claims_of
+            from alula.reports.check.folder import write_report
+
+            write_report(result, output, claims=claims_of(result), decks=decks, progress=progress)
             _tell(f"Report: {output / 'report.html'}", json)
     raise SystemExit(result.verdict.exit_status)
 
@@ -158,6 +168,7 @@ def motion(
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
     from alula.fea.common.verdict import Verdict
+    from alula.fea.findings.of_motion import motion_findings
     from alula.fea.whole.rubbed_motion import rubbed_motion
     from alula.loads.case.case_file import read_case
     from alula.reports.commands.motion import print_motion, write_motion
@@ -168,10 +179,11 @@ def motion(
         parsed = read_case(case, overrides or ())
         refuse_unusable(output, "motion")
         result = rubbed_motion(parsed)
-        print_motion(result, case, json=json)
+        found = motion_findings(result)
+        print_motion(found, case, json=json)
         if output is not None:
             progress("Drawing figures and the animation ...")
-            write_folder(output, "motion", lambda folder: write_motion(result, folder, case))
+            write_folder(output, "motion", lambda folder: write_motion(found, folder, case))
             _tell(f"\nTables and figures: {output / 'motion'}", json)
     for sentence in result.locks:
         progress(f"Warning: {sentence}.")

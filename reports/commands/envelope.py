@@ -16,14 +16,16 @@ from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.outcomes.unchecked import caveats, unchecked
 from alula.geometry.base.version import result_stamp
 from alula.geometry.materials.material import Material
+from alula.reports.check.links import solver_record
 from alula.reports.page.motion_pages import envelope_headline
 from alula.reports.page.output import MARK, write_folder
+from alula.reports.renderers.record import finite
+from alula.reports.sections.checks import check_records
+from alula.reports.sections.data import data, entries
+from alula.reports.sections.friction import motion_friction_lines, motion_friction_record
 from alula.reports.sentences import told
 from alula.reports.tables.console import say_checks, verdict_line
-from alula.reports.tables.data import check_records, data, entries, finite
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
-from alula.reports.tables.friction import motion_friction_lines, motion_friction_record
-from alula.reports.tables.meshes import solver_record
 from alula.reports.words.numbers import band, fixed, number, sentence
 from alula.reports.words.terminal import say, say_table
 
@@ -73,7 +75,7 @@ def write_envelope(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from alula.reports.figures.envelope_figures import envelope_figure, stress_pictures
+    from alula.reports.figures.motion.envelope_figures import envelope_figure, stress_pictures
     from alula.reports.page.export import write_vtu
     from alula.reports.page.motion_pages import ENVELOPE, envelope_page
 
@@ -82,14 +84,14 @@ def write_envelope(
         write_curves(result, folder / CURVES)
         progress("Drawing the envelope ...")
         curves = envelope_figure(result)
-        (folder / FIGURE).write_bytes(curves)
+        (folder / FIGURE).write_bytes(curves.png())
         progress("Rendering the stress plots ...")
         plots, warnings = stress_pictures(result, result.links)
         for warning in warnings:
             progress(f"Warning: {warning}")
         (folder / "pictures").mkdir()
         for name, plot in plots.items():
-            (folder / "pictures" / f"stress-{name}.png").write_bytes(plot)
+            (folder / "pictures" / f"stress-{name}.png").write_bytes(plot.png())
         (folder / ENVELOPE).write_text(envelope_page(result, curves, plots), encoding="utf-8")
         (folder / "vtu").mkdir()
         for name, link in result.links.items():
@@ -162,7 +164,8 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
     dict
         Angles in degrees; infinite and unknown numbers are None.
     """
-    motion, rubbing = result.moved.motion, result.moved.rubbing
+    motion = result.moved.motion
+    friction = {name: motion_friction_record(result.moved, work, name) for name, work in result.work.items()}
     envelope = {
         **result_stamp(),
         "case": result.name,
@@ -181,7 +184,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         },
         "links": {name: _link_record(result, link) for name, link in result.links.items()},
         "linkage": {name: motion_linkage_record(result.moved, over) for name, over in result.linkage.items()},
-        **({"friction": {n: motion_friction_record(result.moved, n) for n in rubbing}} if rubbing else {}),
+        **({"friction": friction} if friction else {}),
         "idle_links": list(result.idle),
         "not_checked": list(unchecked(result.case, over_motion=True)),
         "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, over_motion=True)],
@@ -315,8 +318,8 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
             console,
             f"{f'Load case {name}: ' if len(result.linkage) > 1 else ''}{motion_linkage_line(result.moved, over)}",
         )
-    for name in result.moved.rubbing:
-        say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, name))}.")
+    for name, work in result.work.items():
+        say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, work, name))}.")
     say_checks(result.checks, console)
     for check in result.checks:
         if check.quantity in UNLOADED_QUANTITIES:

@@ -72,7 +72,7 @@ def as_json(found: "CaseFrequencies", name: str) -> str:
     str
     """
     from alula.geometry.base.version import result_stamp
-    from alula.reports.tables.data import finite
+    from alula.reports.renderers.record import finite
     from alula.reports.tables.frequencies import frequencies_record
 
     record: dict[str, Any] = {**result_stamp(), "case": name, "title": found.case.title, "units": UNITS}
@@ -138,14 +138,14 @@ def write_frequencies(found: "CaseFrequencies", folder: Path, name: str) -> None
     name : str
         Of the case, as the command was given it.
     """
+    from alula.reports.figures.vibration.pictures import frequency_pictures
     from alula.reports.page.frequencies_page import PAGE, frequencies_page
-    from alula.reports.vibration.pictures import frequency_pictures
 
     pictures = frequency_pictures(found, every=True)
     (folder / "result.json").write_text(as_json(found, name) + "\n", encoding="utf-8")
     _write_table(found, folder / "frequencies.csv")
     for title, picture in pictures.items():
-        (folder / f"{title}.png").write_bytes(picture)
+        (folder / f"{title}.png").write_bytes(picture.png())
     (folder / PAGE).write_text(frequencies_page(found, pictures, name=name), encoding="utf-8")
 
 

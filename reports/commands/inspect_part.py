@@ -16,7 +16,7 @@ from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.mesh_part import UNITS
 from alula.loads.exchange.part import FoundPart, part_entries
 from alula.loads.text.explain import printable
-from alula.reports.tables.data import entries
+from alula.reports.sections.data import entries
 from alula.reports.words.numbers import fixed, joined, number, plain
 from alula.reports.words.terminal import KEPT, say, say_table
 
@@ -186,7 +186,7 @@ def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], 
     if picture is None:
         progress(f"Warning: no picture: {trouble}")
     else:
-        (folder / PICTURE).write_bytes(picture)
+        (folder / PICTURE).write_bytes(picture.png())
     if text := part_entries(found):
         (folder / ENTRIES).write_text(text, encoding="utf-8")
     (folder / RECORD).write_text(as_json(found) + "\n", encoding="utf-8")

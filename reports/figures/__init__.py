@@ -1,4 +1,4 @@
-"""Pictures: the linkage, diagrams, stress plots, motion and envelope.
+"""All pictures: the linkage, diagrams and stress here, each other kind in a folder of its own.
 
-Hands on PNG files as bytes.
+``sheet`` is what they are drawn on. Hands on PNG files as bytes.
 """

@@ -1,12 +1,12 @@
-"""Safety factor of a printed link over the direction in which it is built, as a map of half the sphere, as PNG."""
+"""Safety factor of a printed link over the direction in which it is built, as a map of half the sphere."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.solid.layers import AZIMUTH, POLAR, build_directions
-from alula.reports.sheet.canvas import Canvas
-from alula.reports.sheet.style import GROUND, INK
-from alula.reports.tables.layers import BuildDirections, direction
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.style import GROUND, INK
+from alula.reports.sections.layers import BuildDirections, direction
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
@@ -21,7 +21,7 @@ _MOST = 20.0
 _STEPS = 60
 
 
-def build_map(found: BuildDirections) -> bytes:
+def build_map(found: BuildDirections) -> Canvas:
     """Draw the safety factor of a link's layers for every direction of building, with the stated and the best one.
 
     Lambert's projection of equal areas, seen along the pins: they are in the middle, the linkage's plane is the rim.
@@ -33,13 +33,8 @@ def build_map(found: BuildDirections) -> bytes:
 
     Returns
     -------
-    bytes
-        A PNG.
+    Canvas
     """
-    return _sheet(found).png()
-
-
-def _sheet(found: BuildDirections) -> Canvas:
     assert found.scan is not None
     assert found.best is not None
     sheet = Canvas(_WIDTH, _HEIGHT)

@@ -1,18 +1,19 @@
-"""Normal force, shear force and bending moment along a link, as PNG."""
+"""Normal force, shear force and bending moment along a link."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.theory import BeamCheck
-from alula.reports.sheet.canvas import Canvas, faint
-from alula.reports.sheet.labels import heights, stacked, write_stacked
-from alula.reports.sheet.plot import Axes
-from alula.reports.sheet.style import GROUND, INK, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.labels import heights, stacked, write_stacked
+from alula.reports.figures.sheet.plot import Axes
+from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 _BESIDE = 0.03
 """Room beside the link, as a share of its length."""
+_ALONG = "x along the link [mm]"
 _NIL = 1e-9
 """Share of the largest value below which a quantity is drawn as zero."""
 _LEFT, _RIGHT, _LABEL = 80.0, 517.0, 20.0
@@ -22,7 +23,7 @@ the room between and below them [points]. The lower panels let a printed sheet h
 _COLOURS = {"N": "#7a4fa3", "V": "#00795a", "M": "#c8460b", "T": "#0067a8", "σ": "#8a1538"}
 
 
-def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> bytes:
+def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> Canvas:
     """Draw N, V and M of a link over its length, with extreme values.
 
     Out-of-plane shear, moment and torque are drawn where they are not zero, and of a part from a file, whose section
@@ -36,13 +37,8 @@ def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> bytes:
 
     Returns
     -------
-    bytes
-        A PNG.
+    Canvas
     """
-    return _sheet(beam, points).png()
-
-
-def _sheet(beam: BeamCheck, points: dict[str, float]) -> Canvas:
     rows: list[tuple[str, str, Real]] = [("N", "N [N]", beam.n), ("V", "V [N]", beam.v_y), ("M", "M [N·mm]", beam.m_z)]
     length = float(np.ptp(beam.x))
     force = max(float(np.abs(v).max()) for v in (beam.n, beam.v_y, beam.v_z))
@@ -71,9 +67,9 @@ def _sheet(beam: BeamCheck, points: dict[str, float]) -> Canvas:
         for x in points.values():
             place = float(axes.at([x, 0.0])[0])
             sheet.line([(place, box[1]), (place, box[3])], GROUND, 0.6, dashes=(1.2, 1.8))
-        _panel(sheet, axes, beam.x, values, label, _COLOURS[kind])
+        _panel(sheet, axes, beam.x, values, (kind, label))
     axes.frame(sheet, "bottom")
-    axes.scale_x(sheet, "x along the link [mm]")
+    axes.scale_x(sheet, _ALONG)
     write_stacked(sheet, names, _LEFT, top)
     return sheet
 
@@ -87,11 +83,12 @@ def _room(values: Real) -> tuple[float, float]:
     return low - (0.34 if low < 0.0 else 0.1) * room, high + (0.34 if high > 0.0 else 0.1) * room
 
 
-def _panel(sheet: Canvas, axes: Axes, x: Real, values: Real, label: str, colour: str) -> None:
+def _panel(sheet: Canvas, axes: Axes, x: Real, values: Real, row: tuple[str, str]) -> None:
+    (kind, label), colour = row, _COLOURS[row[0]]
     curve = axes.at(np.column_stack([x, values]))
     zero = axes.at([[x[0], 0.0], [x[-1], 0.0]])
     sheet.area(np.vstack([zero[:1], curve, zero[1:]]), faint(colour, 0.16))
-    sheet.line(curve, colour, 1.4)
+    axes.curve(sheet, x, values, colour, 1.4, name=kind, labels=(_ALONG, label))
     sheet.line([(axes.box[0], zero[0, 1]), (axes.box[2], zero[0, 1])], INK, 0.7)
     axes.frame(sheet, "left")
     if not values.any():

@@ -1,4 +1,4 @@
-"""The drawing of the linkage in its pose with joint forces, loads and drive torque, as PNG."""
+"""The drawing of the linkage in its pose with joint forces, loads and drive torque."""
 
 import itertools
 import math
@@ -12,12 +12,13 @@ from alula.loads.records.applied import LineLoad, PointLoad, in_axes
 from alula.loads.records.springs import LineSpring
 from alula.loads.states.actions import stated_loads
 from alula.loads.statics.rounding import without_rounding
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.labels import along, place_labels
+from alula.reports.figures.sheet.letters import extent
+from alula.reports.figures.sheet.plot import Axes, ticks, widest
+from alula.reports.figures.sheet.silhouette import curves, outlines, silhouette
+from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
 from alula.reports.figures.sprung import coil, spiral, stop_mark
-from alula.reports.sheet.canvas import Canvas, extent
-from alula.reports.sheet.labels import along, place_labels
-from alula.reports.sheet.plot import Axes, ticks, widest
-from alula.reports.sheet.silhouette import curves, outlines, silhouette
-from alula.reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
 from alula.reports.words.numbers import number, turning
 
 Real = NDArray[np.float64]
@@ -30,7 +31,7 @@ _LETTERS = 8.5
 """Size of labels [points]."""
 
 
-def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
+def linkage_drawing(result: CheckResult, load_case: str) -> Canvas:
     """Draw the linkage to scale in its pose under a load case.
 
     Each joint force is drawn as it acts on the link in its label.
@@ -43,11 +44,9 @@ def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
 
     Returns
     -------
-    bytes
-        A PNG.
+    Canvas
     """
-    drawing = _Drawing(result, load_case)
-    return drawing.draw().png()
+    return _Drawing(result, load_case).draw()
 
 
 class _Drawing:

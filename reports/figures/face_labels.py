@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.reports.figures.scene import View, hits
-from alula.reports.sheet.canvas import extent
+from alula.reports.figures.sheet.letters import extent
 
 Real = NDArray[np.float64]
 

@@ -21,10 +21,11 @@ from alula.geometry.base import child
 from alula.geometry.base.child_server import ChildEndedError, ServerPool
 from alula.geometry.base.system_libraries import OSMESA, loads
 from alula.reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
-from alula.reports.sheet.canvas import SIZE, Canvas, faint
-from alula.reports.sheet.labels import heights, stacked, write_stacked
-from alula.reports.sheet.plot import Axes
-from alula.reports.sheet.style import INK, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.labels import heights, stacked, write_stacked
+from alula.reports.figures.sheet.letters import SIZE
+from alula.reports.figures.sheet.plot import Axes
+from alula.reports.figures.sheet.style import INK, WIDTH
 from alula.reports.words.numbers import fixed, number, plain
 
 Real = NDArray[np.float64]
@@ -41,7 +42,7 @@ COLOURS = ("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a", "#e
 
 def stress_plots(
     links: Mapping[str, LinkResult], points: Mapping[str, Mapping[str, Place]], *, time_limit: float = TIME_LIMIT
-) -> tuple[dict[str, bytes], tuple[str, ...]]:
+) -> tuple[dict[str, Canvas], tuple[str, ...]]:
     """Draw the stress of every link that was solved as a solid.
 
     Where rendering fails there are fewer pictures and one warning.
@@ -58,7 +59,7 @@ def stress_plots(
     Returns
     -------
     tuple
-        Link -> PNG, and warnings.
+        Link -> Canvas, and warnings.
     """
     scenes = {name: scene_of(link) for name, link in links.items() if isinstance(link, SolidResult)}
     return plots_of(scenes, points, time_limit=time_limit)
@@ -66,7 +67,7 @@ def stress_plots(
 
 def plots_of(
     scenes: Mapping[str, Scene], points: Mapping[str, Mapping[str, Place]], *, time_limit: float = TIME_LIMIT
-) -> tuple[dict[str, bytes], tuple[str, ...]]:
+) -> tuple[dict[str, Canvas], tuple[str, ...]]:
     """Draw scenes.
 
     Parameters
@@ -81,7 +82,7 @@ def plots_of(
     Returns
     -------
     tuple
-        Name -> PNG, and warnings.
+        Name -> Canvas, and warnings.
     """
     if not scenes:
         return {}, ()
@@ -224,7 +225,7 @@ _GAP = 36.0
 """Room between the views [points]."""
 
 
-def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, Place]) -> bytes:
+def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, Place]) -> Canvas:
     """Put both renderings, the colour bar and the labels on one sheet."""
     wide = 72.0 * WIDTH - 2.0 * MARGIN
     on_axis = {name: at for name, at in points.items() if abs(at[1]) < _ON_AXIS * scene.strip.half_width}
@@ -269,7 +270,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, Place])
     for k, line in enumerate("\n".join(lines).split("\n")):
         sheet.write(line.lstrip(), (left + 3.0 * (len(line) - len(line.lstrip())), high + 79.0 + 1.55 * SIZE * k),
                     anchor="left top")  # fmt: skip
-    return sheet.png()
+    return sheet
 
 
 def _colour_bar(sheet: Canvas, scene: Scene, box: tuple[float, float, float, float]) -> None:

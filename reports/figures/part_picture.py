@@ -11,10 +11,11 @@ from alula.geometry.imported.facts import Bore, PartFacts, PartSurface
 from alula.reports.figures.face_labels import FaceSpot, face_spot, is_seen
 from alula.reports.figures.figures import rendered, scale_bar
 from alula.reports.figures.scene import Rendering, View, axes_of
-from alula.reports.sheet.canvas import SIZE, Canvas, faint
-from alula.reports.sheet.labels import place_labels
-from alula.reports.sheet.plot import Axes
-from alula.reports.sheet.style import GROUND, INK, LOAD, WIDTH
+from alula.reports.figures.sheet.canvas import Canvas, faint
+from alula.reports.figures.sheet.labels import place_labels
+from alula.reports.figures.sheet.letters import SIZE
+from alula.reports.figures.sheet.plot import Axes
+from alula.reports.figures.sheet.style import GROUND, INK, LOAD, WIDTH
 
 Real = NDArray[np.float64]
 
@@ -33,7 +34,7 @@ _HIDDEN = 0.55
 """How strong the name of a bore is on the side where it cannot be seen."""
 
 
-def part_picture(facts: PartFacts, surface: PartSurface) -> tuple[bytes | None, str]:
+def part_picture(facts: PartFacts, surface: PartSurface) -> tuple[Canvas | None, str]:
     """Draw a part from above and from below, with its bores coloured and named.
 
     Parameters
@@ -46,7 +47,7 @@ def part_picture(facts: PartFacts, surface: PartSurface) -> tuple[bytes | None, 
     Returns
     -------
     tuple
-        A PNG, or None with what went wrong.
+        Canvas, or None, and what went wrong.
     """
     frame = viewing_frame(facts)
     points = frame.place(surface.points)
@@ -106,7 +107,7 @@ def _composed(
     faces: NDArray[np.int64],
     views: Mapping[str, View],
     images: Mapping[str, Real],
-) -> bytes:
+) -> Canvas:
     """Put both views on one sheet."""
     wide = 72.0 * WIDTH - 2.0 * _MARGIN
     tall = [wide * view.half_height / view.half_width for view in views.values()]
@@ -147,7 +148,7 @@ def _composed(
     if nowhere:
         told += "; faint names: hidden inside"
     sheet.write(told, (72.0 * WIDTH - _MARGIN, top - 12.0), anchor="right bottom")
-    return sheet.png()
+    return sheet
 
 
 def _face_spots(

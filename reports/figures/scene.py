@@ -11,7 +11,7 @@ from alula.fea.refine.discretisation import Discretisation, MeshStatus
 from alula.fea.solid.stress import StressField
 from alula.geometry.materials.material import stress_measure
 from alula.geometry.parts.part import Section
-from alula.reports.sheet.style import DPI, WIDTH
+from alula.reports.figures.sheet.style import DPI, WIDTH
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]

@@ -8,19 +8,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.of_motion import MotionFindings
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.figures.joint_paths import moving_points, owners
+from alula.reports.motion.joint_paths import moving_points, owners
 from alula.reports.motion.play import drive_play, point_play
 from alula.reports.motion.rates import QUANTITIES, Series, Values, series
-from alula.reports.tables.springs import motion_springs
+from alula.reports.sections.springs import motion_springs
 
 Real = NDArray[np.float64]
 ANGULAR = ("angular_speed", "angular_acceleration")
 """Quantities of a link whose columns have shorter names in ``links.csv``."""
 
 
-def write_tables(result: CaseMotion, folder: Path) -> None:
+def write_tables(found: MotionFindings, folder: Path) -> None:
     """Write ``links.csv``, ``points.csv``, ``torque.csv`` and ``joint-forces.csv``, with springs ``springs.csv``.
 
     Torques and joint forces have one load case below the other. So has ``rates.csv``, where load cases have a speed:
@@ -28,18 +29,19 @@ def write_tables(result: CaseMotion, folder: Path) -> None:
 
     Parameters
     ----------
-    result : CaseMotion
+    found : MotionFindings
     folder : Path
         An existing folder.
     """
+    result = found.moved
     motion = result.motion
     _write(folder / "links.csv", {**_base(motion), **_link_columns(result)})
-    _write(folder / "points.csv", {**_base(motion), **_point_columns(result)})
+    _write(folder / "points.csv", {**_base(motion), **_point_columns(found)})
     if springs := motion_springs(result):
         _write(folder / "springs.csv", {**_base(motion), **dict(springs)})
     below: dict[str, dict[str, Mapping[str, Real]]] = {
-        "torque.csv": {n: _torque_columns(result, n) for n in result.torque},
-        "rates.csv": {n: _rate_columns(found) for n in result.torque if (found := series(result, n)) is not None},
+        "torque.csv": {n: _torque_columns(found, n) for n in result.torque},
+        "rates.csv": {n: _rate_columns(rates) for n in result.torque if (rates := series(result, n)) is not None},
         "joint-forces.csv": {n: _force_columns(result, n) for n in result.forces},
     }
     for file, cases in below.items():
@@ -95,8 +97,8 @@ def _named(name: str, values: Mapping[str, Values]) -> dict[str, Real]:
     return columns
 
 
-def _point_columns(result: CaseMotion) -> dict[str, Real]:
-    motion, columns = result.motion, dict[str, Real]()
+def _point_columns(found: MotionFindings) -> dict[str, Real]:
+    motion, columns = found.moved.motion, dict[str, Real]()
     fields = [("", "mm", motion.position)]
     if motion.times is not None:
         fields += [("v", "mm/s", motion.velocity), ("a", "mm/s^2", motion.linear_acceleration)]
@@ -107,17 +109,18 @@ def _point_columns(result: CaseMotion) -> dict[str, Real]:
             columns[f"{label} {prefix}y [{unit}]"] = values[:, 1]
             if prefix:
                 columns[f"{label} {prefix} [{unit}]"] = np.linalg.norm(values, axis=1)
-        columns |= point_play(result, label)
+        columns |= point_play(found, label)
     return columns
 
 
-def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
+def _torque_columns(found: MotionFindings, load_case: str) -> dict[str, Real]:
+    result = found.moved
     what, unit = result.effort
     columns = {f"{what} on {result.drive.link} [{unit.replace('·', ' ')}]": result.torque[load_case]}
     if result.rubbing:
         columns[f"{what} without friction [{unit.replace('·', ' ')}]"] = result.frictionless[load_case]
         columns["efficiency [1]"] = result.work(load_case).efficiency
-    columns |= drive_play(result, load_case)
+    columns |= drive_play(found, load_case)
     if any(np.any(moved.speed) for moved in result.moved.values()):
         columns["drive power [N mm/s]"] = result.drive_power(load_case)
         columns["kinetic energy [N mm]"] = result.power[load_case].kinetic

@@ -3,25 +3,25 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from alula.fea.motion.linkage_history import asked_over_motion
+from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.clearance import clearance
 from alula.reports.motion.play import drive_line, motion_play_record, play_lines
 from alula.reports.motion.rate_rows import link_columns, point_columns, told_speed, whole_sentences
-from alula.reports.tables.clearance import clearance_line
+from alula.reports.sections.assembly import clearance_text
+from alula.reports.sections.friction import motion_friction_lines
+from alula.reports.sections.markup import as_plain
+from alula.reports.sections.springs import motion_springs
 from alula.reports.tables.frames import motion_linkage_line
-from alula.reports.tables.friction import motion_friction_lines
 from alula.reports.tables.loads import air_lines
 from alula.reports.tables.mechanism import design_lines
-from alula.reports.tables.springs import motion_springs
 
 
-def motion_lines(result: CaseMotion, data: Mapping[str, Any]) -> Iterator[str]:
+def motion_lines(found: MotionFindings, data: Mapping[str, Any]) -> Iterator[str]:
     """Yield the result of a motion line by line.
 
     Parameters
     ----------
-    result : CaseMotion
+    found : MotionFindings
     data : mapping
         From ``alula.reports.motion.record.record``.
 
@@ -29,20 +29,21 @@ def motion_lines(result: CaseMotion, data: Mapping[str, Any]) -> Iterator[str]:
     ------
     str
     """
+    result = found.moved
     yield from _summary(result, data["motion"])
     yield from _dead_points(result, data["drive"], data["motion"]["unit"])
-    play = motion_play_record(result)
+    play = motion_play_record(found)
     yield from () if play is None else play_lines(result, play)
     if design := design_lines(result.case):
         yield from ("", *design)
-    if (line := clearance_line(clearance(result.case))) is not None:
-        yield from ("", line)
+    if found.clearance is not None:
+        yield from ("", as_plain(clearance_text(found.clearance).text))
     for told, values in motion_springs(result):
         ends = [float(f"{value:.4g}") for value in (values[0], values[-1], values.min(), values.max())]
         yield from ("", "Spring {}: {:g} -> {:g}; min {:g}, max {:g}".format(told, *ends))
     written: dict[str, Mapping[str, Any]] = {}
     for load_case, row in data["load_cases"].items():
-        yield from _load_case(result, load_case, row, play)
+        yield from _load_case(found, load_case, row, play)
         if row["rates"] is not None:
             yield from _rates(result, load_case, row["rates"], written)
 
@@ -84,20 +85,21 @@ def _dead_points(result: CaseMotion, drive: Mapping[str, Any], unit: str) -> Ite
 
 
 def _load_case(
-    result: CaseMotion, load_case: str, row: Mapping[str, Any], play: dict[str, Any] | None
+    found: MotionFindings, load_case: str, row: Mapping[str, Any], play: dict[str, Any] | None
 ) -> Iterator[str]:
     """Yield what drives the linkage in a load case, and its joint forces."""
+    result = found.moved
     at = told_speed(result, load_case)
     yield from ("", f"Load case {load_case} ({f'with inertia at {at}' if row['inertia'] else 'without inertia'})")
     (what, unit), over = result.effort, result.motion.unit
-    asked = asked_over_motion(result)
-    if load_case in asked:
-        yield f"  {motion_linkage_line(result, asked[load_case])}"
+    if load_case in found.linkage:
+        yield f"  {motion_linkage_line(result, found.linkage[load_case])}"
     told = _ends(row[f"drive_{what}"], unit, over)
     yield f"  drive {what} on {result.drive.link} at {result.drive.joint}: {told}"
     if play is not None:
         yield f"  {drive_line(result, play, load_case)}"
-    yield from (f"  {line}" for line in (motion_friction_lines(result, load_case) if result.rubbing else ()))
+    if result.rubbing:
+        yield from (f"  {line}" for line in motion_friction_lines(result, found.work[load_case], load_case))
     if "drive_power" in row:
         power = _ends(row["drive_power"], "W", over)
         yield f"  drive power at {at}: {power}; energy imbalance {row['energy_imbalance']:.1g} of the largest power"

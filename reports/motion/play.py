@@ -7,42 +7,40 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.loose_motion import LooseMotion, loose_motion
-from alula.reports.figures.joint_paths import loosest, moving_points
+from alula.reports.motion.joint_paths import loosest, moving_points
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 
 
-def motion_play_record(moved: CaseMotion) -> dict[str, Any] | None:
+def motion_play_record(found: MotionFindings) -> dict[str, Any] | None:
     """Return what play does over a motion as plain data.
 
     Parameters
     ----------
-    moved : CaseMotion
+    found : MotionFindings
 
     Returns
     -------
     dict or None
         ``docs/result.md`` describes it; None without play. Numbers without end are infinite.
     """
-    loose = loose_motion(moved)
-    if loose is None:
+    moved, play = found.moved, found.play
+    if play is None:
         return None
     points = {}
     for label in moving_points(moved.motion):
-        link, point = loosest(loose, label)
-        least = float(loose.free_motion(link, point).min())
-        points[label] = {"smallest": least, **_told(moved, "largest", *loose.farthest(link, point))}
+        point = play.points[loosest(moved.motion, play, label)]
+        points[label] = {"smallest": float(point.free.min()), **_told(moved, "largest", *point.farthest)}
     return {
-        "clearances": loose.clearances,
-        "through_dead_point": list(_spans(moved, loose.passes)),
-        "dead_point_distance": _told(moved, "smallest", *loose.nearest()),
+        "clearances": play.clearances,
+        "through_dead_point": list(_spans(moved, play.passes)),
+        "dead_point_distance": _told(moved, "smallest", *play.nearest),
         "points": points,
         f"drive_{moved.effort[0]}": {
-            name: _told(moved, "smallest", *loose.extreme_effort(name, -1.0))
-            | _told(moved, "largest", *loose.extreme_effort(name, 1.0))
+            name: _told(moved, "smallest", *play.smallest[name]) | _told(moved, "largest", *play.largest[name])
             for name in moved.loads
         },
     }
@@ -119,12 +117,12 @@ def drive_line(moved: CaseMotion, found: dict[str, Any], load_case: str) -> str:
     return f"with play of pins the drive {what} lies between {low} and {high}"
 
 
-def point_play(moved: CaseMotion, label: str) -> dict[str, Real]:
+def point_play(found: MotionFindings, label: str) -> dict[str, Real]:
     """Return the column of the free motion of a point; none without play.
 
     Parameters
     ----------
-    moved : CaseMotion
+    found : MotionFindings
     label : str
         As ``moving_points`` has it.
 
@@ -132,32 +130,30 @@ def point_play(moved: CaseMotion, label: str) -> dict[str, Real]:
     -------
     dict of str to array (n,)
     """
-    loose = loose_motion(moved)
-    return {} if loose is None else {f"{label} play to either side [mm]": _free(loose, label)}
+    play = found.play
+    if play is None:
+        return {}
+    return {f"{label} play to either side [mm]": play.points[loosest(found.moved.motion, play, label)].free}
 
 
-def _free(loose: LooseMotion, label: str) -> Real:
-    return loose.free_motion(*loosest(loose, label))
-
-
-def drive_play(moved: CaseMotion, load_case: str) -> dict[str, Real]:
+def drive_play(found: MotionFindings, load_case: str) -> dict[str, Real]:
     """Return the columns of drive and distance to a dead point with play; none without play.
 
     Parameters
     ----------
-    moved : CaseMotion
+    found : MotionFindings
     load_case : str
 
     Returns
     -------
     dict of str to array (n,)
     """
-    loose = loose_motion(moved)
-    if loose is None:
+    play = found.play
+    if play is None:
         return {}
-    (what, unit), (low, high) = moved.effort, loose.effort(load_case)
+    (what, unit), (low, high) = found.moved.effort, play.effort[load_case]
     unit = unit.replace("·", " ")
-    value, least = loose.distance
+    value, least = play.distance
     return {
         f"least {what} with play [{unit}]": low,
         f"largest {what} with play [{unit}]": high,

@@ -11,7 +11,7 @@ from alula.geometry.base.ties import first_largest
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.momentum import LinkageMomentum, on_ground
-from alula.reports.figures.joint_paths import moving_points, owners
+from alula.reports.motion.joint_paths import moving_points, owners
 
 Real = NDArray[np.float64]
 Values = NDArray[Any]

@@ -6,18 +6,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.motion.linkage_history import asked_over_motion
+from alula.fea.findings.of_motion import MotionFindings
 from alula.geometry.base.version import result_stamp
-from alula.loads.states.case_motion import CaseMotion, with_inertia
-from alula.loads.states.clearance import clearance
-from alula.loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
-from alula.reports.figures.joint_paths import moving_points, path_length
+from alula.loads.states.case_motion import with_inertia
+from alula.reports.motion.joint_paths import moving_points, path_length
 from alula.reports.motion.play import motion_play_record
 from alula.reports.motion.rates import QUANTITIES, Series, extremes, finite_or_none, rates_record, series, told
-from alula.reports.tables.clearance import clearance_record
-from alula.reports.tables.data import finite
+from alula.reports.renderers.record import finite
+from alula.reports.sections.assembly import clearance_record
+from alula.reports.sections.friction import motion_friction_record
 from alula.reports.tables.frames import motion_linkage_record
-from alula.reports.tables.friction import motion_friction_record
 from alula.reports.tables.loads import motion_air_record
 from alula.reports.tables.mechanism import design_record
 
@@ -35,12 +33,12 @@ UNITS = {
 }
 
 
-def record(result: CaseMotion, name: str) -> dict[str, Any]:
+def record(found: MotionFindings, name: str) -> dict[str, Any]:
     """Return the result of a motion as plain data.
 
     Parameters
     ----------
-    result : CaseMotion
+    found : MotionFindings
     name : str
         Of the case, as the command was given it.
 
@@ -49,6 +47,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
     dict
         Angles in degrees; unbounded torques are None.
     """
+    result = found.moved
     motion, own = result.motion, series(result)
     return {
         **result_stamp(),
@@ -85,16 +84,14 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
             "link": result.drive.link,
             "joint": result.drive.joint,
             "dead_points": [float(result.motion.told(a)) for a in result.dead_points],
-            "least_distance": least_dead_point_distance(result),
-            "way_to_dead_point": finite_or_none(float(result.motion.told(way_to_dead_point(result)))),
+            "least_distance": found.dead_point_distance,
+            "way_to_dead_point": finite_or_none(float(result.motion.told(found.way_to_dead_point))),
         },
         "design": design_record(result.case),
-        "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
-        "play": finite(motion_play_record(result), {}),
-        "clearance": finite(clearance_record(clearance(result.case)), {}),
-        "linkage": {
-            n: finite(motion_linkage_record(result, over), {}) for n, over in asked_over_motion(result).items()
-        },
+        "load_cases": {load_case: _case_record(found, load_case) for load_case in result.torque},
+        "play": finite(motion_play_record(found), {}),
+        "clearance": finite(clearance_record(found.clearance), {}),
+        "linkage": {n: finite(motion_linkage_record(result, over), {}) for n, over in found.linkage.items()},
     }
 
 
@@ -105,7 +102,8 @@ def _rates(own: Series | None, of: str, name: str, *quantities: str) -> dict[str
     return told(own.motion, {key: getattr(own, of)[name][key] for key in quantities})
 
 
-def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
+def _case_record(found: MotionFindings, load_case: str) -> dict[str, Any]:
+    result = found.moved
     moved, power, unbounded = result.moved[load_case], result.power[load_case], bool(result.dead_points)
     speed = result.case.load_cases[load_case].speed or float(moved.speed[0])
 
@@ -116,7 +114,7 @@ def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
     data |= {"speed_mm_per_s" if result.motion.slides else "speed_rad_per_s": speed}
     data |= {f"drive_{result.effort[0]}": over(result.torque[load_case])}
     if result.rubbing:
-        data["friction"] = motion_friction_record(result, load_case)
+        data["friction"] = motion_friction_record(result, found.work[load_case], load_case)
     data["joints"] = None
     if result.forces:
         forces = result.forces[load_case].forces
@@ -127,7 +125,7 @@ def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
         scale = max(float(np.nanmax(np.abs(drive), initial=0.0)), math.ulp(0.0))
         data["drive_power"] = over(drive / 1000.0)
         data["energy_imbalance"] = float(np.nanmax(np.abs(imbalance), initial=0.0)) / scale
-    if (air := motion_air_record(result, load_case)) is not None:
+    if (air := motion_air_record(found.air, load_case)) is not None:
         data["flapping"] = air
     return data | {"rates": rates_record(result, load_case)}
 

@@ -1,7 +1,8 @@
 """What ``alula.check`` returns."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -11,11 +12,31 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
-from alula.loads.statics.rounding import without_rounding
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
+from alula.reports.check.links import worst_load_case
+from alula.reports.check.whole_check import check_sections
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary, table_of
+from alula.reports.sections.checks import check_table
+from alula.reports.sections.section import Section
 from alula.reports.sentences import told
-from alula.reports.tables.record import worst_load_case
 from alula.reports.words.wording import checks_of, headline, inapplicable
+
+RENAMED = {
+    "checks": {
+        "low": "value low",
+        "high": "value high",
+        "unit": "value unit",
+        "quantity": "check",
+        "sense": "limit sense",
+    },
+    "links": {
+        "low": "safety factor n low",
+        "high": "safety factor n high",
+        "safety factor": "safety factor n",
+        "worst at x [mm]": "largest at x [mm]",
+    },
+    "joints": {},
+}
+"""Names that columns had before -> their names now, for one version."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +59,7 @@ class CheckReport(Tabled):
     @property
     def headline(self) -> str:
         """The verdict and its reason in a few sentences."""
-        return headline(self.result)
+        return headline(self._judged)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -75,14 +96,20 @@ class CheckReport(Tabled):
         found = self.result.load_cases.items()
         return {name: case.reactions.driving[0] for name, case in found if case.reactions.drive is not None}
 
-    def table(self, of: Literal["checks", "links", "joints"] = "checks") -> Table:
+    @cached_property
+    def sections(self) -> tuple[Section, ...]:
+        """All that is told of it, as on the page of ``alula check``."""
+        return check_sections(self._told)
+
+    def table(self, of: str = "checks") -> Table:
         """Return a table of the result.
 
         Parameters
         ----------
-        of : {"checks", "links", "joints"}
-            The checks with value, band and limit; the links with stress, safety factor and displacement; or the joint
-            forces in the undeformed pose. All have a row per load case.
+        of : str, optional
+            ``checks`` with value, band and limit; ``links`` with stress, safety factor and displacement; ``joints``,
+            the joint forces in the undeformed pose; or any other table of the page, such as ``pins``, ``gaps``,
+            ``ground``, ``masses``, ``frequencies``. All have a row per load case.
 
         Returns
         -------
@@ -92,10 +119,9 @@ class CheckReport(Tabled):
         Raises
         ------
         CaseError
-            For another table.
+            For another table; the error lists those that there are.
         """
-        tables = {"checks": self._check_rows, "links": self._link_rows, "joints": self._joint_rows}
-        return Table(tuple(pick(tables, of, "table")()))
+        return table_of(self.sections, of, RENAMED.get(of, {}))
 
     def plot_linkage(self, load_case: str | None = None) -> Picture:
         """Draw the linkage in its pose with the joint forces.
@@ -118,7 +144,7 @@ class CheckReport(Tabled):
 
         name = self.load_cases[0] if load_case is None else load_case
         pick(self.result.load_cases, name, "load case")
-        return Picture(linkage_drawing(self.result, name))
+        return Picture(linkage_drawing(self.result, name).png())
 
     def plot_assembly(self) -> Picture:
         """Draw the links in their layers, from above and from the side.
@@ -132,12 +158,12 @@ class CheckReport(Tabled):
         CaseError
             For a case without layers.
         """
-        from alula.reports.outlines.assembly import assembly_drawing
+        from alula.reports.figures.outlines.assembly import assembly_drawing
 
         if self.result.clearance is None:
             layer = layer_of(self.result.case.links)
             raise CaseError(f"the case states no layers, so all links lie in one plane; give every link one: {layer}")
-        return Picture(assembly_drawing(self.result.clearance))
+        return Picture(assembly_drawing(self.result.clearance).png())
 
     def plot_box(self) -> Picture:
         """Draw the box about the linkage over its motion, from above and from the side, with the limits of its checks.
@@ -151,11 +177,11 @@ class CheckReport(Tabled):
         CaseError
             For a case without layers and without a check of size.
         """
-        from alula.reports.outlines.box import box_drawing
+        from alula.reports.figures.outlines.box import box_drawing
 
         if self.result.size is None:
             raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
-        return Picture(box_drawing(self.result.size, size_limits(self.result.case)))
+        return Picture(box_drawing(self.result.size, size_limits(self.result.case)).png())
 
     def plot_clearance(self) -> Picture:
         """Draw the two outlines that touch first over the motion, or come nearest.
@@ -169,11 +195,11 @@ class CheckReport(Tabled):
         CaseError
             For a case without layers, and where nothing lies at one height.
         """
-        from alula.reports.outlines.contact import contact_drawing
+        from alula.reports.figures.outlines.contact import contact_drawing
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
-        return Picture(contact_drawing(self.result.clearance))
+        return Picture(contact_drawing(self.result.clearance).png())
 
     def plot_frequencies(self, what: Literal["campbell", "shapes"] = "campbell") -> Picture:
         """Draw natural frequencies over the motion and the speed of the drive, or the shapes that belong to them.
@@ -219,7 +245,7 @@ class CheckReport(Tabled):
 
         pick({name: name for name in self._links}, link, "link")
         stations = {point: x for point, (x, _) in self.result.case.links[link].points.items()}
-        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations))
+        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations).png())
 
     def plot_build_directions(self, link: str) -> Picture:
         """Draw the safety factor of a printed link's layers for every direction in which it may be built.
@@ -239,10 +265,10 @@ class CheckReport(Tabled):
             For a link without layers, and where nothing is known of them.
         """
         from alula.reports.figures.build_map import build_map
-        from alula.reports.tables.layers import build_directions_of
+        from alula.reports.sections.layers import build_directions_of
 
         known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
-        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")))
+        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")).png())
 
     def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
         """Draw the stress of a link on its deformed shape, and around its largest value.
@@ -276,7 +302,7 @@ class CheckReport(Tabled):
         plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link])
+        return Picture(plots[link].png())
 
     def write(self, folder: str | Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
         """Write ``report.html``, ``result.json``, pictures and VTU files into a folder, as ``alula check -o`` does.
@@ -295,10 +321,12 @@ class CheckReport(Tabled):
         CannotRunError
             Where the folder cannot be written.
         """
-        from alula.reports.page.folder import write_report
+        from alula.fea.claims.sources import claims_of
+        from alula.reports.check.folder import write_report
         from alula.reports.page.output import folder_named
 
-        write_report(self.result, folder_named(folder), progress=progress)
+        target = folder_named(folder)
+        write_report(self._told, target, claims=claims_of(self.result), progress=progress)
 
     def __str__(self) -> str:
         checks = checks_of(self.result)
@@ -312,6 +340,20 @@ class CheckReport(Tabled):
         table, below = _applicable(checks), inapplicable(checks)
         return summary(self.verdict, title, self.headline, table, self.warnings, below)
 
+    @cached_property
+    def _judged(self) -> CheckResult:
+        """The result with all that its headline tells."""
+        from alula.fea.findings.of_check import with_harmonic
+
+        return with_harmonic(self.result)
+
+    @cached_property
+    def _told(self) -> CheckResult:
+        """The result with all that its pages tell."""
+        from alula.fea.findings.of_check import with_findings
+
+        return with_findings(self.result)
+
     @property
     def _links(self) -> tuple[str, ...]:
         return tuple(next(iter(self.result.load_cases.values())).links)
@@ -321,45 +363,10 @@ class CheckReport(Tabled):
             return worst_load_case(self.result, link)
         return pick(self.result.load_cases, load_case, "load case")
 
-    def _check_rows(self) -> list[Row]:
-        return check_rows(checks_of(self.result))
 
-    def _link_rows(self) -> list[Row]:
-        return [
-            {
-                "load case": case.name,
-                "link": name,
-                "model": link.model,
-                "stress": link.measure,
-                "stress [MPa]": link.decisive.value,
-                "safety factor": link.safety_factor.value,
-                "low": link.safety_factor.told.low,
-                "high": link.safety_factor.told.high,
-                "displacement [mm]": link.displacement_max.value,
-                "worst at x [mm]": float(link.location[0]),
-            }
-            for case in self.result.load_cases.values()
-            for name, link in case.links.items()
-        ]
-
-    def _joint_rows(self) -> list[Row]:
-        return [
-            {
-                "load case": case.name,
-                "joint": name,
-                "by": joint.by,
-                "on": joint.on,
-                "Fx [N]": float(joint.force[0]),
-                "Fy [N]": float(joint.force[1]),
-                "size [N]": float(joint.magnitude),
-            }
-            for case in self.result.load_cases.values()
-            for name, joint in without_rounding(case.reactions).joints.items()
-        ]
-
-
-def _applicable(checks: Iterable[CheckOutcome]) -> Table:
-    return Table(tuple(check_rows(check for check in checks if check.applies)))
+def _applicable(checks: Sequence[CheckOutcome]) -> Table:
+    judged, several = [check for check in checks if check.applies], len({check.load_case for check in checks}) > 1
+    return Table.of([check_table(judged, several=several)], RENAMED["checks"])
 
 
 def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:

@@ -103,9 +103,9 @@ class EnvelopeReport(Tabled):
 
     def plot_safety_factors(self) -> Picture:
         """Draw the safety factor of every link over the motion."""
-        from alula.reports.figures.envelope_figures import envelope_figure
+        from alula.reports.figures.motion.envelope_figures import envelope_figure
 
-        return Picture(envelope_figure(self.result))
+        return Picture(envelope_figure(self.result).png())
 
     def plot_stress(self, link: str) -> Picture:
         """Draw the stress of a link at its worst pose under its worst load case.
@@ -126,13 +126,13 @@ class EnvelopeReport(Tabled):
         CannotRunError
             Where rendering fails.
         """
-        from alula.reports.figures.envelope_figures import stress_pictures
+        from alula.reports.figures.motion.envelope_figures import stress_pictures
 
         pick(self.result.links, link, "loaded link")
         plots, warnings = stress_pictures(self.result, [link])
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link])
+        return Picture(plots[link].png())
 
     def __str__(self) -> str:
         return f"{self.headline}\n\n{self.table()}"

@@ -71,12 +71,12 @@ class FrequencyReport(Tabled):
         CaseError
             For a load case that there is not.
         """
-        from alula.reports.vibration.campbell import campbell_diagram
+        from alula.reports.figures.vibration.campbell import campbell_diagram
 
         name, history = self._history(load_case)
         case = self.result.case
         coordinate = "pose" if case.motion is None else case.motion_coordinate
-        return Picture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name))
+        return Picture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name).png())
 
     def plot_shapes(self, load_case: str | None = None) -> Picture:
         """Draw the shapes of the lowest natural frequencies, in the pose where the first is least.
@@ -95,9 +95,9 @@ class FrequencyReport(Tabled):
         CaseError
             For a load case that there is not.
         """
-        from alula.reports.vibration.shapes import shapes_drawing
+        from alula.reports.figures.vibration.shapes import shapes_drawing
 
-        return Picture(shapes_drawing(self._history(load_case)[1].lowest))
+        return Picture(shapes_drawing(self._history(load_case)[1].lowest).png())
 
     def _history(self, load_case: str | None) -> tuple[str, FrequencyHistory]:
         name = deciding_load_case(self.result) if load_case is None else load_case

@@ -1,13 +1,14 @@
 """What ``alula.motion`` returns."""
 
-import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.of_motion import MotionFindings, PlayOverMotion, motion_findings, play_over_motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.rate_rows import whole_rows
 from alula.reports.motion.rates import QUANTITIES, rates_record, series
@@ -119,10 +120,19 @@ class MotionReport(Tabled):
             if (rates := rates_record(self.result, load_case)) is not None:
                 yield load_case, rates
 
+    @cached_property
+    def _found(self) -> MotionFindings:
+        """The motion with all that is told of it."""
+        return motion_findings(self.result)
+
+    @cached_property
+    def _play(self) -> PlayOverMotion | None:
+        return play_over_motion(self.result)
+
     def _drive_rows(self, of: str) -> Iterator[Row]:
         what, unit = self.result.effort
         at = self.result.motion.unit
-        for load_case, found in record(self.result, "")["load_cases"].items():
+        for load_case, found in record(self._found, "")["load_cases"].items():
             told = {f"drive {what} on {self.result.drive.link}": (unit, found[f"drive_{what}"])}
             told |= {f"joint {joint}": ("N", values) for joint, values in (found["joints"] or {}).items()}
             if "drive_power" in found:
@@ -142,9 +152,9 @@ class MotionReport(Tabled):
 
     def plot_drive(self) -> Picture:
         """Draw drive torque or force over the coordinate, a line per load case."""
-        from alula.reports.figures.motion_figures import torque_figure
+        from alula.reports.figures.motion.motion_figures import torque_figure
 
-        return _picture(torque_figure(self.result))
+        return _picture(torque_figure(self.result, self._play))
 
     def plot_energy(self, load_case: str) -> Picture:
         """Draw energies, power of the drive and force on the ground of a load case that has a speed.
@@ -162,17 +172,16 @@ class MotionReport(Tabled):
         CaseError
             For a load case that does not exist or has no speed.
         """
-        from alula.reports.motion.figures import energy_figure
+        from alula.reports.figures.motion.rate_figures import energy_figure
 
         moving = {name: found for name in self.result.torque if (found := series(self.result, name)) is not None}
         return _picture(energy_figure(self.result, load_case, pick(moving, load_case, "load case with a speed")))
 
     def plot_linkage(self) -> Picture:
         """Draw the linkage at a few poses, with the paths of its points."""
-        from alula.loads.states.loose_motion import loose_motion
-        from alula.reports.figures.motion_figures import paths_figure
+        from alula.reports.figures.motion.motion_figures import paths_figure
 
-        return _picture(paths_figure(self.result.motion, loose_motion(self.result)))
+        return _picture(paths_figure(self.result.motion, self._play))
 
     def __str__(self) -> str:
         return str(self.table())
@@ -187,12 +196,7 @@ class MotionReport(Tabled):
 
 
 def _picture(figure: object) -> Picture:
-    from matplotlib.figure import Figure
+    from alula.reports.figures.motion.motion_figures import DPI
+    from alula.reports.figures.sheet.chart import Chart
 
-    from alula.reports.figures.motion_figures import DPI, quiet_glyphs
-
-    assert isinstance(figure, Figure)
-    stream = io.BytesIO()
-    with quiet_glyphs():
-        figure.savefig(stream, format="png", dpi=DPI)
-    return Picture(stream.getvalue())
+    return Picture(Chart(figure, dpi=DPI).png())

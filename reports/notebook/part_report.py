@@ -66,7 +66,7 @@ class PartReport(Tabled):
         picture, trouble = part_picture(self.result.facts, self.result.surface)
         if picture is None:
             raise CannotRunError(trouble)
-        return Picture(picture)
+        return Picture(picture.png())
 
     def __str__(self) -> str:
         return str(self.table())

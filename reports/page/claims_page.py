@@ -4,32 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from alula.fea.claims.audit import ClaimResult
-from alula.fea.claims.sources import check_claims
 from alula.fea.outcomes.result import CheckResult
-from alula.loads.case.case_file import built_in_cases
 from alula.loads.sources.published_statics import StaticsAudit
 from alula.reports.page.template import fill
 from alula.reports.tables.claims import as_records, count
 
 CLAIMS = "claims.html"
-
-
-def claims_of(result: CheckResult) -> tuple[ClaimResult, ...]:
-    """Return the findings on the published figures of a case that was checked.
-
-    Those that need a solid model of the source's own parts are not judged.
-
-    Parameters
-    ----------
-    result : CheckResult
-
-    Returns
-    -------
-    tuple of ClaimResult
-    """
-    if not result.case.claims and result.name not in built_in_cases():
-        return ()
-    return check_claims(result.name, fidelity="beam", known=result)
 
 
 def claims_page(
@@ -71,12 +51,14 @@ def claims_page(
     )
 
 
-def write_claims(result: CheckResult, folder: Path, report: str) -> str:
+def write_claims(result: CheckResult, found: Sequence[ClaimResult], folder: Path, report: str) -> str:
     """Write the page of a case that was checked, if anything was published of it.
 
     Parameters
     ----------
     result : CheckResult
+    found : sequence of ClaimResult
+        Of the figures that were published of it.
     folder : Path
     report : str
         Name of the report in that folder.
@@ -86,7 +68,7 @@ def write_claims(result: CheckResult, folder: Path, report: str) -> str:
     str
         How many figures there are, in a sentence or two; "" where there is no page.
     """
-    found, audit, statics = claims_of(result), result.audit, result.case.published_statics
+    audit, statics = result.audit, result.case.published_statics
     if not found and audit is None:
         return ""
     page = claims_page(

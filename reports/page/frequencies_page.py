@@ -5,15 +5,16 @@ from typing import Any
 
 from alula.fea.vibration.frequency_outcomes import deciding_load_case
 from alula.fea.vibration.over_motion import CaseFrequencies
+from alula.reports.figures.sheet.drawing import Drawing
+from alula.reports.figures.vibration.pictures import campbell_name, shapes_name
 from alula.reports.page.template import fill
 from alula.reports.tables.frequencies import LEFT_OUT, history_sentence, mode_rows
-from alula.reports.vibration.pictures import campbell_name, shapes_name
 
 PAGE = "frequencies.html"
 
 
 def frequencies_view(
-    found: CaseFrequencies | None, pictures: Mapping[str, bytes], *, opened: bool = False
+    found: CaseFrequencies | None, pictures: Mapping[str, Drawing], *, opened: bool = False
 ) -> dict[str, Any] | None:
     """Return what the section of natural frequencies shows.
 
@@ -21,7 +22,7 @@ def frequencies_view(
     ----------
     found : CaseFrequencies or None
     pictures : mapping
-        Name -> PNG; the page omits missing ones.
+        Name -> Drawing; the page omits missing ones.
     opened : bool, optional
         Whether its tables are shown from the start.
 
@@ -54,14 +55,14 @@ def frequencies_view(
     }
 
 
-def frequencies_page(found: CaseFrequencies, pictures: Mapping[str, bytes], *, name: str) -> str:
+def frequencies_page(found: CaseFrequencies, pictures: Mapping[str, Drawing], *, name: str) -> str:
     """Return the page of natural frequencies.
 
     Parameters
     ----------
     found : CaseFrequencies
     pictures : mapping
-        Name -> PNG.
+        Name -> Drawing.
     name : str
         Of the case, as the command was given it.
 

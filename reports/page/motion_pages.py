@@ -9,6 +9,7 @@ from alula.fea.common.verdict import by_nearness
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
 from alula.fea.outcomes.unchecked import caveats
 from alula.loads.states.case_motion import CaseMotion
+from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
 from alula.reports.motion.rates import rates_record
 from alula.reports.page.decided import held, meaning, reasons
@@ -34,16 +35,16 @@ TITLES = {
 """What a figure shows, by the name of its file without the number of a load case."""
 
 
-def envelope_page(result: EnvelopeResult, curves: bytes, plots: Mapping[str, bytes]) -> str:
+def envelope_page(result: EnvelopeResult, curves: Drawing, plots: Mapping[str, Drawing]) -> str:
     """Return the page of an envelope.
 
     Parameters
     ----------
     result : EnvelopeResult
-    curves : bytes
-        PNG of the safety factors over the motion.
+    curves : Drawing
+        Of the safety factors over the motion.
     plots : mapping
-        Link -> PNG of its stress in the worst pose.
+        Link -> Drawing of its stress in the worst pose.
 
     Returns
     -------
@@ -109,14 +110,14 @@ def envelope_headline(result: EnvelopeResult) -> str:
     return " ".join(filter(None, (told, besides(caveats(result.case, over_motion=True)))))
 
 
-def motion_page(result: CaseMotion, pictures: Mapping[str, bytes], animation: bytes, *, name: str) -> str:
+def motion_page(result: CaseMotion, pictures: Mapping[str, Drawing], animation: bytes, *, name: str) -> str:
     """Return the page of a motion.
 
     Parameters
     ----------
     result : CaseMotion
     pictures : mapping
-        Name of the file, without its ending -> PNG.
+        Name of the file, without its ending -> Drawing.
     animation : bytes
         GIF, which stands where the model cannot.
     name : str

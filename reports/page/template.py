@@ -1,16 +1,21 @@
 """The templates of pages, and how they write numbers."""
 
-import base64
 import math
 from collections.abc import Iterable
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome
 from alula.geometry.base.version import alula_version
+from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.page.policy import sealed
 from alula.reports.sentences import told
 from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, sentence
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
 
 
 def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: str = "", **entries: Any) -> str:
@@ -31,7 +36,16 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
     -------
     str
     """
+    environment = _environment()
+    own = {"version": alula_version(), "embed": embed, **sealed(*styles, script=script)}
+    return environment.get_template(template).render(**entries, **own)
+
+
+@cache
+def _environment() -> "Environment":
     from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    from alula.reports.page.compiled import CompiledTemplates
 
     environment = Environment(
         loader=PackageLoader("alula.reports"),
@@ -40,6 +54,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
         finalize=_told,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
     )
     environment.filters |= {
         "number": number,
@@ -56,8 +71,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
         "breakable": lambda path: path.replace(".", ".\u200b"),
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
-    own = {"version": alula_version(), "data_uri": data_uri, **sealed(*styles, script=script)}
-    return environment.get_template(template).render(**entries, **own)
+    return environment
 
 
 def _by_reason(checks: Iterable[CheckOutcome]) -> list[tuple[str, list[CheckOutcome]]]:
@@ -73,16 +87,20 @@ def _told(value: Any) -> Any:
     return told(value) if isinstance(value, Reason) else value
 
 
-def data_uri(picture: bytes) -> str:
-    """Return a PNG or a WebP as a data URI.
+def embed(drawn: Drawing, alt: str) -> "Markup":
+    """Return a picture as an element of a page, as its template asks for it.
 
     Parameters
     ----------
-    picture : bytes
+    drawn : Drawing
+    alt : str
+        What it shows, for who does not see it.
 
     Returns
     -------
-    str
+    Markup
+        What is not escaped again.
     """
-    kind = "webp" if picture.startswith(b"RIFF") else "png"
-    return f"data:image/{kind};base64," + base64.b64encode(picture).decode("ascii")
+    from markupsafe import Markup
+
+    return Markup(drawn.element(alt))

@@ -89,6 +89,7 @@ SENTENCES: dict[str, Sentence] = {
     "no_mesh_would_decide": "finer meshes would not decide it",
     "smaller_mesh_size_would_decide": "a smaller solid.mesh_size would decide it",
     "refinement_of_link_ended": "refinement of {link} ended because {why}",
+    "frame_not_solved": "the frame in one plane was not solved",
     # Clearance, mass and size
     "none_at_one_height": "no two links, and no link and pin that passes it, lie at one height",
     "touch_first": "{names:and} touch first {where}",

@@ -1,4 +1,4 @@
-"""Pictures and tables of studies and of samples, and ``study.html``, the page that holds them.
+"""What studies and samples tell: sections made of the points of a study, and of a case under its tolerances.
 
-Hands on ``read_study``, ``pictures`` and ``write_study``; ``histogram`` and ``tornado`` take plain arrays.
+Hands on ``study_sections``, ``write_study`` and ``tolerance_sections``.
 """

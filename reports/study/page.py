@@ -1,30 +1,22 @@
 """``study.html``: one file with the pictures and tables of a study, which loads nothing from elsewhere."""
 
 import os
-import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from alula.fea.common.verdict import Verdict
 from alula.fea.study.store import NAME, Store
 from alula.geometry.base.errors import CaseError
-from alula.loads.case.case_file import built_in_cases
+from alula.geometry.base.version import alula_version
 from alula.reports.page.output import place, refuse_unusable, write_folder
-from alula.reports.page.template import fill
-from alula.reports.study.choice import StudyPicture, pictures
-from alula.reports.study.columns import Parameter, StudyColumns, read_study
-from alula.reports.study.rows import ALIKE, Row, number_text
-from alula.reports.study.style import LOOKS, tick
-from alula.reports.words.numbers import joined, number
+from alula.reports.renderers.page import Page, as_page
+from alula.reports.sections.markup import code
+from alula.reports.sections.section import Picture, Section, Text, parts_of
+from alula.reports.study.columns import StudyColumns, read_study
+from alula.reports.study.sections import study_sections
 
 PAGE = "study.html"
 FOLDER = "pictures"
 COMMAND = "study"
-_MOST_WORDS = 12
-_MOST_SENTENCES = 10
 
 
 def write_study(folder: Path, output: Path, wanted: Sequence[str] = ()) -> Path:
@@ -54,16 +46,51 @@ def write_study(folder: Path, output: Path, wanted: Sequence[str] = ()) -> Path:
     refuse_folder(folder, output)
     with Store.reading(folder) as store:
         study = read_study(store, wanted)
-    drawn, notes = pictures(study)
+    if not len(study.outcome):
+        raise CaseError("study: no point of it has a result yet; go on with 'alula study', then draw it")
+    page = study_page(study, study_sections(study))
+    drawn = {picture.name: picture.draw() for picture in pictures_of(page.sections) if picture.draw is not None}
 
     def fill(target: Path) -> None:
-        (target / PAGE).write_text(render(study, drawn, notes), encoding="utf-8")
+        (target / PAGE).write_text(as_page(page, drawn), encoding="utf-8")
         (target / FOLDER).mkdir()
-        for picture in drawn:
-            (target / FOLDER / f"{picture.name}.png").write_bytes(picture.png)
+        for name, picture in drawn.items():
+            (target / FOLDER / f"{name}.png").write_bytes(picture.png())
 
     write_folder(output, COMMAND, fill)
     return output / COMMAND / PAGE
+
+
+def study_page(study: StudyColumns, sections: Sequence[Section]) -> Page:
+    """Return the page of a study.
+
+    Parameters
+    ----------
+    study : StudyColumns
+    sections : sequence of Section
+        As ``study_sections``; it begins with what the first one tells.
+
+    Returns
+    -------
+    Page
+    """
+    case, (alula, gmsh, *_) = study.facts["plan"]["case"], study.facts["versions"]
+    return Page(
+        title=f"Study: {Path(case).name}",
+        kind="Study of a planar linkage",
+        heading=Path(case).name,
+        lead=tuple(part.text for part in sections[0].parts if isinstance(part, Text)),
+        sections=tuple(sections[1:]),
+        footer=(
+            f"alula {alula_version()}. Computed with alula {alula} and gmsh {gmsh}. Case {code(case)}.",
+            f"All numbers: {code('study.sqlite')} in the folder of the study.",
+        ),
+    )
+
+
+def pictures_of(sections: Sequence[Section]) -> list[Picture]:
+    """Return the pictures of sections."""
+    return [part for section in sections for part in parts_of(section.parts) if isinstance(part, Picture)]
 
 
 def refuse_folder(folder: Path, output: Path) -> None:
@@ -81,137 +108,7 @@ def refuse_folder(folder: Path, output: Path) -> None:
     CaseError, CannotRunError
         As ``write_study``.
     """
-    if place(output, COMMAND) in (found := _whole(folder), found / COMMAND) or (place(output, COMMAND) / NAME).exists():
+    target, study = place(output, COMMAND), Path(os.path.abspath(folder))
+    if target in (study, study / COMMAND) or (target / NAME).exists():
         raise CaseError(f"output: '{output}' is the folder of a study, which stays as it is; choose another folder")
     refuse_unusable(output, COMMAND, (PAGE,))
-
-
-def _whole(folder: Path) -> Path:
-    return Path(os.path.abspath(folder))
-
-
-def render(study: StudyColumns, drawn: Sequence[StudyPicture], notes: Sequence[str] = ()) -> str:
-    """Return the page of a study.
-
-    Parameters
-    ----------
-    study : StudyColumns
-    drawn : sequence of StudyPicture
-    notes : sequence of str, optional
-        Sentences on what cannot be drawn.
-
-    Returns
-    -------
-    str
-    """
-    plan, heads = study.facts["plan"], _heads(study)
-    lost = [(state, why, count) for (state, why), count in study.sentences.items()]
-    extremes = [(which, row, number_text(row.nearest)) for which, row in study.extremes.items() if row.nearest]
-    open_points = study.counts.get(Verdict.UNDECIDED.value, 0)
-    return fill(
-        "study.html.jinja",
-        case=Path(plan["case"]).name,
-        plan=plan,
-        versions=study.facts["versions"],
-        headline=headline(study),
-        extremes=extremes,
-        alike=ALIKE if open_points > 1 and not extremes else "",
-        stated=_stated,
-        varies=[(one.path, *_values(one)) for one in study.parameters],
-        linked=plan["link"],
-        fixed=plan["set"],
-        checked=study.margin is not None,
-        pictures=drawn,
-        notes=(*notes, *_left_out(study)),
-        limiting=list(study.limiting.items()),
-        lost=lost[:_MOST_SENTENCES],
-        more_lost=max(len(lost) - _MOST_SENTENCES, 0),
-        heads=heads,
-        rows=[(row, _cells(row, heads, study)) for row in study.rows],
-        more=len(study.outcome) - len(study.rows),
-        command=_command(study),
-    )
-
-
-def headline(study: StudyColumns) -> str:
-    """Return how many points there are, and what became of them.
-
-    Parameters
-    ----------
-    study : StudyColumns
-
-    Returns
-    -------
-    str
-        Such as ``40 points: 12 pass, 3 undecided and 25 fail.``
-    """
-    total, here = study.facts["points"], len(study.outcome)
-    told = joined([f"{study.counts[name]} {name}" for name in LOOKS if name in study.counts])
-    points = f"{here} points" if here == total else f"{here} of {total} points"
-    return f"{points}: {told}."
-
-
-def _left_out(study: StudyColumns) -> tuple[str, ...]:
-    if not study.left_out:
-        return ()
-    return (f"{study.left_out} more numbers vary; --number with a part of a name draws others.",)
-
-
-def _values(one: Parameter) -> tuple[str, int]:
-    if one.words:
-        words = list(one.words[:_MOST_WORDS])
-        return ", ".join(words) + (" ..." if len(one.words) > _MOST_WORDS else ""), len(one.words)
-    found = np.unique(one.values)
-    unit = f" {one.unit}" if one.unit else ""
-    if len(found) <= _MOST_WORDS:
-        return ", ".join(tick(float(value)) for value in found) + unit, len(found)
-    return f"{number(float(found[0]))} to {number(float(found[-1]))}{unit}", len(found)
-
-
-def _stated(row: Row) -> str:
-    return ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
-
-
-def _heads(study: StudyColumns) -> list[tuple[str, bool]]:
-    """Titles of the table of points, each with True for numbers."""
-    paths = dict.fromkeys(path for row in study.rows for path in row.parameters)
-    found = [("Point", True), *((path, False) for path in paths), ("Verdict", False)]
-    if study.margin is not None:
-        found.append(("Nearest to its limit", False))
-    found += [(response.label, True) for response in study.numbers]
-    if study.mass is not None:
-        found.append(("Mass [g]", True))
-    return found
-
-
-def _cells(row: Row, heads: Sequence[tuple[str, bool]], study: StudyColumns) -> list[str]:
-    place = int(np.searchsorted(study.position, row.position))
-    known: dict[str, Any] = {
-        "Point": row.position,
-        "Verdict": row.outcome,
-        "Nearest to its limit": number_text(row.nearest) if row.nearest else "",
-        "Mass [g]": "" if row.mass is None else number(row.mass, 4),
-    }
-    known |= {one.label: _shown(one.value[place]) for one in study.numbers}
-    return [str(row.parameters[head] if head in row.parameters else known.get(head, "")) for head, _ in heads]
-
-
-def _shown(value: float) -> str:
-    return "" if np.isnan(value) else number(float(value), 4)
-
-
-def _command(study: StudyColumns) -> str:
-    """The command that checks the best point; "" where nothing is checked, and for a case that no file states."""
-    plan, best = study.facts["plan"], study.extremes.get("best")
-    if best is None or plan["analysis"] == "motion" or plan.get("tables"):
-        return ""
-    changes = {**plan["set"], **best.parameters}
-    options = [word for path, value in changes.items() for word in ("--set", f"{path}={_text(value)}")]
-    case = plan["case"] if plan["case"] in built_in_cases() else Path(plan["case"]).name
-    return shlex.join(["alula", plan["analysis"], case, *options, "-o", "out"])
-
-
-def _text(value: object) -> str:
-    import json
-
-    return value if isinstance(value, str) else json.dumps(value)

@@ -11,9 +11,8 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.sizing.changes import changes
+from alula.reports.check.changes import change_sentences, change_title, size_command
 from alula.reports.sentences import told
-from alula.reports.words.changes import change_sentences, change_title, size_command
 
 
 def data(value: Any) -> Any:
@@ -84,6 +83,7 @@ def change_records(result: CheckResult) -> list[dict[str, Any]]:
     Parameters
     ----------
     result : CheckResult
+        With what ``alula.fea.findings.of_check`` finds besides.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def change_records(result: CheckResult) -> list[dict[str, Any]]:
             "sentences": change_sentences(change, result),
             "command": size_command(change, result) or None,
         }
-        for change in changes(result)
+        for change in result.changes
     ]
 
 

@@ -10,7 +10,7 @@ from alula.fea.common.band import Band
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.solid.layers import Layers, build_directions
-from alula.reports.tables.data import data
+from alula.reports.sections.data import data
 from alula.reports.words.numbers import band, fixed, number
 
 ALIKE = 0.05

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
-from alula.fea.whole.air_range import air_range
 from alula.fea.whole.motor import demand
 from alula.geometry.base.units import as_text
 from alula.geometry.linkage.placement import Placement
@@ -18,9 +17,9 @@ from alula.loads.records.aero import shares
 from alula.loads.records.applied import LineLoad
 from alula.loads.records.carried import CarriedSpread
 from alula.loads.records.load_case import LoadCase
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.flapping import flapping_loads, wing_reynolds, wing_span
-from alula.reports.tables.data import entries
+from alula.reports.sections.data import entries
 from alula.reports.words.numbers import joined, number, plain
 
 Real = NDArray[np.float64]
@@ -131,12 +130,12 @@ def air_record(result: CheckResult, name: str) -> list[dict[str, Any]]:
     return found
 
 
-def motion_air_record(result: CaseMotion, load_case: str) -> dict[str, Any] | None:
+def motion_air_record(airs: AirRange | None, load_case: str) -> dict[str, Any] | None:
     """Return what the air does to the wings of a load case over a motion, and to its drive.
 
     Parameters
     ----------
-    result : CaseMotion
+    airs : AirRange or None
     load_case : str
         Its name.
 
@@ -145,9 +144,12 @@ def motion_air_record(result: CaseMotion, load_case: str) -> dict[str, Any] | No
     dict or None
         ``docs/result.md`` describes it; None without air.
     """
+    if airs is None:
+        return None
+    result = airs.stated
     case, stated, moved = result.case, result.case.load_cases[load_case], result.moved[load_case]
-    air, airs = stated.flapping, air_range(result)
-    if air is None or airs is None or not np.any(moved.speed):
+    air = stated.flapping
+    if air is None or not np.any(moved.speed):
         return None
     wings = []
     for i, wing in enumerate(case.wings):
@@ -208,20 +210,19 @@ def _asked(moved: CaseMotion, load_case: str) -> dict[str, float]:
     return {"peak_power": found.peak_power, "mean_power": found.mean_power, "peak_effort": found.peak_torque}
 
 
-def case_air_record(moved: CaseMotion | None) -> dict[str, dict[str, Any]]:
+def case_air_record(airs: AirRange | None) -> dict[str, dict[str, Any]]:
     """Return what the air does over the motion of a case, for every load case that has air.
 
     Parameters
     ----------
-    moved : CaseMotion or None
-        As ``motion_in_air``.
+    airs : AirRange or None
 
     Returns
     -------
     dict of str to dict
         Load case -> its record; empty without air, and without a motion.
     """
-    found = {} if moved is None else {name: motion_air_record(moved, name) for name in moved.torque}
+    found = {} if airs is None else {name: motion_air_record(airs, name) for name in airs.stated.torque}
     return {name: record for name, record in found.items() if record is not None}
 
 

@@ -1,15 +1,12 @@
 """Comparison with CalculiX: warnings, table and plain data."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from alula.fea.calculix.second_opinion import second_opinions
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
+from alula.reports.sections.data import entries
 from alula.reports.sentences import told
-from alula.reports.tables.data import entries
 from alula.reports.words.numbers import number
 from alula.reports.words.terminal import say_table
 
@@ -19,26 +16,19 @@ if TYPE_CHECKING:
 _VALUES = "von_mises von_mises_nodal displacement"
 
 
-def with_second_opinions(
-    result: CheckResult, folder: Path, *, threads: int, progress: Callable[[str], None]
-) -> CheckResult:
+def with_second_opinions(result: CheckResult, found: tuple[SecondOpinion, ...]) -> CheckResult:
     """Return the result with CalculiX's opinion on every link; differences and failures become warnings.
 
     Parameters
     ----------
     result : CheckResult
-    folder : Path
-        Receives the decks.
-    threads : int
-        Of CalculiX.
-    progress : callable
-        Receives messages.
+    found : tuple of SecondOpinion
+        CalculiX's opinions.
 
     Returns
     -------
     CheckResult
     """
-    found = second_opinions(result, folder, threads=threads, progress=progress)
     warnings = tuple(told(opinion.warning) for opinion in found if opinion.warning)
     warnings += tuple(
         f"{opinion.link}: the second opinion compares stresses of one mesh whose peak is not a result"

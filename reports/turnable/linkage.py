@@ -16,7 +16,7 @@ from alula.loads.records.applied import LineLoad, PointLoad
 from alula.loads.records.springs import Attachment, LineSpring
 from alula.loads.states.actions import stated_loads
 from alula.reports.figures.figures import COLOURS
-from alula.reports.outlines.assembly import LAYERS
+from alula.reports.figures.outlines.assembly import LAYERS
 from alula.reports.turnable.bodies import PlateBody, plate_body
 from alula.reports.turnable.pack import quantised, shades
 from alula.reports.words.numbers import plain

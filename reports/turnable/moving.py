@@ -10,13 +10,12 @@ from alula.fea.common.verdict import Quantity, Subject, by_nearness, overall
 from alula.fea.motion.along import spread_poses
 from alula.fea.motion.envelope_result import EnvelopeResult, StressAlong
 from alula.fea.outcomes.result import CheckResult
-from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
-from alula.loads.states.case_motion import CaseMotion, drive_angles
-from alula.reports.tables.record import worst_load_case
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.check.links import worst_load_case
 from alula.reports.turnable.linkage import Along, Poses, Values, linkage_record
 from alula.reports.words.numbers import band, fixed, number
 from alula.reports.words.wording import checks_of
@@ -72,7 +71,7 @@ def check_linkage(result: CheckResult) -> dict[str, Any]:
         texts=texts,
         top=100.0 / max(limits) if limits else 100.0,
     )
-    poses = _of_check(result.case, result.pose, None if result.clearance is None else result.clearance.motion)
+    poses = _of_check(result.case, result.pose, result.motion)
     return linkage_record(result.case, poses, [values])
 
 
@@ -175,12 +174,6 @@ def _of_check(case: Case, pose: Pose, motion: Motion | None) -> Poses:
 
     The stated pose stands in its place among the others, or before them where the motion does not come by it.
     """
-    if motion is None and case.motion is not None:
-        try:
-            slides = case.motion.travel is not None
-            motion = solve_motion(pose, drive_angles(case, pose), coordinate=case.motion_coordinate, slides=slides)
-        except CaseError:
-            motion = None
     stated = "the stated pose" if not case.pose.equilibrium else "the pose in balance"
     if motion is None:
         return Poses(place=Placement(closure=pose.closure, q=pose.q[None]), texts=[stated])

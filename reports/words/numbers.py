@@ -154,6 +154,25 @@ def percent(ratio: float) -> str:
     return f"{text[1:] if float(text) == 0.0 else text} %".replace("-", "−")
 
 
+def chance(share: float) -> str:
+    """Return a probability as a percentage, which is 0 % or 100 % only where it is that exactly.
+
+    Parameters
+    ----------
+    share : float
+        From 0 to 1.
+
+    Returns
+    -------
+    str
+        Such as ``79.31 %`` or ``> 99.99 %``.
+    """
+    text = f"{100.0 * share:.2f}"
+    if (text == "100.00" and share < 1.0) or (text == "0.00" and share > 0.0):
+        return "> 99.99 %" if share > 0.5 else "< 0.01 %"
+    return f"{text.rstrip('0').rstrip('.')} %"
+
+
 def joined(words: tuple[str, ...] | list[str]) -> str:
     """Return ``a, b and c``.
 

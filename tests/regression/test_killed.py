@@ -81,7 +81,7 @@ def test_killed_at_every_step_of_writing(tmp_path: Path, earlier: str) -> None:
     seen = json.loads(done.stdout)
     assert seen["steps"] > 60
     assert seen["new"] >= 1
-    assert seen["none"] > 20  # while files are moved there is no result.json ...
+    assert seen["none"] > 15  # while files are moved there is no result.json ...
     assert seen["old"] > (50 if earlier == "earlier" else -1)  # ... and not even then is the earlier result lost
 
 
@@ -95,7 +95,7 @@ from alula.fea.check.run import check_case
 from alula.loads.case.case_file import read_case
 from alula.reports.page import html
 from alula.reports.page import pictures
-from alula.reports.page.folder import write_report
+from alula.reports.check.folder import write_report
 result = check_case(read_case("four-bar-synthesis"), name="starter", fidelity="beam")
 drawn = pictures.draw_pictures(result)
 page = html.render(result, drawn[0])

@@ -9,6 +9,7 @@ from motion_poses import kinetostatics
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Verdict
+from alula.fea.findings.of_motion import motion_findings
 from alula.fea.motion.link_history import link_histories
 from alula.fea.whole.motor import motor_outcomes
 from alula.geometry.base.errors import CaseError
@@ -132,7 +133,7 @@ def test_speeds_and_momentum_told_are_those_of_closed_forms(case, moved) -> None
 
     The source prints 401 deg/s, 6792 deg/s² and 11 N·mm·s; ours are 398.1, 6610 and below 1e-4 (claims motion.*).
     """
-    told = record(moved, "ornithopter")
+    told = record(motion_findings(moved), "ornithopter")
     drive, angles = OrnithopterRules().drive(), moved.motion.angles
     for name, rpm in (("slow", 150.0), ("fast", 3000.0)):
         closed = drive.motion(angles - math.pi / 2.0, rpm * RPM)

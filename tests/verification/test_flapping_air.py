@@ -9,6 +9,7 @@ import slotted_cases
 from edited_cases import edited
 
 from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.whole.air_range import air_range
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.placement import Placement
 from alula.loads.case.case import Case
@@ -19,7 +20,7 @@ from alula.loads.records.load_case import LoadCase
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.flapping import PIECES, flapping_loads, in_air
 from alula.loads.states.kinetostatics import work
-from alula.reports.motion.air_figures import air_figures
+from alula.reports.figures.motion.air_figures import air_figures
 from alula.reports.tables.loads import air_lines, motion_air_record
 
 RHO, C_N, L, C = 1.2e-12, 2.0, 300.0, 80.0  # tonne/mm^3, -, mm, mm
@@ -302,7 +303,8 @@ def test_figure_record_and_sentences_tell_the_torque_of_a_fan():
     omega, low, high = 3.0 * math.pi, 1.2, 5.0
     torque = 0.5 * RHO * omega**2 * C * L**4 / 4.0  # over C_N
     moved = solve_case_motion(fan(normal_coefficient_range=[low, high]))
-    record = motion_air_record(moved, "air")
+    airs = air_range(moved)
+    record = motion_air_record(airs, "air")
     assert record is not None
     for name, coefficient in {"without": 0.0, "least": low, "stated": C_N, "largest": high}.items():
         asked = record["drive"][name]
@@ -311,7 +313,7 @@ def test_figure_record_and_sentences_tell_the_torque_of_a_fan():
     assert record["wings"][0]["largest_force"] == pytest.approx(C_N * torque * 4.0 / (3.0 * L), rel=1e-9)
     watts = [f"{coefficient * torque * omega / 1e3:.3g}" for coefficient in (C_N, low, high)]
     assert "0 W without air, {} W ({} to {}) with it".format(*watts) in air_lines(record)[1]
-    figure = air_figures(moved)["air"]
+    figure = air_figures(airs)["air"]
     for drawn, label, share in zip(
         figure.axes, ("drive torque [N·mm]", "drive power [W]"), (torque, torque * omega / 1e3), strict=True
     ):

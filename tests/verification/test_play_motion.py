@@ -17,6 +17,7 @@ from rocker_case import TOML
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.source import SourceKind
 from alula.fea.doubts.force_doubt import measures
+from alula.fea.findings.of_motion import motion_findings
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.loosened import joint_growth, loosened
 from alula.fea.refine.refinement import Effort
@@ -141,7 +142,7 @@ def test_at_a_dead_point_of_the_drive_nothing_has_an_end() -> None:
         assert np.all(np.isinf(most[beside]))
         assert np.all(np.isinf(least[beside]))
     assert 4 <= int(loose(of).passes.sum()) < 40
-    found = motion_play_record(of)
+    found = motion_play_record(motion_findings(of))
     assert found is not None
     assert len(found["through_dead_point"]) == 2
     assert found["dead_point_distance"]["smallest"] == 0.0
@@ -175,18 +176,18 @@ def test_friction_is_solved_with_play() -> None:
 
 def test_record_and_tables_tell_it(tmp_path: Path) -> None:
     of = moved()
-    told = record(of, "")["play"]
+    told = record(motion_findings(of), "")["play"]
     assert json.loads(json.dumps(told)) == told
     assert told["clearances"] == {"B": 0.4}
     assert told["points"]["C"]["largest"] == pytest.approx(float(loose(of).free_motion("rocker", "C").max()), rel=2e-2)
-    write_tables(of, tmp_path)
+    write_tables(motion_findings(of), tmp_path)
     with (tmp_path / "torque.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     least, most = loose(of).effort("load")
     assert float(rows[5]["least torque with play [N mm]"]) == pytest.approx(least[5])
     assert float(rows[5]["largest torque with play [N mm]"]) == pytest.approx(most[5])
     assert "C play to either side [mm]" in (tmp_path / "points.csv").read_text(encoding="utf-8")
-    assert record(moved("0 mm"), "")["play"] is None
+    assert record(motion_findings(moved("0 mm")), "")["play"] is None
 
 
 def test_a_motor_covers_what_play_makes_of_the_torque() -> None:

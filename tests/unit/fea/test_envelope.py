@@ -616,7 +616,7 @@ def test_console_names_link_angle_and_verdict(result):
 
 
 def test_the_figure_is_drawn_over_the_coordinate_where_the_drive_turns_back(result):
-    from alula.reports.figures.envelope_figures import abscissa
+    from alula.reports.figures.motion.envelope_figures import abscissa
 
     angles, label = abscissa(result)
     assert label == "direction of crank (driven) [deg]"

@@ -31,9 +31,9 @@ from alula.fea.vibration.harmonics import meetings
 from alula.fea.vibration.over_motion import _least_between, lowest_pose
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
+from alula.reports.check.changes import change_sentences
 from alula.reports.sentences import catalogue
 from alula.reports.sentences import told as in_words
-from alula.reports.words.changes import change_sentences
 from alula.reports.words.wording import headline
 
 

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
 from imported_case import imported_case
+from told import render, result_record
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import SIZES, Quantity, Verdict
+from alula.fea.findings.of_check import with_findings
 from alula.fea.motion.envelope_outcomes import FOLLOWED
 from alula.fea.outcomes.unchecked import unchecked
 from alula.fea.study.numbers import of_check, of_motion
@@ -25,10 +27,9 @@ from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.extent import Extent
 from alula.loads.states.weighed import Weighed
-from alula.reports.page.html import render
+from alula.reports.check.changes import change_records
+from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.sentences import told as in_words
-from alula.reports.tables.data import change_records
-from alula.reports.tables.record import result_record
 
 PLA, STEEL = 1.24e-3, 7.8e-3
 """Densities of the cards that the bars and their pins name [g/mm³]."""
@@ -310,7 +311,7 @@ def plain():
 def test_a_check_says_what_would_change_a_mass_and_a_size(heavy):
     assert heavy.verdict is Verdict.FAIL
     total = 2.0 * bar(120.0) + bar(100.0) + 2.0 * rod(8.0, 16.0)
-    [told] = change_records(heavy)
+    [told] = change_records(with_findings(heavy))
     assert (told["quantity"], told["load_factor"]) == ("total mass", None)
     shrink = f"{math.floor(1000.0 * 40.0 / total) / 1000.0:g}"
     assert told["sentences"] == [f"It does not depend on the loads; it passes at {shrink} times what it is."]
@@ -339,7 +340,7 @@ def test_mass_and_size_are_in_the_record(heavy, plain):
 
 
 def test_the_page_says_what_is_counted_where_a_check_asks(heavy, plain):
-    page = render(heavy, {"box": b"a picture"})
+    page = render(heavy, {"box": Canvas(72.0, 72.0)})
     assert "<h2>Mass and size</h2>" in page
     row = re.search(r"<tr><td>crank</td>(.*?)</tr>", page.partition("Mass of each link [g]")[2])
     assert row is not None

@@ -7,9 +7,11 @@ from importlib.resources import files
 import pytest
 from frequency_cases import lever
 from materials import with_material
+from told import result_record
 
 from alula.fea.buckling.wall import wall_stress
 from alula.fea.check.run import check_case
+from alula.fea.findings.of_check import with_harmonic
 from alula.fea.outcomes.unchecked import caveats, unchecked
 from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.fea.vibration.over_motion import pose_frequencies
@@ -17,7 +19,6 @@ from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import SustainedCheck
 from alula.loads.text.caveat import Topic
 from alula.reports.sentences import told as in_words
-from alula.reports.tables.record import result_record
 from alula.reports.words.wording import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
@@ -304,7 +305,7 @@ def test_the_harmonic_that_comes_nearest_to_the_lowest_natural_frequency_is_told
 
 
 def test_the_verdict_tells_the_nearest_harmonic_where_no_check_asks_for_frequencies():
-    result = check_case(driven(turning=10.0), fidelity="beam")
+    result = with_harmonic(check_case(driven(turning=10.0), fidelity="beam"))
     said = f'vibration (no check of type "frequency"; {nearest_harmonic(result.case)})'
     assert "harmonic of 600 rpm" in said
     assert said in headline(result)

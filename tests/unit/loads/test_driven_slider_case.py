@@ -12,6 +12,7 @@ from slotted_cases import piston_entries
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import LINKAGE
+from alula.fea.findings.of_motion import motion_findings
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
@@ -45,16 +46,16 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
     data = piston_entries()
     data["load_cases"]["brake"] = {"forces": [{"link": "rod", "at": "C", "force": ["-20 N", "5 N"]}]}
     moved = solve_case_motion(validate(data))
-    found = json.loads(json.dumps(record(moved, "piston")))
+    found = json.loads(json.dumps(record(motion_findings(moved), "piston")))
     assert (found["motion"]["unit"], found["motion"]["first"], found["motion"]["last"]) == ("mm", 90.0, 150.0)
     assert found["motion"]["speed_mm_per_s"] == [400.0, 400.0]
     assert found["load_cases"]["brake"]["drive_force"]["first"] == pytest.approx(20.0)
     assert "drive_torque" not in found["load_cases"]["brake"]
-    print_motion(moved, "piston", json=False)
+    print_motion(motion_findings(moved), "piston", json=False)
     told = capsys.readouterr().out
     assert "S from 90 to 150 mm: 13 poses, 0.15 s" in told
     assert "drive force on piston at S: 20 -> 20 N" in told
-    write_tables(moved, tmp_path)
+    write_tables(motion_findings(moved), tmp_path)
     with (tmp_path / "torque.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     assert float(rows[0]["S travel [mm]"]) == 90.0
@@ -67,11 +68,12 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
     assert "crank speed over speed of S [rad/mm]" in links[0]
 
 
-def test_figures_of_it_are_drawn(tmp_path) -> None:
-    from alula.reports.motion.figures import draw_figures
+def test_figures_of_it_are_drawn() -> None:
+    from alula.reports.figures.motion.rate_figures import motion_pictures
 
-    draw_figures(solve_case_motion(validate(piston_entries())), tmp_path)
-    assert {path.suffix for path in tmp_path.iterdir()} == {".png"}
+    drawn = motion_pictures(motion_findings(solve_case_motion(validate(piston_entries()))))
+    assert {"link-angles", "paths", "torque"} <= drawn.keys()
+    assert all(picture.png().startswith(b"\x89PNG") for picture in drawn.values())
 
 
 def test_its_check_holds_the_piston() -> None:
@@ -145,7 +147,7 @@ def test_an_envelope_over_a_travel_is_refused() -> None:
 
 
 def test_the_report_of_its_check_tells_the_travel_and_the_force() -> None:
-    from alula.reports.page.html import render
+    from told import render
 
     result = check_case(validate(piston_entries()), fidelity="beam")
     page = render(result, {})

@@ -8,12 +8,12 @@ from legible import assert_legible, written
 
 from alula.loads.states.clearance import clearance
 from alula.loads.states.extent import extent
-from alula.reports.outlines.assembly import LAYERS, Placed, assembly_sheet, layer_colours
-from alula.reports.outlines.box import box_sheet
-from alula.reports.outlines.contact import contact_sheet
-from alula.reports.sheet.canvas import faint
-from alula.reports.sheet.marks import Area, Stroke
-from alula.reports.sheet.style import INK, JOINT_FORCE
+from alula.reports.figures.outlines.assembly import LAYERS, Placed, assembly_drawing, layer_colours
+from alula.reports.figures.outlines.box import box_drawing
+from alula.reports.figures.outlines.contact import contact_drawing
+from alula.reports.figures.sheet.canvas import faint
+from alula.reports.figures.sheet.marks import Area, Stroke
+from alula.reports.figures.sheet.style import INK, JOINT_FORCE
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +22,7 @@ def found():
 
 
 def test_the_assembly_shows_links_pins_and_layers(found):
-    sheet = assembly_sheet(found)
+    sheet = assembly_drawing(found)
     texts = written(sheet)
     assert texts >= {"link crank", "link coupler", "link rocker", "link base", "A", "B", "C", "D"}
     assert texts >= {"From above, to scale", "From the side, along y, heights stretched 2 times", "x [mm]", "z [mm]"}
@@ -34,14 +34,14 @@ def test_the_assembly_shows_links_pins_and_layers(found):
 def test_a_link_has_the_colour_of_its_layer(found):
     colours = layer_colours(found.assembly.case)
     assert (colours["crank"], colours["coupler"]) == (colours["rocker"], LAYERS[2])
-    sheet = assembly_sheet(found)
+    sheet = assembly_drawing(found)
     areas = [mark for mark in sheet.marks if isinstance(mark, Area)]
     assert {faint(colours[link], 0.42) for link in ("crank", "coupler")} <= {mark.colour for mark in areas}
 
 
 def test_outlines_are_drawn_to_scale(found):
     """The crank is 136 mm long and 16 mm wide: an area of 120 x 16 mm and a circle, at one scale along x and y."""
-    sheet = assembly_sheet(found)
+    sheet = assembly_drawing(found)
     colour = faint(layer_colours(found.assembly.case)["crank"], 0.42)
     bars = [shapely.Polygon(m.points) for m in sheet.marks if isinstance(m, Area) and m.colour == colour][:2]
     areas = sorted(bar.area for bar in bars)
@@ -53,7 +53,7 @@ def test_outlines_are_drawn_to_scale(found):
 
 
 def test_a_hole_is_cut_out_of_what_is_drawn():
-    from alula.reports.outlines.assembly import rings
+    from alula.reports.figures.outlines.assembly import rings
 
     square = shapely.box(0.0, 0.0, 10.0, 10.0).difference(shapely.box(4.0, 4.0, 6.0, 6.0))
     [ring] = rings(square)
@@ -62,7 +62,7 @@ def test_a_hole_is_cut_out_of_what_is_drawn():
 
 
 def test_the_first_contact_is_shown_at_its_pose(found):
-    sheet = contact_sheet(found)
+    sheet = contact_drawing(found)
     texts = written(sheet)
     assert "first contact of link crank and link rocker" in texts
     assert any(text.startswith("at crank = 9.21 deg, x = ") for text in texts)
@@ -75,7 +75,7 @@ def test_the_first_contact_is_shown_at_its_pose(found):
 
 def test_the_least_gap_is_a_line_between_both():
     found = clearance(four_bars((0, 1, 2, 1), (120.0, 100.0, 120.0, 100.0), start=60, end=12, near=(0, 60)))
-    sheet = contact_sheet(found)
+    sheet = contact_drawing(found)
     assert "least gap, 4.79 mm, of link crank and link rocker" in written(sheet)
     assert_legible(sheet)
     lines = [m for m in sheet.marks if isinstance(m, Stroke) and m.colour == "#c8460b" and len(m.points) == 2]
@@ -83,7 +83,7 @@ def test_the_least_gap_is_a_line_between_both():
 
 
 def test_a_pin_that_is_touched_has_its_name():
-    sheet = contact_sheet(clearance(bar_on_a_pin()))
+    sheet = contact_drawing(clearance(bar_on_a_pin()))
     assert {"link crank", "pin D", "first contact of link crank and pin D"} <= written(sheet)
     assert_legible(sheet)
 
@@ -91,7 +91,7 @@ def test_a_pin_that_is_touched_has_its_name():
 def test_the_box_is_drawn_to_scale_with_its_lengths_and_limits():
     """From 60 to 5 degrees: 100 + 120 cos 5° + 16 mm by 120 sin 60° + 16 mm, by 23 mm of layers."""
     case = parallel_bars()
-    sheet = box_sheet(extent(case, case.solve_pose()), (230.0, 150.0, 20.0))
+    sheet = box_drawing(extent(case, case.solve_pose()), (230.0, 150.0, 20.0))
     texts = {text.text: text.colour for text in sheet.texts}
     assert texts["235.5 mm of 230 mm"] == texts["23 mm of 20 mm"] == JOINT_FORCE
     assert texts["119.9 mm of 150 mm"] == INK

@@ -11,10 +11,10 @@ from alula.fea.beam.loads import BeamLoads, PointLoad
 from alula.fea.beam.theory import check_beam
 from alula.loads.records.load_case import LoadCase
 from alula.reports.figures import diagrams, drawings
-from alula.reports.sheet import plot, style
-from alula.reports.sheet.canvas import Canvas
-from alula.reports.sheet.labels import along, place_labels
-from alula.reports.sheet.marks import Area, Stroke
+from alula.reports.figures.sheet import plot, style
+from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.figures.sheet.labels import along, place_labels
+from alula.reports.figures.sheet.marks import Area, Stroke
 
 
 def drawn(result, load_case="weight"):
@@ -106,9 +106,10 @@ def test_a_linkage_without_load_has_no_arrows(result):
 
 
 def test_equal_drawings_are_equal_bytes(result):
-    first = drawings.linkage_drawing(result, "idle")
-    assert first == drawings.linkage_drawing(result, "idle")
-    assert Image.open(io.BytesIO(first)).width == round(style.WIDTH * style.DPI)
+    one, other = (drawings.linkage_drawing(result, "idle") for _ in range(2))
+    assert one.png() == other.png()
+    assert one.svg() == other.svg()
+    assert Image.open(io.BytesIO(one.png())).width == round(style.WIDTH * style.DPI)
 
 
 def test_what_is_drawn_is_in_the_picture():
@@ -185,16 +186,16 @@ def test_a_label_takes_the_anchor_that_has_room():
 
 def test_the_diagram_marks_extreme_values_and_points(result):
     beam = result.load_cases["weight"].links["CH"].beam
-    sheet = diagrams._sheet(beam, {"C": 0.0, "D": 77.0, "H": 124.0})
+    sheet = diagrams.internal_force_diagram(beam, {"C": 0.0, "D": 77.0, "H": 124.0})
     texts = written(sheet)
     assert texts >= {"−0.3509", "C", "D", "H", "0.1968", "−0.1201", "9.249"}
     assert texts >= {"N [N]", "V [N]", "M [N·mm]", "x along the link [mm]", "120"}
     assert_legible(sheet)
-    assert diagrams.internal_force_diagram(beam, {}).startswith(b"\x89PNG")
+    assert diagrams.internal_force_diagram(beam, {}).png().startswith(b"\x89PNG")
 
 
 def test_what_is_nil_is_drawn_as_zero_not_as_rounding(result):
-    sheet = diagrams._sheet(result.load_cases["weight"].links["GF"].beam, {"G": 0.0, "F": 50.0})
+    sheet = diagrams.internal_force_diagram(result.load_cases["weight"].links["GF"].beam, {"G": 0.0, "F": 50.0})
     texts = [text.text for text in sheet.texts]
     assert texts.count("zero all along") == 2
     assert "−0.7511" in texts
@@ -209,7 +210,7 @@ def test_forces_out_of_the_plane_get_panels_of_their_own(result):
             PointLoad(point=np.array([10.0, 0.0]), wrench=np.array([0.0, 0.0, 1.0, 2.0, 0.0, 0.0])),
         )
     )
-    sheet = diagrams._sheet(check_beam(loads, section, 40.0), {"A": 0.0})
+    sheet = diagrams.internal_force_diagram(check_beam(loads, section, 40.0), {"A": 0.0})
     assert written(sheet) >= {"V out\nof plane\n[N]", "M out\nof plane\n[N·mm]", "torque\n[N·mm]"}
     assert_legible(sheet)
 
@@ -217,7 +218,9 @@ def test_forces_out_of_the_plane_get_panels_of_their_own(result):
 def test_six_rows_with_powers_of_ten_at_their_axes_are_legible(result):
     wrenches = np.array([[1.0, 2.0, -3.0, -40.0, 50.0, 60.0], [-1.0, -2.0, 3.0, 40.0, -20.0, -40.0]])  # in balance
     ends = tuple(PointLoad(point=np.array([x, 0.0]), wrench=1e-5 * w) for x, w in zip((0, 10.0), wrenches, strict=True))
-    sheet = diagrams._sheet(check_beam(BeamLoads(points=ends), result.case.parts["tube"].section, 40.0), {"A": 0.0})
+    sheet = diagrams.internal_force_diagram(
+        check_beam(BeamLoads(points=ends), result.case.parts["tube"].section, 40.0), {"A": 0.0}
+    )
     assert sum("10⁻" in text.text for text in sheet.texts) >= 5
     assert_legible(sheet)
 
@@ -227,12 +230,14 @@ def test_extreme_values_have_the_unit_of_their_axis(result):
     loads = BeamLoads(
         points=tuple(PointLoad(point=np.array([x, 0.0]), wrench=s * pull) for x, s in ((0.0, -1.0), (10.0, 1.0)))
     )
-    texts = written(diagrams._sheet(check_beam(loads, result.case.parts["tube"].section, 40.0), {"A": 0.0}))
+    texts = written(
+        diagrams.internal_force_diagram(check_beam(loads, result.case.parts["tube"].section, 40.0), {"A": 0.0})
+    )
     assert texts >= {"N [10⁻⁶ N]", "500", "630.0"}
 
 
 def test_the_worst_load_case_is_drawn(result):
-    from alula.reports.page.pictures import governing_load_cases
+    from alula.reports.check.linkage import governing_load_cases
 
     assert governing_load_cases(result) == ("weight",)
     turned = {name: result.load_cases[name] for name in ("idle", "weight")}
@@ -261,7 +266,7 @@ def test_names_of_one_place_and_of_near_ones_are_not_written_over_each_other(res
             PointLoad(point=np.array([100.0, 0.0]), wrench=np.array([0.0, 1.0, 0.0, 0.0, 0.0, -100.0])),
         )
     )
-    sheet = diagrams._sheet(check_beam(loads, section, 40.0), CROWD)
+    sheet = diagrams.internal_force_diagram(check_beam(loads, section, 40.0), CROWD)
     assert {"A", "pin-left, pin-right", "next-to-it", "D"} <= written(sheet)
     assert_legible(sheet)
 

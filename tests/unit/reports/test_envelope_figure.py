@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from alula.fea.common.band import Band
 from alula.fea.common.source import Source, SourceKind
-from alula.reports.figures.envelope_figures import _panel
+from alula.reports.figures.motion.envelope_figures import _panel
 
 ANGLES = np.linspace(0.0, 360.0, 73)
 STRENGTH = 40.0

@@ -8,7 +8,7 @@ from matplotlib.image import imread
 
 from alula.reports.figures import figures
 from alula.reports.figures import scene as scenes
-from alula.reports.sheet import style
+from alula.reports.figures.sheet import style
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 # Seen from outside counter-clockwise.
@@ -27,7 +27,7 @@ def solid(result):
 def test_a_solid_link_gets_a_picture(solid):
     pictures, warnings = figures.stress_plots(solid, POINTS)
     assert warnings == ()
-    image = imread(io.BytesIO(pictures["GF"]))[..., :3]
+    image = imread(io.BytesIO(pictures["GF"].png()))[..., :3]
     assert image.shape[1] == round(style.WIDTH * style.DPI)
     # The body's colours: red against blue, which neither ink nor paper nor grey has.
     coloured = (image[..., 0] - image[..., 2]) > 0.15

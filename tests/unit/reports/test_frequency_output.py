@@ -18,11 +18,11 @@ from alula.fea.common.band import Band
 from alula.fea.vibration.over_motion import case_frequencies
 from alula.geometry.base.errors import CaseError
 from alula.reports.commands.frequencies import as_json
-from alula.reports.sheet.marks import Area, Stroke
-from alula.reports.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
-from alula.reports.tables.record import field_units
-from alula.reports.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_sheet
-from alula.reports.vibration.shapes import axis_lines, shapes_sheet
+from alula.reports.figures.sheet.marks import Area, Stroke
+from alula.reports.figures.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
+from alula.reports.figures.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_diagram
+from alula.reports.figures.vibration.shapes import axis_lines, shapes_drawing
+from alula.reports.renderers.record import field_units
 
 
 @cache
@@ -52,7 +52,7 @@ def test_shapes_are_named_by_frequency_band_and_direction():
         replace(mode, frequency=Band(value=f, low=0.9 * f, high=1.1 * f), in_plane=share)
         for mode, f, share in zip(modes.modes, (43.2, 61.0, 90.3, 210.0), (1.0, 0.7, 0.3, 0.0), strict=True)
     ]
-    sheet = shapes_sheet(replace(modes, modes=tuple(own)))
+    sheet = shapes_drawing(replace(modes, modes=tuple(own)))
     assert written(sheet) >= {
         "1: 43.2 (38.9 to 47.5) Hz, in the plane",
         "2: 61.0 (54.9 to 67.1) Hz, mostly in the plane",
@@ -72,7 +72,7 @@ def test_a_shape_out_of_the_plane_is_seen():
     modes = found().histories["turning"].lowest
     first = replace(modes, modes=modes.modes[:1])
     assert modes.modes[0].in_plane < 0.01
-    sheet = shapes_sheet(first)
+    sheet = shapes_drawing(first)
     rest, moved = ([stroke.points for stroke in strokes(sheet, colour)] for colour in (LINK, LOAD))
     tip = max(range(len(modes.model.elements)), key=lambda i: np.abs(moved[i][-1] - rest[i][-1]).max())
     across, up = moved[tip][-1] - rest[tip][-1]
@@ -99,7 +99,7 @@ def history(count=3, poses=25):
 
 
 def test_campbells_diagram_has_units_harmonics_and_marks_where_they_meet():
-    sheet = campbell_sheet(history(), coordinate="crank", unit="deg", load_case="flapping")
+    sheet = campbell_diagram(history(), coordinate="crank", unit="deg", load_case="flapping")
     assert written(sheet) >= {
         *(
             "crank [deg]",
@@ -116,14 +116,14 @@ def test_campbells_diagram_has_units_harmonics_and_marks_where_they_meet():
     assert_legible(sheet)
     assert strokes(sheet, JOINT_FORCE)
     apart = replace(history(1), driving=0.1)  # 20 Hz is 200 times that
-    quiet = strokes(campbell_sheet(apart, coordinate="crank", unit="deg", load_case="flapping"), JOINT_FORCE)
+    quiet = strokes(campbell_diagram(apart, coordinate="crank", unit="deg", load_case="flapping"), JOINT_FORCE)
     assert len(quiet) == 1  # of the legend
 
 
 def test_harmonics_far_below_the_frequencies_are_one_line_with_the_name_of_the_highest():
     """At 0.05 Hz ten of them lie within 0.5 Hz of a scale of 30 Hz, on 4 of 230 points."""
     slow = replace(history(1), driving=0.05)
-    sheet = campbell_sheet(slow, coordinate="crank", unit="deg", load_case="flapping")
+    sheet = campbell_diagram(slow, coordinate="crank", unit="deg", load_case="flapping")
     assert "10×" in written(sheet)
     assert not {f"{n}×" for n in range(1, 10)} & written(sheet)
     levels = {float(one.points[0][1]) for one in strokes(sheet, GROUND) if one.dashes and len(one.points) == 2}
@@ -138,7 +138,7 @@ def test_a_band_without_two_ends_is_not_filled(end, told):
     """Of parts from files no beam gives a band, and where pins may run it goes down to 0: it would cover all others."""
     own = history()
     missing = np.where(np.arange(3) < 2, own.frequencies, np.inf)
-    sheet = campbell_sheet(
+    sheet = campbell_diagram(
         replace(own, frequencies=missing, low=0.0 * own.low, high=end * own.frequencies),
         coordinate="crank",
         unit="deg",
@@ -160,7 +160,7 @@ def test_without_a_speed_or_a_motion_one_panel_is_left(change):
     own = history(poses=change.get("poses", 25))
     if "driving" in change:
         own = replace(own, driving=0.0)
-    sheet = campbell_sheet(own, coordinate="crank", unit="deg", load_case="flapping")
+    sheet = campbell_diagram(own, coordinate="crank", unit="deg", load_case="flapping")
     assert_legible(sheet)
     assert len({"Over the motion", "Over the speed of the drive"} & written(sheet)) == 1
 
@@ -182,7 +182,7 @@ def test_the_command_writes_page_tables_and_pictures(tmp_path):
     assert rows[0][:5] == ["load case", "lever [deg]", "1 frequency [Hz]", "1 low [Hz]", "1 high [Hz]"]
     assert np.array([row[2::3] for row in rows[1:]], dtype=float) == pytest.approx(np.array(one["frequencies"]))
     page = (folder / "frequencies.html").read_text(encoding="utf-8")
-    assert page.count("data:image/png;base64,") == 2
+    assert page.count("<svg ") == 2
     assert "The lowest natural frequency is" in page
 
 
@@ -217,7 +217,7 @@ def test_a_linkage_that_departs_still_has_a_diagram():
     """Its lowest natural frequency is 0, and in one pose without a drive nothing else sets the scale."""
     own = replace(history(poses=1), driving=0.0)
     for still in (own.frequencies * [[0.0, 1.0, 1.0]], 0.0 * own.frequencies):
-        sheet = campbell_sheet(
+        sheet = campbell_diagram(
             replace(own, frequencies=still, low=still, high=still), coordinate="pose", unit="deg", load_case="flapping"
         )
         assert_legible(sheet)

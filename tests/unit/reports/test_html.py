@@ -1,20 +1,21 @@
-import base64
 import re
 from dataclasses import replace
 
 import pytest
 from html_pages import Page, stands_alone
+from told import not_covered, render
 
+from alula.fea.claims import sources
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, worst_of_each
+from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.page import claims_page
 from alula.reports.page.claims_page import CLAIMS
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
 from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
 from alula.reports.words.wording import checks_of
 
-PICTURES = {linkage_name("weight"): b"linkage", diagram_name("AE"): b"diagram", stress_name("GF"): b"stress"}
+NAMES = (linkage_name("weight"), diagram_name("AE"), stress_name("GF"))
+PICTURES = {name: Canvas(90.0 - 10.0 * k, 60.0) for k, name in enumerate(NAMES)}
 
 
 @pytest.fixture(scope="module")
@@ -33,17 +34,15 @@ def test_it_loads_nothing_from_elsewhere_and_links_lead_somewhere(page, result):
 
 
 def test_pictures_are_embedded_and_described(page):
-    embedded = {
-        base64.b64decode(value.removeprefix("data:image/png;base64,"))
-        for tag, name, value in page.attributes
-        if (tag, name) == ("img", "src")
-    }
-    assert embedded == set(PICTURES.values())
-    assert sum((tag, name) == ("img", "alt") for tag, name, _ in page.attributes) == len(PICTURES)
+    of = {name: [value for tag, key, value in page.attributes if (tag, key) == ("svg", name)]
+          for name in ("viewbox", "role", "aria-label")}  # fmt: skip
+    assert sorted(of["viewbox"]) == [f"0 0 {sheet.width:.0f} 60" for sheet in reversed(PICTURES.values())]
+    assert of["role"] == ["img"] * len(PICTURES)
+    assert len(set(of["aria-label"])) == len(PICTURES)
 
 
 def test_it_stands_without_pictures(result):
-    assert "<img" not in render(result, {})
+    assert "<svg" not in render(result, {})
 
 
 @pytest.mark.parametrize(
@@ -121,8 +120,9 @@ def test_no_zero_has_a_sign(page):
 
 def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypatch, tmp_path) -> None:
     """The report has their number and the address; a case of which nothing was published has no such page."""
-    monkeypatch.setattr(claims_page, "built_in_cases", lambda: ("owl-wing-static",))
-    told = claims_page.write_claims(replace(result, name="owl-wing-static"), tmp_path, "report.html")
+    monkeypatch.setattr(sources, "built_in_cases", lambda: ("owl-wing-static",))
+    named = replace(result, name="owl-wing-static")
+    told = claims_page.write_claims(named, sources.claims_of(named), tmp_path, "report.html")
     page = Page((tmp_path / CLAIMS).read_text(encoding="utf-8"))
     stands_alone(page, beside=("report.html",))
     assert "3 of the equations are not equilibrium equations" in page.words
@@ -131,14 +131,14 @@ def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypa
     assert "<details><summary>Figures that hold (" in page.source
     assert re.match(r"Published figures: \d+ claims: .* Published statics: 3 of 15 equations are not equ", told)
     plain = replace(result, name="elsewhere.toml", audit=None)
-    assert claims_page.write_claims(plain, tmp_path / "none", "report.html") == ""
+    assert claims_page.write_claims(plain, sources.claims_of(plain), tmp_path / "none", "report.html") == ""
     assert CLAIMS not in render(plain, {})
 
 
 def test_the_first_page_holds_verdict_picture_and_the_checks_nearest_to_their_limits(result, source, changed):
     """Before the contents: the stamp, the linkage, eight checks in the order of their margins; all of them below."""
     first, rest = source.split("<nav", 1)
-    assert first.index('class="stamp"') < first.index("<img") < first.index('<section id="nearest">')
+    assert first.index('class="stamp"') < first.index("<svg") < first.index('<section id="nearest">')
     every = checks_of(result)
     assert len(every) > 8
     rows = re.findall(r'<td class="what">(.*?)</td>', first)

@@ -24,7 +24,7 @@ from alula.reports.commands.cli import app
 from alula.reports.commands.inspect_part import inspect_file, record
 from alula.reports.figures import figures
 from alula.reports.figures.part_picture import part_picture
-from alula.reports.sheet import style
+from alula.reports.figures.sheet import style
 
 FILES = Path(__file__).parents[2] / "data" / "step"
 

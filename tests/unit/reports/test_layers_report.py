@@ -9,17 +9,14 @@ import numpy as np
 import pytest
 from programs import ROOT
 from rich.console import Console
+from told import as_json, not_covered, print_result, render
 
 from alula.fea.common.band import Band
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.solid.layers import Layers, best_directions, build_directions
 from alula.reports.figures.build_map import _project, build_map
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
 from alula.reports.page.pictures import layers_name
-from alula.reports.tables.console import print_result
-from alula.reports.tables.layers import build_directions_of, direction
-from alula.reports.tables.record import as_json
+from alula.reports.sections.layers import build_directions_of, direction
 
 LINK = "GF"
 
@@ -92,8 +89,8 @@ def test_the_record_has_what_the_document_says(result):
 
 def test_the_map_has_every_direction_in_its_place(result):
     [found] = build_directions_of(with_layers(result)).values()
-    assert build_map(found).startswith(b"\x89PNG")
-    assert build_map(found) != build_map(replace(found, scan=found.scan[:, ::-1]))
+    assert build_map(found).png().startswith(b"\x89PNG")
+    assert build_map(found).png() != build_map(replace(found, scan=found.scan[:, ::-1])).png()
     middle = _project(np.array([0.0, 0.0, 1.0]))
     radii = [np.linalg.norm(_project(row[0]) - middle) for row in build_directions()]
     polar = np.radians(np.arange(0.0, 90.1, 5.0))
@@ -101,7 +98,7 @@ def test_the_map_has_every_direction_in_its_place(result):
     assert _project(np.array([0.0, 1.0, 0.1]))[1] < middle[1]  # y is up
     assert _project(np.array([1.0, 2.0, -3.0])) == pytest.approx(_project(np.array([-1.0, -2.0, 3.0])))
     unloaded = replace(found, scan=np.full_like(found.scan, np.inf))
-    assert build_map(unloaded).startswith(b"\x89PNG")
+    assert build_map(unloaded).png().startswith(b"\x89PNG")
 
 
 def test_links_whose_layers_may_have_any_direction_are_named(result):

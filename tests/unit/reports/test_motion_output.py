@@ -11,6 +11,7 @@ import programs
 import pytest
 from PIL import Image
 
+from alula.fea.findings.of_motion import motion_findings
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.commands.motion import print_motion, write_motion
@@ -163,7 +164,7 @@ def test_the_animation_moves_and_is_small(folder):
 
 def test_a_second_run_replaces_the_first_and_nothing_else(folder, tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "alula.reports.figures.motion_animation.draw_animation", lambda motion, path: path.write_bytes(b"GIF")
+        "alula.reports.figures.motion.motion_animation.draw_animation", lambda motion, path: path.write_bytes(b"GIF")
     )
     home = Path(shutil.copytree(folder.parents[1], tmp_path / "home"))
     folder = home / "out" / "motion"
@@ -197,11 +198,11 @@ def test_bad_input_ends_with_status_2_and_one_sentence(folder, override, words):
 
 
 def test_a_dead_point_of_the_drive_is_told(wing, capsys):
-    print_motion(wing, "owl-wing-static", json=False)
+    print_motion(motion_findings(wing), "owl-wing-static", json=False)
     out = capsys.readouterr().out
     assert "Dead point of the driven link AE at GF = 213.5068 deg" in out
     assert "drive torque on AE at A: -130.6 -> -19.9 N·mm" in out
-    found = record(wing, "owl-wing-static")
+    found = record(motion_findings(wing), "owl-wing-static")
     assert found["load_cases"]["weight"]["drive_torque"]["largest"] is None
     assert found["drive"]["dead_points"] == pytest.approx([213.50682849])
     json.dumps(found, allow_nan=False)
@@ -211,7 +212,7 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
     """Beside a standing motion: power and energies are there for every load case, in one table."""
     overrides = ["motion.inertia=false", 'motion.speed="0 rpm"', 'load_cases.idle.speed="600 rpm"', "motion.poses=25"]
     result = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), overrides))
-    print_motion(result, "crank", json=False)
+    print_motion(motion_findings(result), "crank", json=False)
     standing, moving = capsys.readouterr().out.split("Load case idle")
     assert "Load case push (without inertia)" in standing
     assert "drive power" not in standing
@@ -219,7 +220,7 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
     assert "drive power at 600 rpm:" in moving
     again = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), ["motion.poses=25"]))
     np.testing.assert_allclose(result.torque["idle"], again.torque["idle"], atol=1e-9)
-    write_tables(result, folder.parent)
+    write_tables(motion_findings(result), folder.parent)
     torque = columns(folder.parent / "torque.csv")
     power = np.array(torque["drive power [N mm/s]"], dtype=float)
     assert np.all(power[:25] == 0.0)
@@ -227,6 +228,6 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
 
 
 def test_a_range_is_shown_there_and_back(wing, tmp_path):
-    write_motion(wing, tmp_path, "owl-wing-static")
+    write_motion(motion_findings(wing), tmp_path, "owl-wing-static")
     with Image.open(tmp_path / "linkage.gif") as picture:
         assert picture.n_frames == 60

@@ -11,12 +11,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from alula.fea.findings.of_motion import motion_findings
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.figures.motion_figures import angles_figure, forces_figure, torque_figure
+from alula.reports.figures.motion.motion_figures import angles_figure, forces_figure, torque_figure
+from alula.reports.figures.motion.rate_figures import energy_figure, rate_figures
 from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.figures import energy_figure, rate_figures
 from alula.reports.motion.lines import motion_lines
 from alula.reports.motion.rate_rows import ends
 from alula.reports.motion.rates import series, vector_extremes
@@ -91,7 +92,7 @@ def moved():
 
 @pytest.fixture(scope="module")
 def told(moved):
-    return record(moved, "slider-crank")["load_cases"]
+    return record(motion_findings(moved), "slider-crank")["load_cases"]
 
 
 def block(omega):
@@ -144,19 +145,21 @@ def test_without_speed_or_mass_nothing_is_told(told):
         .replace('speed = "60 rpm"\n', "")
         .replace('"600 rpm"', '"0 rpm"')
     )
-    still = record(solve_case_motion(validate(tomllib.loads(unweighed))), "")
+    still = record(motion_findings(solve_case_motion(validate(tomllib.loads(unweighed)))), "")
     assert still["motion"]["points"]["B"]["speed"] is still["motion"]["links"]["rod"]["angular_speed"] is None
     fast = 'poses = 73\nspeed = "60 rpm"\ninertia = false'
     moving = solve_case_motion(validate(tomllib.loads(unweighed.replace("poses = 73", fast))))
-    found = record(moving, "")
+    found = record(motion_findings(moving), "")
     [rates] = {row["rates"]["whole"]["momentum"] for row in found["load_cases"].values()}
     assert rates is None
     assert found["motion"]["points"]["B"]["speed"]["largest"] == pytest.approx(np.abs(block(2.0 * math.pi)[0]).max())
-    assert "left out: no load case asks for their weight or inertia" in "\n".join(motion_lines(moving, found))
+    assert "left out: no load case asks for their weight or inertia" in "\n".join(
+        motion_lines(motion_findings(moving), found)
+    )
 
 
 def test_tables_hold_every_pose_at_the_speed_of_its_load_case(moved, tmp_path):
-    write_tables(moved, tmp_path)
+    write_tables(motion_findings(moved), tmp_path)
     with (tmp_path / "rates.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     for name, rpm in (("slow", 60.0), ("fast", 600.0)):
@@ -180,7 +183,7 @@ def test_tables_hold_every_pose_at_the_speed_of_its_load_case(moved, tmp_path):
 
 
 def test_lines_say_once_what_load_cases_share(moved):
-    text = "\n".join(motion_lines(moved, record(moved, "slider-crank")))
+    text = "\n".join(motion_lines(motion_findings(moved), record(motion_findings(moved), "slider-crank")))
     assert "as in load case slow" in text.split("Load case again")[1].split("Load case")[0]
     slow = text.split("Load case slow")[1].split("Load case")[0]
     head, unit, *_ = [line for line in slow.split("\n") if "angular speed" in line or "[rad/s]" in line]

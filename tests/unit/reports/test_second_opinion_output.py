@@ -3,16 +3,15 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
+from told import print_result, render, result_record
 from typer.testing import CliRunner
 
 import alula.fea.check.run
 from alula.fea.calculix import program as calculix
+from alula.fea.calculix.second_opinion import second_opinions
 from alula.fea.outcomes.opinion import Answer
 from alula.fea.outcomes.result import HandResult
 from alula.reports.commands.cli import app
-from alula.reports.page.html import render
-from alula.reports.tables.console import print_result
-from alula.reports.tables.record import result_record
 from alula.reports.tables.second_opinion import with_second_opinions
 
 
@@ -22,7 +21,7 @@ def unanswered(result, tmp_path_factory):
     folder = tmp_path_factory.mktemp("decks")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(calculix, "installed", lambda: None)
-        return with_second_opinions(result, folder, threads=1, progress=lambda message: None), folder
+        return with_second_opinions(result, second_opinions(result, folder, threads=1)), folder
 
 
 def test_without_calculix_the_deck_is_there_and_the_report_says_so(unanswered):
@@ -60,7 +59,8 @@ def test_a_result_of_beams_alone_has_nothing_to_ask_about(result, tmp_path):
         name: replace(case, links={link: found for link, found in case.links.items() if isinstance(found, HandResult)})
         for name, case in result.load_cases.items()
     }
-    told = with_second_opinions(replace(result, load_cases=beams), tmp_path, threads=1, progress=lambda message: None)
+    beams_alone = replace(result, load_cases=beams)
+    told = with_second_opinions(beams_alone, second_opinions(beams_alone, tmp_path, threads=1))
     assert told.second_opinions == ()
     assert told.warnings[-1].startswith("no second opinion")
 

@@ -6,7 +6,7 @@ import pytest
 from alula.fea.elements.space import displacement_space
 from alula.geometry.meshing.mesh import COARSE, mesh_body
 from alula.geometry.parts.part import Body, Disc, Pin
-from alula.reports.sheet.silhouette import curves, outlines, silhouette
+from alula.reports.figures.sheet.silhouette import curves, outlines, silhouette
 
 
 def test_a_disc_shows_its_face_and_the_circles_that_bound_it():

@@ -5,19 +5,18 @@ import pytest
 import solved
 from PIL import Image
 from sprung_cases import CROWN, case_of, stands
+from told import not_covered, render, result_record
 
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
+from alula.fea.findings.of_motion import motion_findings
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.figures.drawings import linkage_drawing
+from alula.reports.figures.sheet.style import SPRING
 from alula.reports.figures.sprung import coil, spiral, stop_mark
 from alula.reports.motion.csv_tables import write_tables
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
-from alula.reports.sheet.style import SPRING
-from alula.reports.tables.record import result_record
-from alula.reports.tables.springs import holding_sentence, spring_sentences
+from alula.reports.sections.springs import holding_sentence, spring_sentences
 
 PEDAL = "spring-pedal"
 WITHOUT_FOOT = ['load_cases.foot.forces.0.force=["0 N", "0 N"]']
@@ -81,7 +80,7 @@ def test_the_ground_bears_the_other_end_of_the_spring(balanced):
 
 def test_the_drawing_shows_spring_and_stops(balanced, tmp_path):
     path = tmp_path / "linkage.png"
-    path.write_bytes(linkage_drawing(balanced, "foot"))
+    path.write_bytes(linkage_drawing(balanced, "foot").png())
     pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
     colour = np.array([int(SPRING[i : i + 2], 16) for i in (1, 3, 5)])
     assert np.count_nonzero(np.abs(pixels - colour).sum(axis=-1) < 12) > 500
@@ -89,7 +88,7 @@ def test_the_drawing_shows_spring_and_stops(balanced, tmp_path):
 
 def test_a_motion_tells_its_springs(tmp_path):
     moved = solve_case_motion(read_case(PEDAL, ["load_cases.foot.own_weight=false", "motion.poses=8"]))
-    write_tables(moved, tmp_path)
+    write_tables(motion_findings(moved), tmp_path)
     table = np.genfromtxt(tmp_path / "springs.csv", delimiter=",", names=True, deletechars="")
     angle = np.radians(np.linspace(100.0, 65.0, 8))
     length = np.hypot(80.0 * np.cos(angle) + 70.0, 80.0 * np.sin(angle) - 75.0)

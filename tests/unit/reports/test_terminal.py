@@ -7,10 +7,9 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
+from told import print_result
 
 from alula.fea.common.verdict import Subject, Verdict
-from alula.reports.tables import data
-from alula.reports.tables.console import print_result
 from alula.reports.words.terminal import KEPT, say, say_table
 
 LONG = "wing-of-the-left-side-outer-section"
@@ -79,9 +78,8 @@ def test_lines_that_the_text_has_stay_and_keep_their_indent():
 
 
 @pytest.mark.parametrize("width", [40, 80])
-def test_a_check_is_told_in_full(result, width, monkeypatch):
+def test_a_check_is_told_in_full(result, width):
     """The names of two links that begin alike were once cut to the same few letters, a number to its zeros."""
-    monkeypatch.setattr(data, "changes", lambda result: ())  # it asks the case, which has no such links
     case = result.load_cases["weight"]
     links = dict(case.links)
     links = {f"{LONG}-{name}": replace(link, link=f"{LONG}-{name}") for name, link in links.items()}

@@ -33,7 +33,7 @@ def test_a_singular_peak_sets_neither_legend_nor_colours(link):
     [picture] = figures.stress_plots(
         {"GF": replace(link, discretisation=state("singular", screening=0.6 * peak))}, {"GF": {"G": (0.0, 0.0)}}
     )[0].values()
-    assert picture.startswith(b"\x89PNG")
+    assert picture.png().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,140 @@
+"""The output folder of a check: report, result, pictures and VTU files."""
+
+import shutil
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+from alula.fea.claims.audit import ClaimResult
+from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.loads.case.case import Case
+from alula.reports.check.links import worst_load_case
+from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
+from alula.reports.page.claims_page import CLAIMS, write_claims
+from alula.reports.page.output import MARK, write_folder
+from alula.reports.renderers.page import as_page
+
+REPORT = "report.html"
+PICTURES = "pictures"
+FIELDS = "vtu"
+DECKS = "calculix"
+
+
+def report_names(case: Case) -> set[str]:
+    """Return the names of all files that the report of a case can contain.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    set[str]
+    """
+    links, pictures = case.checked_links, {"assembly", "clearance", "box"}
+    pictures |= {f"{kind}-{name}" for name in case.load_cases for kind in ("linkage", "shapes", "campbell", "air")}
+    pictures |= {f"{kind}-{name}" for name in links for kind in ("diagram", "layers", "stress")}
+    return {
+        REPORT,
+        CLAIMS,
+        MARK,
+        *(f"{PICTURES}/{name}.png" for name in pictures),
+        *(f"{FIELDS}/{link}.vtu" for link in links),
+        *(f"{DECKS}/{link}.inp" for link in links),
+    }
+
+
+def write_report(
+    result: CheckResult,
+    target: Path,
+    *,
+    claims: Sequence[ClaimResult] = (),
+    decks: Path | None = None,
+    progress: Callable[[str], None] = lambda message: None,
+) -> None:
+    """Write ``report.html``, ``result.json``, pictures and VTU files, or nothing.
+
+    Where figures were published that belong to the case, ``claims.html`` holds them. The VTU file of a link has the
+    load case with the least safety factor. A picture that cannot be rendered is left out with a warning.
+
+    Parameters
+    ----------
+    result : CheckResult
+        With what ``alula.fea.findings.of_check`` finds besides.
+    target : Path
+        The output folder.
+    claims : sequence of ClaimResult, optional
+        Of figures that were published of the case.
+    decks : Path, optional
+        Folder whose CalculiX decks go into ``calculix/``.
+    progress : callable, optional
+        Receives messages.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
+    """
+    from alula.reports.turnable.link import link_models
+    from alula.reports.turnable.moving import LINKAGE, check_linkage
+    from alula.reports.turnable.pack import data_block
+
+    def fill(folder: Path) -> None:
+        told, published = result, write_claims(result, claims, folder, REPORT)
+        page = check_page(told, check_sections(told, published))
+        with ThreadPoolExecutor(1) as beside:
+            drawn = beside.submit(check_pictures, result, page, progress)
+            _write_fields(result, folder / FIELDS)
+            models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
+            pictures, warnings = drawn.result()
+        if warnings:
+            for warning in warnings:
+                progress(f"Warning: {warning}")
+            told = replace(result, warnings=(*result.warnings, *warnings))
+        sections = check_sections(told, published)
+        files = {name: picture if isinstance(picture, bytes) else picture.png() for name, picture in pictures.items()}
+        shown = {name: repacked(one) if name.startswith("stress-") else one for name, one in pictures.items()}
+        (folder / REPORT).write_text(as_page(check_page(told, sections), shown, models), encoding="utf-8")
+        (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
+        (folder / PICTURES).mkdir()
+        for name, picture in files.items():
+            (folder / PICTURES / f"{name}.png").write_bytes(picture)
+        if decks is not None and result.second_opinions:
+            shutil.copytree(decks, folder / DECKS)
+
+    write_folder(target, "check", fill)
+
+
+def _write_fields(result: CheckResult, folder: Path) -> None:
+    """Write the VTU file of every link that was solved as a solid."""
+    links = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
+    solids = {link: found for link, found in links.items() if isinstance(found, SolidResult)}
+    if not solids:
+        return
+    from alula.reports.page.export import write_vtu
+
+    folder.mkdir()
+    for link, found in solids.items():
+        write_vtu(folder / f"{link}.vtu", found.governing_case.displacement, found.stress)
+
+
+def repacked(picture: bytes) -> bytes:
+    """Return a PNG as lossless WebP, which takes some six tenths of the bytes where colours shade into one another.
+
+    Parameters
+    ----------
+    picture : bytes
+
+    Returns
+    -------
+    bytes
+    """
+    from io import BytesIO
+
+    from PIL import Image
+
+    packed = BytesIO()
+    with Image.open(BytesIO(picture)) as image:
+        image.save(packed, "WEBP", lossless=True, quality=60)
+    return packed.getvalue()

@@ -1,0 +1,189 @@
+"""The linkage in its pose: pictures, points, directions of the links, distance to a dead point."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from alula.fea.common.verdict import by_nearness
+from alula.fea.outcomes.result import CheckResult
+from alula.geometry.linkage.pose import NEAR_DEAD_POINT
+from alula.reports.check.links import worst_load_case
+from alula.reports.check.statics import shown_components
+from alula.reports.sections.section import Beside, Column, Folded, Number, Part, Picture, Section, Table, say, words
+from alula.reports.words.numbers import plain
+from alula.reports.words.wording import checks_of
+
+
+def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
+    """Return the load cases of which a drawing is made: those that stress some link most, and the first.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of str
+        That of the check nearest to its limit first.
+    """
+    first, checks = next(iter(result.load_cases.values())), by_nearness(checks_of(result))
+    names = dict.fromkeys([first.name, *(worst_load_case(result, link).name for link in first.links)])
+    return tuple(sorted(names, key=lambda name: not checks or name != checks[0].load_case))
+
+
+def linkage_picture(result: CheckResult, name: str, kind: str = "") -> Picture:
+    """Return the drawing of the linkage under a load case.
+
+    Parameters
+    ----------
+    result : CheckResult
+    name : str
+        Of the load case.
+    kind : str, optional
+        As of ``Picture``.
+
+    Returns
+    -------
+    Picture
+    """
+
+    def draw() -> Any:
+        from alula.reports.figures.drawings import linkage_drawing
+
+        return linkage_drawing(result, name)
+
+    stated = result.case.load_cases[name]
+    told = [
+        f"Load case “{name}”{f': {stated.title}' if stated.title else ''}. To scale.",
+        "Each joint force is drawn as it acts on the link in its label; "
+        "the other link of the joint bears the opposite force.",
+    ]
+    acts = [what for what, there in (("own weight", stated.own_weight), ("inertia", stated.speed)) if there]
+    if acts:
+        told.append(f"{' and '.join(acts).capitalize()} of the links act as well and are not drawn.")
+    if len(shown_components(result.load_cases[name].reactions)) > 3:
+        told.append("Forces and moments out of the plane are not drawn.")
+    if stated.air:
+        told.append("The air’s force is drawn as far as it lies in the plane.")
+    return Picture(
+        name=f"linkage-{name}",
+        alt=f"The linkage to scale with the joint forces of load case {name}",
+        caption=" ".join(told),
+        draw=draw,
+        kind=kind,
+    )
+
+
+def linkage_section(result: CheckResult) -> Section:
+    """Return the linkage in its pose.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+        The first screen has the drawing of the load case that decides; those of the others stand here.
+    """
+    pose = result.pose
+    parts: list[Part] = [linkage_picture(result, name, "half") for name in governing_load_cases(result)[1:]]
+    parts += _held(result)
+    tables = (
+        Table(
+            key="points",
+            columns=(words("point"), Column("x", "mm"), Column("y", "mm")),
+            rows=tuple((name, *(Number(float(x), decimals=3) for x in at)) for name, at in pose.points.items()),
+            caption="Points in global axes",
+        ),
+        Table(
+            key="directions",
+            columns=(words("link"), words("from → to"), Column("direction", "deg")),
+            rows=tuple(
+                (link, f"{names[0]} → {names[-1]}", Number(math.degrees(pose.angles[link]) % 360.0, "", 6))
+                for link in pose.linkage.moving
+                for names in [list(result.case.links[link].points)]
+            ),
+            caption="Directions of the links",
+        ),
+    )
+    closure = say(
+        "Closure residual {residual} of the longest link ({length})",
+        residual=Number(pose.residual, "", 2),
+        length=Number(pose.linkage.longest, "mm", stated=True),
+    )
+    folded = (closure, Beside(tables, "columns"), *_dead_points(result))
+    parts.append(Folded("Points, directions, closure and distance to a dead point", folded))
+    return Section(
+        key="linkage",
+        title="The linkage and its joint forces",
+        short="Linkage",
+        parts=tuple(parts),
+        data={"pose": _data(result)},
+    )
+
+
+def _held(result: CheckResult) -> Iterator[Part]:
+    pose, balanced = result.pose, result.case.pose.equilibrium
+    told, facts = "Degrees of freedom after Gruebler: {mobility}", dict[str, object](mobility=pose.linkage.mobility)
+    if pose.slides:
+        told = f"The pose is fixed by joint {pose.coordinate}, whose travel is {{travel}}"
+        told += f"{' in balance' if balanced else ''}. Degrees of freedom after Gruebler: {{mobility}}"
+        facts["travel"] = Number(pose.held, "mm")
+    elif pose.coordinate is not None:
+        told = f"The pose is {'in balance with' if balanced else 'fixed by'} link {pose.coordinate}, whose axis points "
+        told += "to {angle}° (counter-clockwise from x). Degrees of freedom after Gruebler: {mobility}"
+        facts["angle"] = Number(math.degrees(pose.angles[pose.coordinate]) % 360.0, "", 6)
+    yield say(told, **facts)
+
+
+def _dead_points(result: CheckResult) -> Iterator[Part]:
+    told, facts = list[str](), dict[str, object]()
+    for i, (what, link, distance) in enumerate(dead_points(result)):
+        told.append(f"{what} {link} {{n{i}}}")
+        facts[f"n{i}"] = Number(distance, "", 3)
+    if told:
+        yield say(
+            "Distance to a dead point: the smallest singular value of the scaled constraint Jacobian with that link "
+            f"held (0 at the dead point; below {plain(NEAR_DEAD_POINT)} there is a warning): {', '.join(told)}",
+            **facts,
+        )
+
+
+def dead_points(result: CheckResult) -> Iterator[tuple[str, str, float]]:
+    """Yield what is held, its link, and the distance from its dead point.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Yields
+    ------
+    tuple of (str, str, float)
+    """
+    pose, drive = result.pose, None if result.case.pose.equilibrium else result.case.pinned_drive
+    if pose.coordinate is not None:
+        distance = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
+        yield "the pose coordinate", pose.coordinate, distance
+    if drive is not None:
+        yield "the driven link", drive.link, drive.dead_point_distance(pose)
+
+
+def _data(result: CheckResult) -> dict[str, Any]:
+    pose, slides = result.pose, result.pose.slides
+    angles = {link: math.degrees(angle) % 360.0 for link, angle in pose.angles.items()}
+    held = {what: {"link": link, "distance": distance} for what, link, distance in dead_points(result)}
+    return {
+        "points": {name: [float(x) for x in at] for name, at in pose.points.items()},
+        "link_angles": angles,
+        "coordinate": pose.coordinate,
+        "coordinate_angle": None if pose.coordinate is None or slides else angles[pose.coordinate],
+        "coordinate_travel": pose.held if slides else None,
+        "mobility": pose.linkage.mobility,
+        "closure_residual": pose.residual,
+        "longest_link": pose.linkage.longest,
+        "dead_points": {
+            "pose_coordinate": held.get("the pose coordinate"),
+            "driven_link": held.get("the driven link"),
+        },
+    }

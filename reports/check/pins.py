@@ -1,0 +1,144 @@
+"""Pins between their links: bending, shear, and what their models leave out."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from alula.fea.outcomes.result import CheckResult, LoadCaseResult
+from alula.loads.case.case import Case
+from alula.loads.case.forks import forked_link
+from alula.loads.case.joint_rules import clearances, rubbing_joints
+from alula.reports.sections.data import entries
+from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, words
+from alula.reports.words.numbers import joined
+
+_TRANSFER = (
+    "How the torque passes between {joints} and the links that turn with them, by a key, a clamp, a screw or glue, is "
+    "not checked: neither what holds there nor the stress beside it."
+)
+_CLAMPS = (
+    "What holds the links at {joints}, by friction, screws or glue, is not checked: neither whether they slip, nor the "
+    "stress that the clamp's grip alone makes. Displacements take what is held for rigid up to the mouth of the clamp."
+)
+_LINES = (
+    "Pins in slots at {joints} touch a flank along a line. The pressure of this line contact, indentation and wear are "
+    "not checked."
+)
+
+
+def pin_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
+    """Yield the stresses of the pins under a load case.
+
+    Parameters
+    ----------
+    stated : Case
+    case : LoadCaseResult
+
+    Yields
+    ------
+    Part
+    """
+    if not case.pins:
+        return
+    deformed = ". Forces of the deformed pose" if case.large_displacement.reactions else ""
+    yield Table(
+        key="pins",
+        columns=(
+            words("pin"),
+            words("material"),
+            Column("diameter", "mm"),
+            Column("lever", "mm"),
+            Column("moment", "N·mm"),
+            Column("bending", "MPa"),
+            Column("shear", "MPa"),
+        ),
+        rows=tuple(
+            (
+                joint,
+                stated.joints[joint].pin_material,
+                Number(stated.joints[joint].pin_diameter, stated=True, derived=True),
+                Number(pin.lever, stated=True),
+                Number(pin.moment),
+                Number(pin.bending),
+                Number(pin.shear, "", 3),
+            )
+            for joint, pin in case.pins.items()
+        ),
+        caption="Pins; the lever is the distance between the middles of the two eyes, and in a fork from a cheek to "
+        f"the middle of half the eye{deformed}",
+        under=(("load case", case.name),),
+    )
+    forked = any(forked_link(stated, name) is not None for name in stated.joints)
+    fork = "; in a fork, from half of what crosses a gap to forces spread evenly along cheeks and eye" if forked else ""
+    yield Text(
+        "The band reaches from an equal share of the couple for both eyes to the whole couple on one eye" + fork + ".",
+        "note",
+    )
+
+
+def pin_record(case: LoadCaseResult) -> list[dict[str, Any]]:
+    """Return the stresses of the pins as entries of ``result.json``.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    list of dict
+    """
+    return [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()]
+
+
+def pins_left_out(result: CheckResult) -> Section:
+    """Return what the models of pins, shafts, clamps and slots leave out.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+        Without parts.
+    """
+    return Section(
+        key="pins", not_covered=(("Pins and contact", _contact(result)), *_transfer(result.case), *_slots(result.case))
+    )
+
+
+def _transfer(case: Case) -> Iterator[tuple[str, str]]:
+    joints = case.linkage.joints.items()
+    held = [name for name, joint in joints if joint.clamped and joint.clamp_length is not None]
+    turned = [name for name, joint in joints if joint.type == "revolute" and joint.bonded and name not in held]
+    drive = case.pinned_drive
+    if drive is not None and not drive.pushes(case.linkage):
+        turned = [drive.joint, *turned]
+    if turned:
+        yield "Torque at shafts", _TRANSFER.format(joints=f"the pins of {joined(list(dict.fromkeys(turned)))}")
+    if held:
+        yield "Clamps", _CLAMPS.format(joints=joined(held))
+
+
+def _slots(case: Case) -> Iterator[tuple[str, str]]:
+    slotted = [name for name, joint in case.joints.items() if joint.type == "pin-in-slot"]
+    if slotted:
+        yield "Contact in slots", _LINES.format(joints=joined(slotted))
+
+
+def _contact(result: CheckResult) -> str:
+    checked = list(dict.fromkeys(joint for case in result.load_cases.values() for joint in case.pins))
+    own = f"Checked pins: {joined(checked)}" if checked else "No pin was checked"
+    rubbing, case, loose = rubbing_joints(result.case), result.case, clearances(result.case)
+    smooth = [name for name in case.joints if name not in rubbing]
+    left_out = "friction" if not rubbing else f"friction at {joined(smooth)}" if smooth else ""
+    without = joined([*([] if loose else ["clearance"]), *filter(None, [left_out])])
+    found = f"Each pin is modelled as a pressure on its hole{', without ' if without else ''}{without}"
+    if loose:
+        found += (
+            f". The play at {joined(list(loose))} is in pose, forces and displacements, each pin standing anywhere in "
+            "its hole; impact where a pin changes sides, and a narrower contact in a wider hole, are not modelled"
+        )
+    guided = [name for name in rubbing if case.joints[name].type == "slider" and case.joints[name].guide_length is None]
+    if guided:
+        found += f". The moments of {joined(guided)} add no friction, since no guide_length is stated"
+    return f"{found}. Wear is not modelled. {own}."

@@ -1,0 +1,111 @@
+"""A check on one screen of the console: verdict, why, what would change it, the checks that matter, warnings."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from alula.fea.common.verdict import CheckOutcome, worst_of_each
+from alula.fea.outcomes.result import CheckResult
+from alula.reports.renderers.console import print_sections, print_table, verdict_line
+from alula.reports.sections.checks import check_table
+from alula.reports.sections.section import Section
+from alula.reports.sentences import told
+from alula.reports.words.numbers import joined, sentence
+from alula.reports.words.terminal import height, say, say_command, shortened
+from alula.reports.words.wording import besides, brief, checks_of, headline
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+SCREEN = 23
+"""Lines of a check on a terminal of 25: one is that of its progress, one says where the report is."""
+MATTER = 5
+"""Checks, and warnings, of which a screen tells."""
+_LEAST = 2
+"""Checks of which it tells before warnings."""
+_REASON, _CHANGE, _BESIDES, _WARNING = 5, 4, 3, 3
+"""Lines of a screen that a text may take."""
+
+
+def print_result(result: CheckResult, sections: Sequence[Section], console: "Console") -> None:
+    """Print all of a check.
+
+    Parameters
+    ----------
+    result : CheckResult
+    sections : sequence of Section
+        As ``check_sections``.
+    console : rich.console.Console
+        On a narrow one, lines break at spaces.
+    """
+    verdict_line(result.verdict, result.case.title, console)
+    say(console, headline(result))
+    print_sections(sections, console)
+
+
+def print_screen(result: CheckResult, sections: Sequence[Section], console: "Console") -> None:
+    """Print what decides a check on one screen.
+
+    Parameters
+    ----------
+    result : CheckResult
+    sections : sequence of Section
+        As ``check_sections``.
+    console : rich.console.Console
+        The screen has ``SCREEN`` lines of 80 columns.
+    """
+    checks, several = checks_of(result), len(result.load_cases) > 1
+    why = shortened(console, brief(result.verdict, checks, several=several), _REASON)
+    besides_it = shortened(console, besides(result.caveats), _BESIDES)
+    change, command = _change(sections, said=why)
+    change = shortened(console, change, _CHANGE)
+    taken = 1 + sum(height(console, text) for text in (why, change, besides_it) if text) + 2 * bool(command)
+    left = SCREEN - taken - 1  # the last line counts what is not told
+    rows, warnings = worst_of_each(checks)[:MATTER], list[str]()
+    least = _table_height(rows[:_LEAST], console, several=several)
+    for warning in (shortened(console, f"Warning: {told(text)}", _WARNING) for text in result.warnings[:MATTER]):
+        if height(console, warning) <= left - least:
+            warnings.append(warning)
+            left -= height(console, warning)
+    while len(rows) > _LEAST and _table_height(rows, console, several=several) > left:
+        rows.pop()
+    badge = f" {result.verdict.value}  "
+    verdict_line(result.verdict, shortened(console, f"{badge}{result.case.title}", 1)[len(badge) :], console)
+    say(console, why)
+    if change:
+        say(console, change)
+    if command:
+        say_command(console, "Find the size:", command)
+    if rows:
+        _print_checks(rows, console, several=several)
+    if besides_it:
+        say(console, besides_it)
+    for warning in warnings:
+        say(console, warning, style="yellow")
+    more = [
+        f"{count} more {what}{'s' if count > 1 else ''}"
+        for count, what in ((len(checks) - len(rows), "check"), (len(result.warnings) - len(warnings), "warning"))
+        if count
+    ]
+    say(console, f"{sentence(joined([*more, 'all numbers']))[:-1]}: --verbose")
+
+
+def _table_height(checks: Sequence[CheckOutcome], console: "Console", *, several: bool) -> int:
+    """Return how many lines the table of checks takes, whose rows a narrow terminal breaks."""
+    with console.capture() as printed:
+        _print_checks(checks, console, several=several)
+    return len(printed.get().splitlines())
+
+
+def _print_checks(checks: Sequence[CheckOutcome], console: "Console", *, several: bool) -> None:
+    table = check_table(checks, several=several)
+    print_table(type(table)(columns=table.columns, rows=table.rows), console)
+
+
+def _change(sections: Sequence[Section], *, said: str) -> tuple[str, str]:
+    """Return what would change the check that decides, but for what was said, and the command that finds its size."""
+    records = next(section for section in sections if section.key == "changes").data["changes"]
+    for change in records[:1]:
+        fresh = [text for text in change["sentences"] if text[1:] not in said]
+        text = f"What would change it ({change['title']}): {' '.join(fresh)}" if fresh else ""
+        return text, change["command"] or ""
+    return "", ""

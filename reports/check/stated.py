@@ -1,0 +1,298 @@
+"""The case as it was stated: description, assumptions, warnings, materials, hand calculations, and what none covers."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.geometry.materials.material import Material
+from alula.loads.sources.published_statics import StaticsAudit
+from alula.loads.text.caveat import Heading
+from alula.reports.sections.data import data, entries
+from alula.reports.sections.markup import bold, code, link
+from alula.reports.sections.section import Column, Group, Items, Number, Part, Section, Table, Text, say, words
+from alula.reports.sentences import told
+from alula.reports.words.numbers import joined, sentence
+
+_MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
+_PROPERTIES = (
+    ("density", "density", "kg/m³", 1e12),
+    ("youngs_modulus", "Young's modulus E", "GPa", 1e-3),
+    ("poissons_ratio", "Poisson's ratio ν", "", 1.0),
+    ("yield_strength", "yield strength", "MPa", 1.0),
+    ("ultimate_strength", "ultimate strength", "MPa", 1.0),
+    ("strength_across_layers", "strength across layers", "MPa", 1.0),
+    ("shear_strength_between_layers", "shear strength between layers", "MPa", 1.0),
+)
+_IMPACT = "A sudden load causes higher stresses than the same load applied slowly."
+
+
+def case_section(result: CheckResult, published: str = "") -> Section:
+    """Return what the case states: description, source, assumptions; and the warnings on it.
+
+    Parameters
+    ----------
+    result : CheckResult
+    published : str, optional
+        How many published figures ``claims.html`` has, in a sentence; "" where there is no such page.
+
+    Returns
+    -------
+    Section
+    """
+    case, moves = result.case, result.case.motion is not None
+    parts: list[Part] = [Text(case.description.strip(), "note")] if case.description else []
+    if case.source:
+        parts.append(Text(f"Source of the case: {case.source}.", "note"))
+    if case.assumptions:
+        parts += [Text("Assumptions of the case:", "note"), Items(case.assumptions, "note")]
+    else:
+        parts.append(Text("The case states no assumptions.", "note"))
+    if published:
+        page = link("claims.html", "claims.html")
+        parts.append(Text(f"{published} They stand on a page of their own, {page} in the same folder.", "note"))
+    if result.warnings:
+        parts.append(Items(tuple(f"Warning: {told(warning)}" for warning in result.warnings), "warnings"))
+    envelope = code("alula envelope")
+    return Section(
+        key="case",
+        title="The case",
+        short="Case",
+        parts=tuple(parts),
+        data={
+            "conditions": entries(case.conditions, "duration temperature"),
+            "not_checked": [data(str(one)) for one in result.caveats if one.heading is Heading.NOT_CHECKED],
+            "caveats": [entries(one, "heading topic what why") for one in result.caveats],
+            "assumptions": list(case.assumptions),
+            "warnings": data(result.warnings),
+            "timings": dict(result.timings),
+        },
+        not_covered=(
+            ("Other poses", "Only this pose was checked; another pose can give higher stresses"
+             + (f". The command {envelope} checks all poses of the motion." if moves else ".")),
+            ("Fatigue", "The loads are static. Repeated loads break parts at lower stresses"
+             + (f". The command {envelope} checks fatigue over the motion." if moves else ".")),
+            ("Creep, temperature, moisture, ageing", _conditions(result)),
+            ("Impact", _IMPACT),
+        ),
+    )  # fmt: skip
+
+
+def _conditions(result: CheckResult) -> str:
+    stated = result.case.conditions
+    held = "strengths and moduli are those at the stated temperature after the stated time, as far as cards tell"
+    if stated.duration is None and stated.temperature is None:
+        held = "the case states no conditions, so short-term values at room temperature are used"
+    elif stated.temperature is None:
+        held = "stiffness and stress are those after the stated time under load, at room temperature"
+    elif stated.duration is None:
+        held = "strengths and moduli are short-term values at the stated temperature, as far as cards tell"
+    return (
+        "Plastics lose strength and stiffness with time under load, temperature and age: "
+        f"{held}. Moisture and ageing are not modelled."
+    )
+
+
+def materials_section(result: CheckResult) -> Section:
+    """Return the materials of the links.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+    """
+    used: dict[str, list[str]] = {}
+    for name in result.case.checked_links:
+        used.setdefault(result.case.part_of(name).material, []).append(name)
+    cards = {name: result.case.all_materials[name] for name in used}
+    return Section(
+        key="materials",
+        title="Materials",
+        short="Materials",
+        parts=tuple(_material(name, card, used[name]) for name, card in cards.items()),
+        data={"materials": {name: entries(card, _MATERIAL) for name, card in cards.items()}},
+        not_covered=(("Manufacture and scatter", _scatter(result, list(used))),),
+    )
+
+
+def _material(name: str, material: Material, links: list[str]) -> Group:
+    factor = "yield strength over von Mises stress (ductile)"
+    if material.brittle:
+        factor = "ultimate strength over the largest principal stress (brittle)"
+    rows = tuple(
+        (
+            title,
+            Number(float(f"{value:.6g}"), unit, stated=True, factor=scale, derived=True),
+            material.status.get(key, "not stated"),
+            material.sources.get(key, "not stated"),
+        )
+        for key, title, unit, scale in _PROPERTIES
+        for value in [getattr(material, key)]
+        if value is not None
+    )
+    columns = (words("property"), Column("value"), words("status"), words("source", wraps=True))
+    table = Table(key="materials", columns=columns, rows=rows, under=(("material", name),), kind="keep")
+    return Group(
+        material.title,
+        (Text(f"Links {joined(links)}. The safety factor is {factor}.", "note"), table),
+        remark=code(name),
+    )
+
+
+def _scatter(result: CheckResult, used: list[str]) -> str:
+    case = result.case
+    bare = {
+        "strength": [name for name in used if case.all_materials[name].strength_range is None],
+        "modulus": [name for name in used if case.all_materials[name].youngs_modulus_range is None],
+        "the loads": [name for name in result.load_cases if len(set(case.load_cases[name].scatter)) == 1],
+    }
+    whole = {"strength": len(used), "modulus": len(used), "the loads": len(result.load_cases)}
+    missing = [
+        what if len(names) == whole[what] else f"{what} ({joined(names)})" for what, names in bare.items() if names
+    ]
+    text = "The safety factor must cover voids, print layers, notches and scatter of dimensions"
+    if missing:
+        text += f", and scatter of {joined(missing)}, for which the case states no range"
+    parts = {name: case.part_of(name) for name in case.checked_links if case.part_of(name).build_direction is None}
+    unknown = [
+        name for name, part in parts.items() if case.all_materials[part.material].strength_across_layers is not None
+    ]
+    layers = (
+        f" Safety factors of {joined(unknown)} hold layers of any direction, since no build_direction is stated."
+        if unknown
+        else ""
+    )
+    return f"{text}. Stated ranges are part of the bands.{layers}"
+
+
+def hand_section(result: CheckResult) -> Section:
+    """Return the hand calculations that the case asks for, and those beside solids as entries of ``result.json``.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+    """
+    parts = []
+    for name, hand in result.hand.items():
+        stated = result.case.hand_calculations[name]
+        parts.append(
+            say(
+                f"{bold(name)}: part “{stated.part}” as one cantilever of L = {{length}} under a uniform load of "
+                "W = {load}. Moment at the root M = W L / 2 = {moment}, bending stress σ = M c / I = {stress}, safety "
+                "factor n = {factor}. It contains neither joints nor stress concentrations: an order of magnitude, "
+                "not a check",
+                length=Number(stated.length, "mm", stated=True, derived=True),
+                load=Number(stated.load, "N", stated=True, derived=True),
+                moment=Number(hand.moment, "N·mm"),
+                stress=Number(hand.stress, "MPa"),
+                factor=Number(hand.safety_factor),
+            )
+        )
+    return Section(
+        key="hand",
+        title="Hand calculations of the case",
+        short="Hand calculations",
+        parts=tuple(parts),
+        data={"hand_calculations": [*_cantilevers(result), *_comparisons(result)]},
+    )
+
+
+def _cantilevers(result: CheckResult) -> Iterator[dict[str, Any]]:
+    for name, hand in result.hand.items():
+        for what, unit, value in (
+            ("moment at the root", "N*mm", hand.moment),
+            ("bending stress at the root", "MPa", hand.stress),
+            ("safety factor", "1", hand.safety_factor),
+        ):
+            yield {
+                "name": f"{name}: {what}",
+                "link": None,
+                "load_case": None,
+                "kind": "cantilever",
+                "x": 0.0,
+                "unit": unit,
+                "hand": value,
+                "solid": None,
+                "difference": None,
+            }
+
+
+def _comparisons(result: CheckResult) -> Iterator[dict[str, Any]]:
+    for case in result.load_cases.values():
+        for name, found in case.links.items():
+            for one in found.comparisons if isinstance(found, SolidResult) else ():
+                yield entries(one, "kind x hand solid difference") | {
+                    "name": f"{one.kind} stress of {name} at x = {one.x:.1f} mm",
+                    "link": name,
+                    "load_case": case.name,
+                    "unit": "MPa",
+                }
+
+
+def audit_section(result: CheckResult) -> Section:
+    """Return whether the published statics of the case are equilibrium equations; ``claims.html`` tells more.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+    """
+    audit, parts = result.audit, list[Part]()
+    if audit is not None:
+        wrong = [str(row.number) for row in audit.rows if not row.valid]
+        found = f"equations {joined(wrong)} are not equilibrium equations" if wrong else "all are equilibrium equations"
+        parts.append(Text(f"Published statics ({audit.source}): {found} of this linkage."))
+    record = None if audit is None else audit_record(audit)
+    return Section(key="audit", title="Published statics", parts=tuple(parts), data={"published_statics": record})
+
+
+def audit_record(audit: StaticsAudit) -> dict[str, Any]:
+    """Return what was found of published statics as entries of ``result.json``.
+
+    Parameters
+    ----------
+    audit : StaticsAudit
+
+    Returns
+    -------
+    dict
+    """
+    return entries(audit, "source reproduced printed_error rounding_bound") | {
+        "columns": [
+            {"name": name, "published": float(published), "exact": float(exact), "printed": float(printed)}
+            for name, published, exact, printed in zip(
+                audit.columns, audit.published, audit.exact, audit.printed, strict=True
+            )
+        ],
+        "rows": [entries(row, "number link defect valid") for row in audit.rows],
+        "imbalances": [entries(left, "link force moment") for left in audit.imbalances],
+    }
+
+
+def limits_section(sections: tuple[Section, ...]) -> Section:
+    """Return what the verdict does not cover: each section says it of its own feature.
+
+    Parameters
+    ----------
+    sections : tuple of Section
+
+    Returns
+    -------
+    Section
+    """
+    every = tuple((title, sentence(text)) for section in sections for title, text in section.not_covered)
+    return Section(
+        key="limits",
+        title="What the verdict does not cover",
+        short="Not covered",
+        parts=(Items(every, "columns2 note"),) if every else (),
+    )

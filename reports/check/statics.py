@@ -1,0 +1,334 @@
+"""Joint forces, what drives or holds the pose, springs, friction, and what the ground bears."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.check.anchor import anchor_loads
+from alula.fea.outcomes.result import CheckResult, LoadCaseResult
+from alula.loads.case.case import Case
+from alula.loads.case.joint_rules import rubbing_joints
+from alula.loads.case.layers import pin_masses
+from alula.loads.records.carried import CarriedSpread
+from alula.loads.statics.rounding import size_of, without_rounding
+from alula.loads.statics.statics import Reactions
+from alula.reports.sections.data import entries
+from alula.reports.sections.friction import friction_record, friction_sentence
+from alula.reports.sections.markup import bold, code, sub
+from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.springs import holding_sentence, spring_sentences, standing_record
+from alula.reports.words.numbers import joined, plain, turning
+
+AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+_ROUNDING = 1e-9
+
+
+def statics_section(result: CheckResult) -> Section:
+    """Return joint forces of every load case, and what drives or holds the pose.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+    """
+    first, several = next(iter(result.load_cases.values())), len(result.load_cases) > 1
+    parts: list[Part] = []
+    for case in result.load_cases.values():
+        own = tuple(_parts(result, case))
+        parts += [Group(f"Load case {case.name}", own)] if several else own
+    parts.append(Folded("How they are solved", (_method(result, first),)))
+    sprung = result.case.sprung
+    return Section(
+        key="statics",
+        title="Statics",
+        short="Statics",
+        parts=tuple(parts),
+        data={
+            "statics": _system(first),
+            "reactions": [
+                {"load_case": case.name} | reaction | {"moment": reaction["wrench"][5]}
+                for case in result.load_cases.values()
+                for reaction in reaction_records(case.reactions)
+            ],
+            **_drive(first.reactions),
+            "load_cases": {name: _data(case) for name, case in result.load_cases.items()},
+        },
+        not_covered=((("Springs and stops", _SPRINGS),) if sprung else ()),
+    )
+
+
+_SPRINGS = (
+    "Springs, tendons and stops have no mass, no friction and no give of their own but the stated stiffness. Where "
+    "stops, and the legs of springs about joints, touch the links is not modelled: their moment enters at the eye of "
+    "the joint."
+)
+
+
+def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
+    told, pose = without_rounding(case.reactions), result.pose
+    yield Text(f"{weight_sentence(result.case, case.name)}.")
+    shown = shown_components(case.reactions)
+    yield joint_table(told, shown, case.name)
+    if "Mz" not in shown:
+        for joint in told.joints.values():
+            if pose.linkage.joints[joint.joint].type == "slider":
+                moment = Number(float(joint.wrench[5]), "N·mm")
+                yield say(
+                    "The guide {joint} also exerts a moment of {moment} ({turns}) on {on}",
+                    joint=joint.joint, moment=moment, turns=turning(joint.wrench[5]), on=joint.on,
+                )  # fmt: skip
+    for line in spring_sentences(case.standing):
+        yield Text(f"{line}.")
+    yield _driving(case, told)
+    yield say("Residual of the equilibrium: {share} of the load", "note", share=Number(case.reactions.residual, "", 2))
+    if case.work is not None:
+        yield Text(f"{friction_sentence(case.work, case.reactions)}.")
+
+
+def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Table:
+    """Return a table of joint forces.
+
+    Parameters
+    ----------
+    told : Reactions
+        Without rounding errors.
+    shown : tuple of str
+        Components, of ``AXES``.
+    load_case : str
+
+    Returns
+    -------
+    Table
+    """
+    forces, moments = ([axis for axis in shown if axis[0] == kind] for kind in "FM")
+    size = size_of(told)
+    return Table.of(
+        (
+            words("joint"),
+            words("by → on"),
+            *(Column(f"F{sub(axis[1])}", "N") for axis in forces),
+            Column("size", "N"),
+            *(Column(f"M{sub(axis[1])}", "N·mm") for axis in moments),
+        ),
+        [
+            (
+                name,
+                f"{joint.by} → {joint.on}",
+                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in forces),
+                Number(float(joint.magnitude), beside=float(size[0])),
+                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in moments),
+            )
+            for name, joint in told.joints.items()
+        ],
+        key="joints",
+        caption=f"Joint forces{' and moments about the joint' if moments else ''}, global axes",
+        under=(("load case", load_case),),
+        kind="keep",
+    )
+
+
+def _driving(case: LoadCaseResult, told: Reactions) -> Text:
+    """Return what drives or holds the pose."""
+    drive = case.reactions.drive
+    if held := holding_sentence(case.standing):
+        return Text(bold(f"{held}."))
+    if drive is None:
+        return Text("")
+    if drive.pushes(case.reactions.pose.linkage):
+        return say(
+            "Drive force on {link} along {joint}: {force}, already included in the guide reaction above",
+            link=drive.link, joint=drive.joint, force=Number(told.drive_force, "N"),
+        )  # fmt: skip
+    return say(
+        "Drive torque on {link} about {joint}: {torque} ({turns}; counter-clockwise is positive)",
+        link=drive.link, joint=drive.joint, torque=Number(told.drive_torque, "N·mm"), turns=turning(told.drive_torque),
+    )  # fmt: skip
+
+
+def _method(result: CheckResult, first: LoadCaseResult) -> Text:
+    driven = " with the drive torque" if first.reactions.drive and not holding_sentence(first.standing) else ""
+    frame = "of the frame that gave the joint forces" if first.forces.frame else "moments divided by the longest link"
+    size = len(first.reactions.system.rhs)
+    return say(
+        f"Each moving link is a free body with three equilibrium equations (ΣF{sub('x')}, ΣF{sub('y')}, ΣM). They are "
+        f"assembled in the pose and solved together{driven}. Size {size} × {size}, condition number {{condition}} "
+        f"({frame}). The equations are printed by {{command}}",
+        condition=Number(first.forces.condition, "", 3),
+        command=code(f"alula statics {result.name or 'CASE'} --matrix"),
+    )
+
+
+def weight_sentence(case: Case, name: str) -> str:
+    """Return weight, inertia and massless links of a load case in one sentence, without its full stop.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the load case.
+
+    Returns
+    -------
+    str
+    """
+    load_case = case.load_cases[name]
+    if not load_case.own_weight and load_case.speed == 0.0:
+        return "The links are massless in this load case; weights are among the stated forces"
+    kind = "weight" if load_case.speed == 0.0 else "weight and inertia" if load_case.own_weight else "inertia"
+    told = [f"The links have {kind} from volume and density of their parts"]
+    if pins := pin_masses(case):
+        own = [f"{plain(float(f'{pin.mass * 1e6:.3g}'))} g at {joint} on {pin.link}" for joint, pin in pins.items()]
+        told.append(f"pins weigh {joined(own)}")
+    if case.carried and load_case.carried:
+        carried = [
+            f"{mass.link} carries {plain(float(f'{mass.mass * 1e6:.4g}'))} g "
+            + (f"spread from {mass.start} to {mass.end}" if isinstance(mass, CarriedSpread) else f"at {mass.at}")
+            for mass in case.carried
+        ]
+        told.append(joined(carried))
+    elif case.carried:
+        told.append("carried masses are left out")
+    if load_case.speed != 0.0:
+        told.append(f"{case.pose.coordinate} turns at {plain(load_case.speed * 30.0 / math.pi)} rpm")
+    if case.massless:
+        told.append(f"{joined(list(case.massless))} {'is' if len(case.massless) == 1 else 'are'} massless")
+    return "; ".join(told)
+
+
+def shown_components(reactions: Reactions) -> tuple[str, ...]:
+    """Return the components of the joint forces that a table shows.
+
+    Fx and Fy always; Fz, Mx and My with loads out of the plane; Mz with bonded joints.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    tuple of str
+        Of ``AXES``.
+    """
+    wrenches = np.array([joint.wrench for joint in reactions.joints.values()]).reshape(-1, 6)
+    sizes = np.abs(wrenches).max(axis=0, initial=0.0)
+    force, arm = sizes[:3].max(), reactions.pose.linkage.longest
+    acts = sizes > _ROUNDING * np.array([force] * 3 + [force * arm] * 3)
+    revolute = [reactions.pose.linkage.joints[name].type == "revolute" for name in reactions.joints]
+    turned = np.abs(wrenches[revolute, 5]).max(initial=0.0) > _ROUNDING * force * arm
+    spatial = bool(acts[2:5].any())
+    shown = {"Fx": True, "Fy": True, "Fz": spatial, "Mx": spatial, "My": spatial, "Mz": bool(turned)}
+    return tuple(axis for axis in AXES if shown[axis])
+
+
+def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
+    """Return the reaction of every joint as plain data: force in the plane, magnitude, and the whole wrench.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    list of dict
+        One entry per joint.
+    """
+    return [
+        entries(joint, "joint on by magnitude wrench") | {"force": joint.force[:2].tolist()}
+        for joint in reactions.joints.values()
+    ]
+
+
+def _system(case: LoadCaseResult) -> dict[str, object]:
+    return {
+        "size": len(case.reactions.system.rhs),
+        "condition": case.forces.condition,
+        "residual": case.reactions.residual,
+    }
+
+
+def _drive(reactions: Reactions) -> dict[str, float | None]:
+    drive = reactions.drive
+    pushes = drive is not None and drive.pushes(reactions.pose.linkage)
+    return {
+        "drive_torque": None if drive is None else reactions.driving[0],
+        "drive_force": reactions.driving[1] if pushes else None,
+    }
+
+
+def _data(case: LoadCaseResult) -> dict[str, object]:
+    rubbed = {} if case.work is None else {"friction": friction_record(case.work, case.loads)}
+    return {"statics": _system(case), **_drive(case.reactions), **rubbed, **standing_record(case.standing)}
+
+
+def ground_section(result: CheckResult) -> Section:
+    """Return force and moment on the ground, at each of its joints and in total.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+    """
+    several = len(result.load_cases) > 1
+    parts: list[Part] = [
+        Text(
+            f"Force and moment that the linkage exerts on its ground {result.pose.linkage.ground}: at each joint, with "
+            "the moment about that joint, and in total. The moment about z at the joint of the drive contains the "
+            "reaction of the drive torque. Global axes: x and y in the plane of the linkage, z out of it.",
+            "note",
+        )
+    ]
+    records = {}
+    for name, case in result.load_cases.items():
+        anchor = anchor_loads(case)
+        shape = ", in the deformed pose" if anchor.deformed else ""
+        if anchor.unstable:
+            shape = ", in the undeformed pose, since the deformed one has no stable equilibrium"
+        rows = {**anchor.joints, f"total, about {anchor.about}": anchor.total}
+        parts.append(
+            Table.of(
+                (
+                    words("at"),
+                    *(Column(f"F{sub(axis)}", "N") for axis in "xyz"),
+                    *(Column(f"M{sub(axis)}", "N·mm") for axis in "xyz"),
+                ),
+                [(at, *(Number(float(value)) for value in wrench)) for at, wrench in rows.items()],
+                key="ground",
+                under=(("load case", name),),
+                caption=f"{f'Load case {name}' if several else 'On the ground'}{shape}",
+            )
+        )
+        records[name] = {
+            "anchor": {
+                "joints": [{"joint": at} | _wrench(values) for at, values in anchor.joints.items()],
+                "total": {"about": anchor.about} | _wrench(anchor.total),
+                "deformed": anchor.deformed,
+                "unstable": anchor.unstable,
+            }
+        }
+    return Section(
+        key="anchor",
+        title="Loads on the ground",
+        short="Loads on the ground",
+        parts=tuple(parts),
+        data={"load_cases": records},
+    )
+
+
+def _wrench(values: NDArray[np.float64]) -> dict[str, list[float]]:
+    return {"force": values[:3].tolist(), "moment": values[3:].tolist()}
+
+
+def friction_left_out(case: Case) -> str:
+    """Return at which joints friction is left out, in words; "" where none is."""
+    rubbing = rubbing_joints(case)
+    smooth = [name for name in case.joints if name not in rubbing]
+    return "friction" if not rubbing else f"friction at {joined(smooth)}" if smooth else ""

@@ -1,0 +1,83 @@
+"""Figures of the drive with and without air on wings that flap."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from alula.loads.states.case_motion import AirRange, CaseMotion
+from alula.reports.figures.motion.motion_figures import DPI, legend, over_angle
+from alula.reports.figures.sheet.chart import Chart
+from alula.reports.tables.loads import motion_air_record
+
+Real = NDArray[np.float64]
+_SIZE = (8.0, 6.6)
+
+
+def case_air_pictures(airs: AirRange | None) -> dict[str, Chart]:
+    """Draw the drive with and without air over the motion of a case.
+
+    Parameters
+    ----------
+    airs : AirRange or None
+
+    Returns
+    -------
+    dict of str to Chart
+        By load case; empty without air, and without a motion.
+    """
+    return {} if airs is None else {name: Chart(air_figure(airs, name), dpi=DPI) for name in airs.stated.torque}
+
+
+def air_figures(airs: AirRange | None) -> dict[str, Figure]:
+    """Draw drive torque and power of every load case with air, with and without it.
+
+    Parameters
+    ----------
+    airs : AirRange or None
+
+    Returns
+    -------
+    dict of str to Figure
+        Name of the file, without its ending -> figure; empty without air.
+    """
+    if airs is None:
+        return {}
+    names = [name for name in airs.stated.torque if motion_air_record(airs, name) is not None]
+    return {"air" if len(names) == 1 else f"air-{i + 1}": air_figure(airs, name) for i, name in enumerate(names)}
+
+
+def air_figure(airs: AirRange, load_case: str) -> Figure:
+    """Draw drive torque and power of a load case with air and without it, with the band of C_N.
+
+    Parameters
+    ----------
+    airs : AirRange
+    load_case : str
+        One with air.
+
+    Returns
+    -------
+    Figure
+    """
+    result = airs.stated
+    (what, unit), air = result.effort, result.case.load_cases[load_case].flapping
+    assert air is not None
+    figure, panels = over_angle(result.motion, [f"drive {what} [{unit}]", "drive power [W]"], _SIZE)
+    at, (low, high) = result.motion.told(result.motion.angles), air.ends
+
+    def effort(one: CaseMotion) -> Real:
+        return one.torque[load_case]
+
+    def power(one: CaseMotion) -> Real:
+        return np.asarray(one.drive_power(load_case) / 1000.0)
+
+    for axes, of in zip(panels, (effort, power), strict=True):
+        axes.plot(at, of(airs.without), color="0.35", linestyle=(0, (5, 1.5)), linewidth=1.4, label="without air")
+        axes.plot(at, of(result), color="#0072b2", linewidth=1.6, label=f"C_N {air.normal_coefficient:g}")
+        if low < high:
+            ends, label = (of(airs.least), of(airs.largest)), f"C_N {low:g} to {high:g}"
+            axes.fill_between(at, *ends, color="#0072b2", alpha=0.25, linewidth=0.0, label=label, zorder=1.5)
+        axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    legend(panels[0], "air on wings")
+    panels[0].set_title(f"load case {load_case}", parse_math=False, loc="left", fontsize=10)
+    return figure

@@ -1,0 +1,113 @@
+"""A chart that matplotlib draws: as PNG, as an element of a page, and the curves in it."""
+
+import io
+from collections.abc import Iterator
+from functools import cached_property
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from alula.reports.figures.sheet.drawing import Plotted, data_uri
+from alula.reports.figures.sheet.style import DPI, quiet_glyphs
+
+
+class Chart:
+    """A figure of matplotlib as a picture.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+    dpi : float
+        Of its PNG.
+    """
+
+    def __init__(self, figure: Any, *, dpi: float = DPI, few: bool = False, style: dict[str, Any] | None = None):
+        """Take a figure.
+
+        Parameters
+        ----------
+        figure : matplotlib.figure.Figure
+        dpi : float, optional
+        few : bool, optional
+            True for a PNG of 256 colours, a third of the bytes.
+        style : dict, optional
+            What of matplotlib's is set while it is drawn.
+        """
+        self.figure, self.dpi = figure, dpi
+        self._few, self._style = few, style or {}
+
+    def png(self) -> bytes:
+        """Return it as PNG, without a date.
+
+        Returns
+        -------
+        bytes
+        """
+        return self._png
+
+    @cached_property
+    def _png(self) -> bytes:
+        from matplotlib import rc_context
+
+        stream = io.BytesIO()
+        with rc_context(self._style), quiet_glyphs():
+            self.figure.savefig(stream, format="png", dpi=self.dpi, metadata={"Software": None})
+        return _of_few_colours(stream) if self._few else stream.getvalue()
+
+    def element(self, alt: str) -> str:
+        """Return it as an element of a page.
+
+        Parameters
+        ----------
+        alt : str
+            What it shows, for who does not see it.
+
+        Returns
+        -------
+        str
+        """
+        return f'<img src="{data_uri(self.png())}" alt="{escape(alt)}">'
+
+    @property
+    def plotted(self) -> tuple[Plotted, ...]:
+        """Its curves, as they stand in the figure: lines, then ends of bands and tops of bars."""
+        return tuple(one for axes in self.figure.axes for one in _plotted(self.figure, axes))
+
+
+def _plotted(figure: Any, axes: Any) -> Iterator[Plotted]:
+    shared = [getattr(figure, f"_sup{side}label", None) for side in "xy"]
+    below = [one.get_xlabel() for one in figure.axes if one.get_xlabel()]
+    x_label = axes.get_xlabel() or (shared[0].get_text() if shared[0] else "") or (below[-1] if below else "")
+    labels = {"x_label": x_label, "y_label": axes.get_ylabel() or (shared[1].get_text() if shared[1] else "")}
+    for line in axes.lines:
+        x, y = (np.asarray(values, dtype=np.float64) for values in line.get_data(orig=True))
+        yield Plotted(name=_name(line), x=x, y=y, **labels)
+    from matplotlib.collections import PolyCollection
+
+    for area in axes.collections:
+        paths: Any = area.get_paths()
+        for path in paths if isinstance(area, PolyCollection) else ():
+            yield Plotted(name=_name(area), x=path.vertices[:, 0], y=path.vertices[:, 1], **labels)
+    for bars in axes.containers:
+        if not hasattr(bars, "patches"):
+            continue
+        boxes = np.array([[bar.get_x(), bar.get_width(), bar.get_height()] for bar in bars.patches]).reshape(-1, 3)
+        yield Plotted(name=_name(bars), x=boxes[:, 0] + boxes[:, 1] / 2.0, y=boxes[:, 2], **labels)
+
+
+def _name(artist: Any) -> str:
+    """Return the name of a curve; matplotlib's own for those without begin with an underscore."""
+    label = str(artist.get_label())
+    return "" if label.startswith("_") else label
+
+
+def _of_few_colours(drawn: io.BytesIO) -> bytes:
+    from PIL import Image
+
+    stream = io.BytesIO()
+    picture = Image.open(drawn).convert("RGB")
+    picture.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+        stream, format="PNG", optimize=True, dpi=(DPI, DPI)
+    )
+    return stream.getvalue()

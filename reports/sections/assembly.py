@@ -1,0 +1,210 @@
+"""Links in their layers: the drawing, gaps between those at one height, and what layers leave out."""
+
+from typing import Any
+
+from alula.fea.common.band import Band
+from alula.fea.outcomes.result import CheckResult
+from alula.fea.whole.clearance import SOURCES, clearance_band, gap_reason
+from alula.geometry.clearance.least import Gap
+from alula.loads.case.joint_rules import clearances
+from alula.loads.states.clearance import Clearance
+from alula.reports.sections.data import data
+from alula.reports.sections.section import Column, Number, Part, Picture, Section, Table, Text, say, words
+from alula.reports.sentences import told
+from alula.reports.words.numbers import joined, sentence
+
+MOST = 12
+"""Gaps that a table shows, the least first."""
+_STACKING = (
+    "The case states no layers, so all links lie in one plane. In a real linkage they are stacked along the pins; the "
+    "offset causes additional bending and torsion."
+)
+_LAYERS = (
+    "Pins between layers are beams from mid-plane to mid-plane. The bands hold how they share couples: with the pins "
+    "of any link tilting in it or in their other link, and with all holes open that are not tight_in. That "
+    "washers, heads and faces that touch bear some of them is left out."
+)
+_TILT = (
+    " How far pins without a stated clearance tilt in their holes is in no displacement, and not in the gaps between "
+    "layers."
+)
+
+
+def assembly_section(result: CheckResult) -> Section:
+    """Return the links in their layers and the gaps between those at one height.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    Section
+        Without parts where no layers are stated.
+    """
+    found = result.clearance
+    if found is None:
+        return Section(key="assembly", data={"clearance": None}, not_covered=(_left_out(result),))
+    return Section(
+        key="assembly",
+        title="Links in their layers",
+        short="Layers",
+        parts=_parts(found),
+        data={"clearance": clearance_record(found)},
+        not_covered=(_left_out(result),),
+    )
+
+
+def _parts(found: Clearance) -> tuple[Part, ...]:
+    touches = found.contact is not None
+    where = "at their first contact" if touches else "where they come nearest"
+    motion = found.motion
+    over = f"over the motion of {motion.coordinate}" if motion is not None else "in the stated pose"
+    parts: list[Part] = [
+        Picture(
+            name="assembly",
+            alt="Links and pins in the stated pose, from above and from the side",
+            caption="Links and pins in the stated pose, from above and from the side, a colour for each layer. From "
+            "above, what is higher covers what is lower. Pins (dark) reach from the lowest to the highest face of the "
+            "two links that they join.",
+            draw=lambda: _assembly(found),
+        ),
+        Text(f"Links that lie at one height, and pins and the links that they pass, must not touch {over}.", "note"),
+        clearance_text(found),
+    ]
+    if found.shown is not None:
+        parts.append(
+            Picture(
+                name="clearance",
+                alt=f"The two outlines {where}",
+                caption=f"The two outlines {where}, as seen from above, and a close-up. Thin lines: the others.",
+                draw=lambda: _contact(found),
+            )
+        )
+    if found.gaps:
+        parts.append(gap_table(found))
+    if touches:
+        parts.append(
+            Text(
+                "Of a pair that touches, coordinate and place are those of its first contact; its gap is negative: "
+                "less the diameter of the largest circle that lies in both.",
+                "note",
+            )
+        )
+    return tuple(parts)
+
+
+def gap_table(found: Clearance) -> Table:
+    """Return the least gaps.
+
+    Parameters
+    ----------
+    found : Clearance
+
+    Returns
+    -------
+    Table
+    """
+    motion = found.motion
+    smallest = f", the {MOST} smallest" if len(found.gaps) > MOST else ""
+    return Table.of(
+        (
+            words("between"),
+            Column("gap (band)", "mm"),
+            None if motion is None else Column(motion.coordinate, motion.unit),
+            Column("x", "mm"),
+            Column("y", "mm"),
+            words(""),
+        ),
+        [
+            (
+                joined(gap.names),
+                Number(Band(value=gap.value, low=gap.low, high=gap.high, sources=SOURCES)),
+                None if record["at"] is None else Number(record["at"], decimals=2),
+                *(Number(float(x), decimals=2) for x in gap.place),
+                "touch" if gap.touches else "",
+            )
+            for gap in found.gaps[:MOST]
+            for record in [_gap(found, gap)]
+        ],
+        key="gaps",
+        caption=f"Least gaps{smallest}; pairs that stay further apart than another are left out",
+    )
+
+
+def clearance_text(found: Clearance) -> Text:
+    """Return the least gap of an assembly, and its first contact.
+
+    Parameters
+    ----------
+    found : Clearance
+
+    Returns
+    -------
+    Text
+    """
+    where = sentence(told(gap_reason(found)))
+    if found.least is None:
+        return Text(where)
+    gap = Number(clearance_band(found), "mm")
+    return say("Least gap between links in layers: {gap}. {where}", gap=gap, where=where)
+
+
+def _assembly(found: Clearance) -> Any:
+    from alula.reports.figures.outlines.assembly import assembly_drawing
+
+    return assembly_drawing(found)
+
+
+def _contact(found: Clearance) -> Any:
+    from alula.reports.figures.outlines.contact import contact_drawing
+
+    return contact_drawing(found)
+
+
+def clearance_record(found: Clearance | None) -> dict[str, Any] | None:
+    """Return the gaps of an assembly as an entry of ``result.json``.
+
+    Parameters
+    ----------
+    found : Clearance or None
+        Its gaps.
+
+    Returns
+    -------
+    dict or None
+        None where no layers are stated.
+    """
+    if found is None:
+        return None
+    motion = found.motion
+    return {
+        "coordinate": None if motion is None else motion.coordinate,
+        "unit": None if motion is None else motion.unit,
+        "least": data(clearance_band(found)),
+        "first_contact": None if found.contact is None else _gap(found, found.contact),
+        "gaps": [_gap(found, gap) for gap in found.gaps],
+        "heights": dict(found.assembly.case.heights),
+    }
+
+
+def _gap(found: Clearance, gap: Gap) -> dict[str, Any]:
+    at = None if gap.at is None or found.motion is None else float(found.motion.told(gap.at))
+    return {
+        "between": list(gap.names),
+        "value": gap.value,
+        "low": gap.low,
+        "high": gap.high,
+        "touches": gap.touches,
+        "at": at,
+        "place": list(gap.place),
+    }
+
+
+def _left_out(result: CheckResult) -> tuple[str, str]:
+    if not result.case.layered:
+        return "Stacking", _STACKING
+    linkage, loose = result.case.linkage, clearances(result.case)
+    tilting = [name for name in linkage.joints if linkage.rise(name) != 0.0 and name not in loose]
+    tilts = any(not linkage.joints[name].bonded for name in tilting)
+    return "Layers", _LAYERS + _TILT if tilts else _LAYERS
