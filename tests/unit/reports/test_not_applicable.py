@@ -20,15 +20,9 @@ from alula.fea.study.margin import least_margin, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.page.template import fill
-<<<<<<< ours
-from alula.reports.sentences import told as in_words
-from alula.reports.tables.console import print_result, say_checks
-from alula.reports.tables.data import check_records
-=======
 from alula.reports.sections.checks import check_records
 from alula.reports.sentences import told as in_words
 from alula.reports.tables.console import say_checks
->>>>>>> theirs
 from alula.reports.words.wording import checks_of, decision, inapplicable
 
 ENTRIES = (
