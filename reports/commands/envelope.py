@@ -19,12 +19,12 @@ from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record
 from alula.reports.page.motion_pages import envelope_headline
 from alula.reports.page.output import MARK, write_folder
+from alula.reports.renderers.record import finite
+from alula.reports.sections.checks import check_records
+from alula.reports.sections.data import data, entries
 from alula.reports.sections.friction import motion_friction_lines, motion_friction_record
 from alula.reports.sentences import told
 from alula.reports.tables.console import say_checks, verdict_line
-from alula.reports.sections.data import data, entries
-from alula.reports.renderers.record import finite
-from alula.reports.sections.checks import check_records
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
 from alula.reports.words.numbers import band, fixed, number, sentence
 from alula.reports.words.terminal import say, say_table

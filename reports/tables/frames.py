@@ -13,8 +13,8 @@ from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
 from alula.loads.statics.rounding import without_rounding
 from alula.loads.statics.statics import Reactions
-from alula.reports.sentences import told
 from alula.reports.sections.data import data, entries
+from alula.reports.sentences import told
 from alula.reports.words.numbers import band, fixed, limit_load, number
 
 if TYPE_CHECKING:

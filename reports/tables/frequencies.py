@@ -15,9 +15,9 @@ from alula.fea.vibration.harmonics import HIGHEST, meetings
 from alula.fea.vibration.link_modes import LinkModes
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
 from alula.loads.case.case import Case
+from alula.reports.sections.data import data, entries
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.motion import directions
-from alula.reports.sections.data import data, entries
 from alula.reports.words.numbers import sentence
 
 LEFT_OUT = (

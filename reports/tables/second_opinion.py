@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
-from alula.reports.sentences import told
 from alula.reports.sections.data import entries
+from alula.reports.sentences import told
 from alula.reports.words.numbers import number
 from alula.reports.words.terminal import say_table
 
