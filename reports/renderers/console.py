@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from alula.fea.common.verdict import Verdict
 from alula.reports.sections.markup import as_plain
-from alula.reports.sections.section import Beside, Cell, Folded, Group, Items, Mark, Part, Section, Table, Text
-from alula.reports.words.terminal import say, say_table
+from alula.reports.sections.section import Beside, Cell, Command, Folded, Group, Items, Mark, Part, Section, Table, Text
+from alula.reports.words.terminal import say, say_command, say_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -49,14 +49,16 @@ def print_sections(sections: Iterable[Section], console: "Console") -> None:
 def print_parts(parts: Iterable[Part], console: "Console") -> None:
     """Print parts of a section."""
     for part in parts:
-        if isinstance(part, Text) and part.kind != "note":
+        if isinstance(part, Text) and "note" not in part.kind:
             say(console, as_plain(part.text), style="yellow" if part.kind == "apart" else "")
-        elif isinstance(part, Items) and part.kind != "note":
+        elif isinstance(part, Items) and "note" not in part.kind:
             style = "yellow" if part.kind == "warnings" else ""
             for item in part.items:
                 say(console, as_plain(f"- {item}" if isinstance(item, str) else f"{item[0]}: {item[1]}"), style=style)
         elif isinstance(part, Table):
             print_table(part, console)
+        elif isinstance(part, Command):
+            say_command(console, part.text, part.command)
         elif isinstance(part, Beside) or (isinstance(part, Folded) and part.told):
             print_parts(part.parts, console)
         elif isinstance(part, Group) and any(map(_told, part.parts)):
@@ -67,6 +69,7 @@ def print_parts(parts: Iterable[Part], console: "Console") -> None:
 
 def print_table(table: Table, console: "Console") -> None:
     """Print a table, and below it what it says of some of its rows."""
+    table = table.shown
     columns = [(as_plain(column.head), not column.text) for column in table.columns]
     say_table(console, columns, [[_styled(cell) for cell in row] for row in table.rows], title=as_plain(table.caption))
     for text in dict.fromkeys(table.below.values()):
@@ -85,4 +88,4 @@ def _told(part: Part) -> bool:
     """Whether a console tells anything of a part."""
     if isinstance(part, Beside | Group) or (isinstance(part, Folded) and part.told):
         return any(map(_told, part.parts))
-    return isinstance(part, Table) or (isinstance(part, Text | Items) and part.kind != "note")
+    return isinstance(part, Table | Command) or (isinstance(part, Text | Items) and "note" not in part.kind)

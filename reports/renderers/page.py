@@ -86,7 +86,7 @@ def as_page(
         "drawn": lambda picture, alt: Markup(drawn(picture, alt)),
         "shown": lambda cell: Markup(_shown(cell)),
         "classes": lambda cell, column: Markup(_classes(cell, column)),
-        "capital": lambda text: text[:1].upper() + text[1:],
+        "capital": _capital,
         "part_kind": lambda part: type(part).__name__,
         "beside": lambda part: _beside(part, pictures, models),
         "model_name": lambda name: name.removeprefix("link-"),
@@ -112,6 +112,11 @@ def _contents(page: Page) -> Iterator[tuple[str, str, bool]]:
         for part in section.parts:
             if isinstance(part, Group) and part.key:
                 yield part.title.split(" ", 1)[-1], f"#{part.key}", True
+
+
+def _capital(head: str) -> str:
+    """Return the head of a column with a capital, unless it begins with a symbol."""
+    return head[:1].upper() + head[1:] if head[:3].isalpha() and len(head.split(" ")[0]) > 2 else head
 
 
 def _beside(part: Beside, pictures: Mapping[str, Any], models: Mapping[str, str]) -> str:
@@ -153,8 +158,8 @@ def drawn(picture: Any, alt: str) -> str:
     -------
     str
     """
-    if hasattr(picture, "svg"):
-        return str(picture.svg(alt))
+    if hasattr(picture, "element"):
+        return str(picture.element(alt))
     return f'<img src="{data_uri(picture)}" alt="{as_html(alt)}">'
 
 

@@ -19,12 +19,14 @@ def field_units() -> dict[str, Any]:
     return {**found["dimensions"], "fields": found["fields"]}
 
 
-def as_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
+def as_record(sections: Iterable[Section], *, listed: bool = True, **head: Any) -> dict[str, Any]:
     """Return all entries of sections as data that JSON can hold.
 
     Parameters
     ----------
     sections : iterable of Section
+    listed : bool, optional
+        False for a record without ``nulls``.
     **head
         Entries above theirs.
 
@@ -37,7 +39,7 @@ def as_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
     nulls: dict[str, str] = {}
     found = finite({**result_stamp(), "units": field_units(), **head, **entries}, nulls)
     assert isinstance(found, dict)
-    return found | {"nulls": nulls}
+    return found | {"nulls": nulls} if listed else found
 
 
 def as_json(record: Mapping[str, Any]) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
 from alula.loads.records.aero import shares
-from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.case_motion import AirRange
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, sub
 from alula.reports.sections.section import Column, Items, Number, Part, Picture, Section, Table, Text, say, words
@@ -160,12 +160,12 @@ def flapping_section(result: CheckResult) -> Section:
     )
 
 
-def flapping_parts(moved: CaseMotion, records: dict[str, dict[str, Any]]) -> Iterator[Part]:
+def flapping_parts(moved: AirRange, records: dict[str, dict[str, Any]]) -> Iterator[Part]:
     """Yield what the air does to wings that flap.
 
     Parameters
     ----------
-    moved : CaseMotion
+    moved : AirRange
     records : dict of str to dict
         Load case -> what ``result.json`` has of it.
 
@@ -259,7 +259,7 @@ def wing_table(records: dict[str, dict[str, Any]]) -> Table:
     )
 
 
-def _figure(moved: CaseMotion, name: str) -> Any:
-    from alula.reports.motion.air_figures import case_air_pictures
+def _figure(moved: AirRange, name: str) -> Any:
+    from alula.reports.figures.motion.air_figures import case_air_pictures
 
     return case_air_pictures(moved).get(name)

@@ -5,7 +5,7 @@ Console, page, notebook, ``result.json`` and CSV show sections and know no featu
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -128,6 +128,8 @@ class Column:
         True for text, which stands at the left.
     wraps : bool
         True for text of which lines may break.
+    hidden : bool
+        True for one that notebooks alone have.
     """
 
     title: str
@@ -135,6 +137,7 @@ class Column:
     role: str = field(default="", kw_only=True)
     text: bool = field(default=False, kw_only=True)
     wraps: bool = field(default=False, kw_only=True)
+    hidden: bool = field(default=False, kw_only=True)
 
     @property
     def head(self) -> str:
@@ -142,9 +145,9 @@ class Column:
         return f"{self.title} [{self.unit}]" if self.unit else self.title
 
 
-def words(title: str, *, role: str = "", wraps: bool = False) -> Column:
+def words(title: str, *, role: str = "", wraps: bool = False, hidden: bool = False) -> Column:
     """Return a column of text."""
-    return Column(title, text=True, role=role, wraps=wraps)
+    return Column(title, text=True, role=role, wraps=wraps, hidden=hidden)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,6 +199,15 @@ class Table:
         kept = [i for i, column in enumerate(columns) if column is not None]
         cells = tuple(tuple("" if row[i] is None else row[i] for i in kept) for row in rows)
         return cls(columns=tuple(columns[i] for i in kept), rows=cells, **more)  # type: ignore[misc, arg-type]
+
+    @property
+    def shown(self) -> Self:
+        """The table without the columns that notebooks alone have."""
+        kept = [i for i, column in enumerate(self.columns) if not column.hidden]
+        if len(kept) == len(self.columns):
+            return self
+        rows = tuple(tuple(row[i] for i in kept) for row in self.rows)
+        return replace(self, columns=tuple(self.columns[i] for i in kept), rows=rows)
 
     @property
     def records(self) -> list[dict[str, str | float | None]]:
@@ -371,7 +383,22 @@ class Group:
     remark: str = ""
 
 
-Part = Text | Items | Table | Picture | Folded | Beside | Group
+@dataclass(frozen=True)
+class Command:
+    """A command that a reader may run: on a line of its own, which a shell takes as it is copied.
+
+    Attributes
+    ----------
+    text : str
+        What it is for.
+    command : str
+    """
+
+    text: str
+    command: str
+
+
+Part = Text | Items | Table | Picture | Folded | Beside | Group | Command
 
 
 @dataclass(frozen=True, kw_only=True)

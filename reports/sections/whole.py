@@ -68,7 +68,7 @@ def _masses(found: Weighed, others: float | None) -> Table:
 
 
 def _box(size: Extent, limits: tuple[float, ...]) -> Any:
-    from alula.reports.outlines.box import box_drawing
+    from alula.reports.figures.outlines.box import box_drawing
 
     return box_drawing(size, limits)
 

@@ -20,7 +20,7 @@ from alula.reports.figures.motion.rate_figures import energy_figure, rate_figure
 from alula.reports.motion.csv_tables import write_tables
 from alula.reports.motion.lines import motion_lines
 from alula.reports.motion.rate_rows import ends
-from alula.reports.motion.rates import series, vector_extremes
+from alula.fea.findings.rates import series, vector_extremes
 from alula.reports.motion.record import record
 from alula.reports.notebook.motion_report import MotionReport
 
