@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import solved
+from told import as_json
 
 from alula.loads.case.case_file import built_in_cases, read_text
-from alula.reports.tables.record import as_json
 
 FOLDER = Path(__file__).parent / "regression" / "golden"
 EXACT, ITERATED, MESHED = 1e-9, 1e-7, 1e-6

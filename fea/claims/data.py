@@ -23,6 +23,7 @@ import numpy as np
 
 from alula.fea.check.run import check_case, effort_of, hand_calculations
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.mechanisms.flapping import FlappingWing
@@ -127,7 +128,7 @@ def case_tree(
     threads : int, optional
         Upper bound on the threads of a solver.
     known : CheckResult, optional
-        A check; if it is of this case, its frames are not solved again.
+        A check; if it is of this case, or of the same in layers, its frames are not solved again.
 
     Returns
     -------
@@ -135,7 +136,7 @@ def case_tree(
         Its quantities, each computed when it is first asked for.
     """
     case = case.in_one_plane() if case.layered else case
-    frames = None if known is None or known.case != case else known.frames
+    frames = _frames(case, known)
     parts = Tree(
         statics=lambda: solve_case_statics(case, name),
         beam=lambda: check_case(case, name=name, fidelity="beam", threads=threads, frames=frames),
@@ -165,6 +166,25 @@ def case_tree(
     if fidelity == "solid":
         branches["solid"] = lambda: _check(parts["solid"])
     return Tree(**branches)
+
+
+def _frames(case: Case, known: CheckResult | None) -> Mapping[str, LargeDisplacement] | None:
+    """Return what is known already of a case's frames.
+
+    Of links in layers it is known at least whether their numbers are those of the undeformed pose, as the sources' are:
+    no frame is solved in one plane then.
+    """
+    if known is None or known.case == case:
+        return None if known is None else known.frames
+    undeformed = all(one.state != "deformed" for one in known.frames.values())
+    if not (known.case.layered and undeformed and known.case.in_one_plane() == case):
+        return None
+    return {
+        name: LargeDisplacement(
+            state="unknown", span=one.span, points={}, links={}, sentence="the frame in one plane was not solved"
+        )
+        for name, one in known.frames.items()
+    }
 
 
 def _pose(statics: CaseStatics) -> Mapping[str, Any]:

@@ -7,6 +7,8 @@ from typing import Literal
 from alula.fea.common.source import Source
 from alula.fea.common.verdict import CheckOutcome
 
+EXACT = 1e-9
+"""Share of a factor that is rounding."""
 Property = Literal[
     "yield strength", "ultimate strength", "strength of the layers", "sustained strength", "modulus", "all moduli"
 ]
@@ -86,3 +88,23 @@ class VerdictChange:
     size: SizeRange | None = None
     sizable: bool = False
     refuted: bool = False
+
+
+def rounded(value: float, *, up: bool, digits: int = 3) -> float:
+    """Return a number to some digits, upwards or downwards, so that it still does what it should.
+
+    Parameters
+    ----------
+    value : float
+    up : bool
+    digits : int, optional
+
+    Returns
+    -------
+    float
+    """
+    if value <= 0.0 or not math.isfinite(value):
+        return value
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    steps = math.ceil(value / step - EXACT) if up else math.floor(value / step + EXACT)
+    return steps * step

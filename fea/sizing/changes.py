@@ -26,7 +26,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from alula.fea.common.change import MaterialChange, Property, VerdictChange
+from alula.fea.common.change import EXACT, MaterialChange, Property, VerdictChange, rounded
 from alula.fea.common.source import SourceKind, widest
 from alula.fea.common.verdict import (
     LINKAGE,
@@ -51,7 +51,6 @@ TRIES = 3
 """Of each load, strength or modulus."""
 _CLOSER = 0.99
 """Factor beside the margin that is left, since the path to a limit load is followed in steps."""
-_EXACT = 1e-9
 _NAMES: Mapping[str, Property] = {"yield": "yield strength", "ultimate": "ultimate strength"}
 _ENTRIES: Mapping[Property, str] = {
     "yield strength": "yield_strength",
@@ -63,26 +62,6 @@ _ENTRIES: Mapping[Property, str] = {
 }
 """Of a card."""
 _BY_DEFINITION = (Quantity.LOAD_SHARE, Quantity.LIMIT_LOAD, Quantity.BUCKLING_FACTOR)
-
-
-def rounded(value: float, *, up: bool, digits: int = 3) -> float:
-    """Return a number to some digits, upwards or downwards, so that it still does what it should.
-
-    Parameters
-    ----------
-    value : float
-    up : bool
-    digits : int, optional
-
-    Returns
-    -------
-    float
-    """
-    if value <= 0.0 or not math.isfinite(value):
-        return value
-    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
-    steps = math.ceil(value / step - _EXACT) if up else math.floor(value / step + _EXACT)
-    return steps * step
 
 
 def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
@@ -147,7 +126,7 @@ def _held(first: float, share: Callable[[float], float]) -> float | None:
     factor = first
     for _ in range(TRIES):
         kept = share(factor)
-        if kept >= 1.0 - _EXACT:
+        if kept >= 1.0 - EXACT:
             return factor
         factor *= kept * _CLOSER
         if factor <= 0.0 or (first > 1.0 >= factor):

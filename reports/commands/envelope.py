@@ -16,13 +16,13 @@ from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.outcomes.unchecked import caveats, unchecked
 from alula.geometry.base.version import result_stamp
 from alula.geometry.materials.material import Material
+from alula.reports.check.links import solver_record
 from alula.reports.page.motion_pages import envelope_headline
 from alula.reports.page.output import MARK, write_folder
+from alula.reports.sections.friction import motion_friction_lines, motion_friction_record
 from alula.reports.tables.console import say_checks, verdict_line
 from alula.reports.tables.data import check_records, data, entries, finite
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
-from alula.reports.tables.friction import motion_friction_lines, motion_friction_record
-from alula.reports.tables.meshes import solver_record
 from alula.reports.words.numbers import band, fixed, number, sentence
 from alula.reports.words.terminal import say, say_table
 

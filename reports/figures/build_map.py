@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from alula.fea.solid.layers import AZIMUTH, POLAR, build_directions
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.style import GROUND, INK
-from alula.reports.tables.layers import BuildDirections, direction
+from alula.reports.sections.layers import BuildDirections, direction
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]

@@ -11,7 +11,7 @@ from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.charts import chart
 from alula.reports.motion.extremes import every_extreme, finite_or_none
 from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, say, words
-from alula.reports.tables.springs import motion_springs
+from alula.reports.sections.springs import motion_springs
 
 
 def motion_section(found: MotionFindings, own: Series | None) -> Section:

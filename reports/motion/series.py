@@ -13,7 +13,7 @@ from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.play import drive_play, point_play
 from alula.reports.sections.section import Section
 from alula.reports.sections.section import Series as File
-from alula.reports.tables.springs import motion_springs
+from alula.reports.sections.springs import motion_springs
 
 Real = NDArray[np.float64]
 ANGULAR = ("angular_speed", "angular_acceleration")

@@ -1,6 +1,6 @@
 """What ``alula.check`` returns."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,10 +12,30 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
-from alula.loads.statics.rounding import without_rounding
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
-from alula.reports.tables.record import worst_load_case
+from alula.reports.check.links import worst_load_case
+from alula.reports.check.whole_check import check_sections
+from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary, table_of
+from alula.reports.sections.checks import check_table
+from alula.reports.sections.section import Section
 from alula.reports.words.wording import checks_of, headline, inapplicable
+
+RENAMED = {
+    "checks": {
+        "low": "value low",
+        "high": "value high",
+        "unit": "value unit",
+        "quantity": "check",
+        "sense": "limit sense",
+    },
+    "links": {
+        "low": "safety factor n low",
+        "high": "safety factor n high",
+        "safety factor": "safety factor n",
+        "worst at x [mm]": "largest at x [mm]",
+    },
+    "joints": {},
+}
+"""Names that columns had before -> their names now, for one version."""
 
 
 @dataclass(frozen=True)
@@ -75,14 +95,20 @@ class CheckReport(Tabled):
         found = self.result.load_cases.items()
         return {name: case.reactions.driving[0] for name, case in found if case.reactions.drive is not None}
 
-    def table(self, of: Literal["checks", "links", "joints"] = "checks") -> Table:
+    @cached_property
+    def sections(self) -> tuple[Section, ...]:
+        """All that is told of it, as on the page of ``alula check``."""
+        return check_sections(self._told)
+
+    def table(self, of: str = "checks") -> Table:
         """Return a table of the result.
 
         Parameters
         ----------
-        of : {"checks", "links", "joints"}
-            The checks with value, band and limit; the links with stress, safety factor and displacement; or the joint
-            forces in the undeformed pose. All have a row per load case.
+        of : str, optional
+            ``checks`` with value, band and limit; ``links`` with stress, safety factor and displacement; ``joints``,
+            the joint forces in the undeformed pose; or any other table of the page, such as ``pins``, ``gaps``,
+            ``ground``, ``masses``, ``frequencies``. All have a row per load case.
 
         Returns
         -------
@@ -92,10 +118,9 @@ class CheckReport(Tabled):
         Raises
         ------
         CaseError
-            For another table.
+            For another table; the error lists those that there are.
         """
-        tables = {"checks": self._check_rows, "links": self._link_rows, "joints": self._joint_rows}
-        return Table(tuple(pick(tables, of, "table")()))
+        return table_of(self.sections, of, RENAMED.get(of, {}))
 
     def plot_linkage(self, load_case: str | None = None) -> Picture:
         """Draw the linkage in its pose with the joint forces.
@@ -239,7 +264,7 @@ class CheckReport(Tabled):
             For a link without layers, and where nothing is known of them.
         """
         from alula.reports.figures.build_map import build_map
-        from alula.reports.tables.layers import build_directions_of
+        from alula.reports.sections.layers import build_directions_of
 
         known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
         return Picture(build_map(pick(known, link, "printed link, solved as a solid,")).png())
@@ -294,7 +319,7 @@ class CheckReport(Tabled):
             Where the folder cannot be written.
         """
         from alula.fea.claims.sources import claims_of
-        from alula.reports.page.folder import write_report
+        from alula.reports.check.folder import write_report
         from alula.reports.page.output import folder_named
 
         target = folder_named(folder)
@@ -335,45 +360,10 @@ class CheckReport(Tabled):
             return worst_load_case(self.result, link)
         return pick(self.result.load_cases, load_case, "load case")
 
-    def _check_rows(self) -> list[Row]:
-        return check_rows(checks_of(self.result))
 
-    def _link_rows(self) -> list[Row]:
-        return [
-            {
-                "load case": case.name,
-                "link": name,
-                "model": link.model,
-                "stress": link.measure,
-                "stress [MPa]": link.decisive.value,
-                "safety factor": link.safety_factor.value,
-                "low": link.safety_factor.told.low,
-                "high": link.safety_factor.told.high,
-                "displacement [mm]": link.displacement_max.value,
-                "worst at x [mm]": float(link.location[0]),
-            }
-            for case in self.result.load_cases.values()
-            for name, link in case.links.items()
-        ]
-
-    def _joint_rows(self) -> list[Row]:
-        return [
-            {
-                "load case": case.name,
-                "joint": name,
-                "by": joint.by,
-                "on": joint.on,
-                "Fx [N]": float(joint.force[0]),
-                "Fy [N]": float(joint.force[1]),
-                "size [N]": float(joint.magnitude),
-            }
-            for case in self.result.load_cases.values()
-            for name, joint in without_rounding(case.reactions).joints.items()
-        ]
-
-
-def _applicable(checks: Iterable[CheckOutcome]) -> Table:
-    return Table(tuple(check_rows(check for check in checks if check.applies)))
+def _applicable(checks: Sequence[CheckOutcome]) -> Table:
+    judged, several = [check for check in checks if check.applies], len({check.load_case for check in checks}) > 1
+    return Table.of([check_table(judged, several=several)], RENAMED["checks"])
 
 
 def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:

@@ -1,14 +1,19 @@
 """A table and a picture that a notebook shows and a script can use."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from html import escape
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeVar
 
 from alula.fea.common.verdict import Verdict
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.reports.sections.markup import as_plain
+from alula.reports.sections.section import Part, Section, parts_of
+from alula.reports.sections.section import Table as Told
 from alula.reports.words.numbers import number, plain
 
 if TYPE_CHECKING:
@@ -21,20 +26,73 @@ T = TypeVar("T")
 VERDICT_COLOURS = {Verdict.PASS: "#1a7f37", Verdict.FAIL: "#b42318", Verdict.UNDECIDED: "#8a6100"}
 
 
+class OldNames(dict[str, Cell]):
+    """A row that knows the names which its columns had before, for one version."""
+
+    renamed: Mapping[str, str]
+
+    def __missing__(self, name: str) -> Cell:
+        """Return the entry of an old name, with a warning; raises ``KeyError`` for a name that never was."""
+        if name not in self.renamed:
+            raise KeyError(name)
+        new = self.renamed[name]
+        warnings.warn(f"the column {name!r} is called {new!r} now", DeprecationWarning, stacklevel=2)
+        return self[new]
+
+
 @dataclass(frozen=True)
 class Table:
     """Rows of a result, each a mapping of column names to numbers or text.
 
-    Printed it is aligned text, in a notebook a table; ``list(table)`` is plain data, as ``pandas.DataFrame`` takes it.
-    A number that is not known is NaN, and an entry that does not apply is None.
+    Printed it is aligned text, in a notebook a table, both with the digits and bands of the report; ``list(table)`` is
+    plain data, as ``pandas.DataFrame`` takes it. A number that is not known is NaN, and an entry that does not apply is
+    None.
 
     Attributes
     ----------
     rows : tuple of mappings
-        All with the same keys; the unit stands in the key, ``"x [mm]"``, or in a column of its own.
+        All with the same keys; the unit stands in the key, ``"x [mm]"``, or in a column of its own. The ends of a band
+        are columns of their own, ``"safety factor low"`` and ``"safety factor high"``.
+    heads : tuple of (str, bool)
+        Of the columns that are shown, and whether they hold numbers; by default those of the rows.
+    cells : tuple of tuple of str
+        Their texts.
     """
 
     rows: tuple[Row, ...]
+    heads: tuple[tuple[str, bool], ...] = ()
+    cells: tuple[tuple[str, ...], ...] = ()
+
+    @classmethod
+    def of(cls, tables: Sequence[Told], renamed: Mapping[str, str] = MappingProxyType({})) -> "Table":
+        """Return tables of sections, those of one name, as one.
+
+        Parameters
+        ----------
+        tables : sequence of alula.reports.sections.section.Table
+        renamed : mapping of str to str, optional
+            Names that columns had before -> their names now.
+
+        Returns
+        -------
+        Table
+        """
+        found = [record for table in tables for record in table.records]
+        names = dict.fromkeys(name for record in found for name in record)
+        rows = []
+        for record in found:
+            row = OldNames((name, record.get(name)) for name in names)
+            row.renamed = renamed
+            rows.append(row)
+        under = {name: False for table in tables for name, _ in table.under}
+        heads = under | {as_plain(column.head): not column.text for table in tables for column in table.shown.columns}
+        cells = []
+        for table in tables:
+            for cell_row in table.shown.rows:
+                own = dict(table.under)
+                own |= {as_plain(c.head): as_plain(str(x)) for c, x in zip(table.shown.columns, cell_row, strict=True)}
+                cells.append(tuple(own.get(head, "") for head in heads))
+        return cls(tuple(rows), tuple(heads.items()), tuple(cells))
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -50,28 +108,39 @@ class Table:
     def __getitem__(self, index: int) -> Row:
         return self.rows[index]
 
+    def _shown(self) -> tuple[tuple[tuple[str, bool], ...], Sequence[Sequence[str]]]:
+        """Return heads and cells as they are shown."""
+        if self.heads:
+            return self.heads, self.cells
+        heads = tuple((name, not any(isinstance(row[name], str) for row in self.rows)) for name in self.columns)
+        return heads, [[_text(cell) for cell in row.values()] for row in self.rows]
+
     def __str__(self) -> str:
-        cells = [self.columns, *([_text(cell) for cell in row.values()] for row in self.rows)]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        right = [self._is_number(column) for column in self.columns]
+        heads, cells = self._shown()
+        rows = [[head for head, _ in heads], *cells]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [
             "  ".join(
-                cell.rjust(width) if aligned else cell.ljust(width)
-                for cell, width, aligned in zip(line, widths, right, strict=True)
+                cell.rjust(width) if number else cell.ljust(width)
+                for cell, width, (_, number) in zip(row, widths, heads, strict=True)
             ).rstrip()
-            for line in cells
+            for row in rows
         ]
         return "\n".join(lines) if self.rows else "(no rows)"
 
     def _repr_html_(self) -> str:
         if not self.rows:
             return "<p>(no rows)</p>"
-        sides = {name: "right" if self._is_number(name) else "left" for name in self.columns}
-        aligned = {name: f' style="text-align: {side}"' for name, side in sides.items()}
-        head = "".join(f'<th scope="col"{aligned[name]}>{escape(name)}</th>' for name in self.columns)
+        heads, cells = self._shown()
+        sides = [f' style="text-align: {"right" if number else "left"}"' for _, number in heads]
+        head = "".join(
+            f'<th scope="col"{side}>{escape(name)}</th>' for (name, _), side in zip(heads, sides, strict=True)
+        )
         body = "".join(
-            "<tr>" + "".join(f"<td{aligned[name]}>{_marked(cell)}</td>" for name, cell in row.items()) + "</tr>\n"
-            for row in self.rows
+            "<tr>"
+            + "".join(f"<td{side}>{_marked(cell)}</td>" for cell, side in zip(row, sides, strict=True))
+            + "</tr>\n"
+            for row in cells
         )
         return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>"
 
@@ -94,8 +163,32 @@ class Table:
             raise CannotRunError("frame: pandas is not installed; run pip install 'alula[pandas]'") from None
         return pandas.DataFrame(list(self.rows), columns=list(self.columns))
 
-    def _is_number(self, column: str) -> bool:
-        return not any(isinstance(row[column], str) for row in self.rows)
+
+def table_of(sections: Iterable[Section], name: str, renamed: Mapping[str, str] = MappingProxyType({})) -> Table:
+    """Return a table of sections by its name.
+
+    Parameters
+    ----------
+    sections : iterable of Section
+    name : str
+    renamed : mapping of str to str, optional
+        As of ``Table.of``.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    CaseError
+        For a table that there is not; the error lists the others.
+    """
+    found: dict[str, list[Told]] = {}
+    every: Iterable[Part] = (part for section in sections for part in parts_of(section.parts))
+    for part in every:
+        if isinstance(part, Told) and part.key:
+            found.setdefault(part.key, []).append(part)
+    return Table.of(pick(found, name, "table"), renamed)
 
 
 class Tabled:

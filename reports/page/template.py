@@ -1,6 +1,7 @@
 """The templates of pages, and how they write numbers."""
 
 import math
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from alula.geometry.base.version import alula_version
@@ -9,6 +10,7 @@ from alula.reports.page.policy import sealed
 from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, sentence
 
 if TYPE_CHECKING:
+    from jinja2 import Environment
     from markupsafe import Markup
 
 
@@ -30,7 +32,16 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
     -------
     str
     """
+    environment = _environment()
+    own = {"version": alula_version(), "embed": embed, **sealed(*styles, script=script)}
+    return environment.get_template(template).render(**entries, **own)
+
+
+@cache
+def _environment() -> "Environment":
     from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    from alula.reports.page.compiled import CompiledTemplates
 
     environment = Environment(
         loader=PackageLoader("alula.reports"),
@@ -38,6 +49,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
     )
     environment.filters |= {
         "number": number,
@@ -52,8 +64,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
         "breakable": lambda path: path.replace(".", ".\u200b"),
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
-    own = {"version": alula_version(), "embed": embed, **sealed(*styles, script=script)}
-    return environment.get_template(template).render(**entries, **own)
+    return environment
 
 
 def embed(drawn: Drawing, alt: str) -> "Markup":

@@ -146,26 +146,26 @@ def flapping_section(result: CheckResult) -> Section:
     Section
         Without parts where no load case has air on wings.
     """
-    moved, case = result.in_air, result.case
-    records = case_air_record(moved)
+    airs, case = result.in_air, result.case
+    records = case_air_record(airs)
     flapping = [name for name in result.load_cases if case.load_cases[name].flapping is not None]
     links = joined(list(dict.fromkeys(wing.link for wing in case.wings)))
     return Section(
         key="flapping",
         title="Air on wings that flap",
         short="Air on wings",
-        parts=() if moved is None or not records else tuple(flapping_parts(moved, records)),
+        parts=() if airs is None or not records else tuple(flapping_parts(airs, records)),
         data={"flapping": records or None},
         not_covered=(("Wings", _WINGS.format(links=links)),) if flapping else (),
     )
 
 
-def flapping_parts(moved: AirRange, records: dict[str, dict[str, Any]]) -> Iterator[Part]:
+def flapping_parts(airs: AirRange, records: dict[str, dict[str, Any]]) -> Iterator[Part]:
     """Yield what the air does to wings that flap.
 
     Parameters
     ----------
-    moved : AirRange
+    airs : AirRange
     records : dict of str to dict
         Load case -> what ``result.json`` has of it.
 
@@ -186,7 +186,7 @@ def flapping_parts(moved: AirRange, records: dict[str, dict[str, Any]]) -> Itera
             alt=f"Drive torque and power over the motion with and without air, load case {name}",
             caption=f"Load case “{name}”: drive torque and power over the motion without air (dashed) and with it; the "
             f"band is that of C{sub('N')}.",
-            draw=lambda name=name: _figure(moved, name),  # type: ignore[misc]
+            draw=lambda name=name: _figure(airs, name),  # type: ignore[misc]
         )
     yield wing_table(records)
 
@@ -259,7 +259,7 @@ def wing_table(records: dict[str, dict[str, Any]]) -> Table:
     )
 
 
-def _figure(moved: AirRange, name: str) -> Any:
+def _figure(airs: AirRange, name: str) -> Any:
     from alula.reports.figures.motion.air_figures import case_air_pictures
 
-    return case_air_pictures(moved).get(name)
+    return case_air_pictures(airs)[name]

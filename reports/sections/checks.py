@@ -70,17 +70,14 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
     Table
     """
     alike = Counter((check.quantity, check.link, check.load_case) for check in checks)
-    reasons, below = _reasons(checks), dict[int, str]()
-    for i, check in enumerate(checks):
-        last = i + 1 == len(checks)
-        if not check.applies and (last or checks[i + 1].reason != check.reason):
-            count = sum(not other.applies and other.reason == check.reason for other in checks)
-            below[i] = say(f"{bold('Not applicable')}, {_count(count, 'check')}: {{why}}", why=check.reason).text
-        elif check.applies and reasons[i] and (last or reasons[i + 1] != reasons[i]):
-            below[i] = sentence(reasons[i])
+    reasons = _reasons(checks)
+    below = {
+        i: reason for i, reason in enumerate(reasons) if reason and (i + 1 == len(checks) or reasons[i + 1] != reason)
+    }
     return Table.of(
         (
-            words("check", role="what"),
+            words("check", hidden=True),
+            words("quantity", role="what"),
             words("link", role="who"),
             words("load case", role="under") if several else None,
             Column("value (band)", role="value"),
@@ -89,6 +86,7 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
         ),
         [
             (
+                check.name,
                 str(check.quantity)
                 if alike[check.quantity, check.link, check.load_case] == 1 or check.name in check.quantity
                 else f"{check.name}: {check.quantity}",
@@ -176,16 +174,17 @@ def checks_section(checks: Sequence[CheckOutcome], verdict: Verdict, where: str,
     meaning = _MEANING[verdict].format(where=where)
     if verdict is Verdict.PASS:
         meaning += " The last section lists what the model does not cover."
-    whole = check_table(ordered, several=several, key="checks")
     parts: list[Part] = [Text(meaning, "note")]
-    if several and len(worst) < sum(check.applies for check in checks):
-        parts += [
-            Text("Each check with the worst load case in which it can be judged:", "note"),
-            check_table(worst, several=True),
-            Folded(f"All {len(checks)} checks, under each load case", (whole,), told=True),
-        ]
-    elif checks:
-        parts.append(whole)
+    whole = check_table(ordered, several=several, key="checks")
+    if len(worst) == len(checks):
+        parts += [whole] if checks else []
+    else:
+        if len(worst) < sum(check.applies for check in checks):
+            parts.append(Text("Each check with the worst load case in which it can be judged:", "note"))
+        parts += [check_table(worst, several=several)] if worst else []
+        parts += [Text(line, "small") for line in inapplicable(checks)]
+        under = ", under each load case" if several else ""
+        parts.append(Folded(f"All {len(checks)} checks{under}", (whole,), told=True))
     parts.append(Text(_READ, "note"))
     if held := _held(checks):
         parts.append(Folded("Sources of error in the band of each check", (Items(held),)))
@@ -207,10 +206,6 @@ def _against(check: CheckOutcome) -> tuple[Number, Number]:
     """Return value and limit of a check."""
     sense = check.quantity.sense.value
     return Number(check.value, check.unit), Number(check.limit, check.unit, stated=True, sense=sense)
-
-
-def _count(count: int, what: str) -> str:
-    return f"{count} {what}{'s' if count > 1 else ''}"
 
 
 def _held(checks: Sequence[CheckOutcome]) -> tuple[str, ...]:

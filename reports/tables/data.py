@@ -10,7 +10,7 @@ import numpy as np
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.outcomes.result import CheckResult
-from alula.reports.words.changes import change_sentences, change_title, size_command
+from alula.reports.check.changes import change_sentences, change_title, size_command
 
 
 def data(value: Any) -> Any:

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult, VariantPeak
 from alula.fea.solid.stress import stress_field
+from alula.reports.check.links import worst_load_case
 from alula.reports.figures.figures import COLOURS, colour_range
 from alula.reports.figures.scene import Scene, scene_of
-from alula.reports.tables.record import worst_load_case
 from alula.reports.turnable.pack import data_block, indices, quantised
 from alula.reports.turnable.surface import CutSurface, cut_surface
 from alula.reports.words.numbers import fixed, number

@@ -15,7 +15,7 @@ from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.tables.record import worst_load_case
+from alula.reports.check.links import worst_load_case
 from alula.reports.turnable.linkage import Along, Poses, Values, linkage_record
 from alula.reports.words.numbers import band, fixed, number
 from alula.reports.words.wording import checks_of

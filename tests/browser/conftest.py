@@ -52,7 +52,7 @@ def written() -> WrittenPage:
 def _written() -> WrittenPage:
     from tempfile import TemporaryDirectory
 
-    from alula.reports.page.folder import write_report
+    from alula.reports.check.folder import write_report
 
     result = wing_with_solid.result()
     with TemporaryDirectory() as folder:

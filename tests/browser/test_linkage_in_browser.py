@@ -15,7 +15,8 @@ LENGTHS = {"a": 1708.7280379405, "b": 10343.911286703, "c": 1997.8896643078, "d"
 
 
 def _report():
-    from alula.reports.page.html import render
+    from told import render
+
     from alula.reports.turnable.moving import LINKAGE, check_linkage
     from alula.reports.turnable.pack import data_block
 

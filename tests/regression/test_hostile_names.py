@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from rich.console import Console
+from told import as_json, print_result, render, sections
 
 from alula.fea.check.run import check_case
 from alula.fea.claims.sources import check_claims
@@ -16,12 +17,9 @@ from alula.fea.outcomes.result import CheckResult
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, read_companion, read_text, validate
-from alula.reports.page.folder import write_report
-from alula.reports.page.html import render
-from alula.reports.page.pictures import draw_pictures
+from alula.reports.check.folder import write_report
+from alula.reports.check.whole_check import check_page, check_pictures
 from alula.reports.tables.claims import as_markdown, as_text
-from alula.reports.tables.console import print_result
-from alula.reports.tables.record import as_json
 from alula.reports.turnable.pack import data_block
 
 OWL = "owl-wing-static"
@@ -144,7 +142,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, str]:
 
 def test_the_report_shows_hostile_text_as_text(checked: CheckResult) -> None:
     page = _Page()
-    page.feed(render(checked, draw_pictures(checked)[0]))
+    page.feed(render(checked, check_pictures(checked, check_page(checked, sections(checked)))[0]))
     assert "svg" in page.tags
     assert "script" not in page.tags
     assert not [value for key, value in page.attributes if key.startswith("on")]

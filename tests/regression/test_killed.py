@@ -95,7 +95,7 @@ from alula.fea.check.run import check_case
 from alula.loads.case.case_file import read_case
 from alula.reports.page import html
 from alula.reports.page import pictures
-from alula.reports.page.folder import write_report
+from alula.reports.check.folder import write_report
 result = check_case(read_case("four-bar-synthesis"), name="starter", fidelity="beam")
 drawn = pictures.draw_pictures(result)
 page = html.render(result, drawn[0])

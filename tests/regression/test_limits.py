@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from told import as_json
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Verdict
@@ -17,7 +18,6 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import LARGEST_FILE, read_case, validate
 from alula.loads.case.case_rules import MOST_RESULTS
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.tables.record import as_json
 
 OWL = "owl-wing-static"
 HOLES = '{count=%d,diameter="1 mm",first="40 mm",last="60 mm",along="z"}'

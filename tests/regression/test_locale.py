@@ -10,8 +10,7 @@ from pathlib import Path
 import programs
 import pytest
 import solved
-
-from alula.reports.tables.record import as_json
+from told import as_json
 
 NAME = "Flügel – Prothese, 3. Versuch's"
 

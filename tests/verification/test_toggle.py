@@ -16,6 +16,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
+from alula.fea.common.change import rounded
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
@@ -27,13 +28,13 @@ from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
 from alula.fea.nonlinear.softened import followed
 from alula.fea.nonlinear.stability import SNAP, growth
 from alula.fea.outcomes.result import LoadCaseResult
-from alula.fea.sizing.changes import _change, changes, rounded
+from alula.fea.sizing.changes import _change, changes
 from alula.fea.study.numbers import of_motion
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.words.changes import change_sentences
+from alula.reports.check.changes import change_sentences
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """

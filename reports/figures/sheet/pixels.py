@@ -59,7 +59,7 @@ def _packed(pixels: NDArray[np.uint8]) -> bytes:
     parts = (
         (b"IHDR", struct.pack(">IIBBBBB", wide, tall, 8, 2, 0, 0, 0)),
         (b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
-        (b"IDAT", zlib.compress(rows, 5)),
+        (b"IDAT", zlib.compress(rows.data, 5)),
         (b"IEND", b""),
     )
     found = [struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

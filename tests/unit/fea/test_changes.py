@@ -9,11 +9,12 @@ from solved import by_hand
 
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
+from alula.fea.common.change import rounded
 from alula.fea.common.source import CONTACT, PIN_PRESSURE, TORQUE_TRANSFER, Source, SourceKind, distinct, widest
 from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.frame.displacement_band import shares_of_work
 from alula.fea.links.solid_result import _width
-from alula.fea.sizing.changes import _change, changes, rounded
+from alula.fea.sizing.changes import _change, changes
 from alula.fea.sizing.size_range import _entry, _taken, size_range
 from alula.fea.sizing.tried import Trials
 from alula.geometry.materials.family import most_of_family

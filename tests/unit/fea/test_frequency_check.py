@@ -31,7 +31,7 @@ from alula.fea.vibration.harmonics import meetings
 from alula.fea.vibration.over_motion import _least_between, lowest_pose
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
-from alula.reports.words.changes import change_sentences
+from alula.reports.check.changes import change_sentences
 from alula.reports.words.wording import headline
 
 

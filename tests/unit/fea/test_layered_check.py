@@ -5,11 +5,11 @@ from functools import cache
 
 import pytest
 from edited_cases import edited
+from told import not_covered
 
 from alula.fea.check.run import check_case
 from alula.fea.common.source import COUPLES
 from alula.fea.outcomes.result import CheckResult
-from alula.reports.page.coverage import not_covered
 
 LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
 OFF = ['layer_spacing="7.5 mm"', 'large_displacement="off"']

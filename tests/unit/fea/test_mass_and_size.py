@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
 from imported_case import imported_case
+from told import render, result_record
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import SIZES, Quantity, Verdict
@@ -26,10 +27,8 @@ from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.extent import Extent
 from alula.loads.states.weighed import Weighed
+from alula.reports.check.changes import change_records
 from alula.reports.figures.sheet.canvas import Canvas
-from alula.reports.page.html import render
-from alula.reports.tables.data import change_records
-from alula.reports.tables.record import result_record
 
 PLA, STEEL = 1.24e-3, 7.8e-3
 """Densities of the cards that the bars and their pins name [g/mm³]."""

@@ -7,6 +7,7 @@ from importlib.resources import files
 import pytest
 from frequency_cases import lever
 from materials import with_material
+from told import result_record
 
 from alula.fea.buckling.wall import wall_stress
 from alula.fea.check.run import check_case
@@ -17,7 +18,6 @@ from alula.fea.vibration.over_motion import pose_frequencies
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import SustainedCheck
 from alula.loads.text.caveat import Topic
-from alula.reports.tables.record import result_record
 from alula.reports.words.wording import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}

@@ -5,7 +5,7 @@ import pytest
 from alula.fea.common.band import Band
 from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
-from alula.reports.tables.data import data
+from alula.reports.sections.data import data
 
 
 def band(low: float, value: float, high: float) -> Band:

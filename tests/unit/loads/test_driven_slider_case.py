@@ -147,7 +147,7 @@ def test_an_envelope_over_a_travel_is_refused() -> None:
 
 
 def test_the_report_of_its_check_tells_the_travel_and_the_force() -> None:
-    from alula.reports.page.html import render
+    from told import render
 
     result = check_case(validate(piston_entries()), fidelity="beam")
     page = render(result, {})

@@ -12,7 +12,7 @@ from alula.loads.states.actions import acting_loads
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.masses import all_carried, laden_masses, part_masses
 from alula.loads.statics.statics import solve_statics
-from alula.reports.tables.loads import weight_sentence
+from alula.reports.check.statics import weight_sentence
 
 PER_LENGTH = 7.8e-9 * math.pi * 8.0**2 / 4.0
 """Steel wire of 8 mm [tonne/mm]."""

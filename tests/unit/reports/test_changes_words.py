@@ -6,15 +6,13 @@ from dataclasses import replace
 import pytest
 from html_pages import Page
 from rich.console import Console
+from told import print_result, render, result_record
 
 from alula.fea.common.change import MaterialChange, SizeRange, VerdictChange
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
 from alula.loads.case.revisable import Origin
-from alula.reports.page.html import render
-from alula.reports.tables.console import print_result
-from alula.reports.tables.record import result_record
-from alula.reports.words.changes import change_sentences, change_title, size_command
+from alula.reports.check.changes import change_sentences, change_title, size_command
 
 STRONGER = MaterialChange(what="yield strength", material="pvc-paredes-2018", stated=41.4, needed=45.2001)
 

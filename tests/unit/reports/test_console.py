@@ -4,8 +4,7 @@ import shlex
 import pytest
 from rich.console import Console
 from solved import by_hand
-
-from alula.reports.tables.console import print_result
+from told import print_result
 
 
 def printed(result, width=80):

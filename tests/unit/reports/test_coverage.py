@@ -6,13 +6,12 @@ from importlib.resources import files
 
 import pytest
 import solved
+from told import not_covered, render
 
 from alula.fea.common.band import Band
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity
 from alula.loads.case.case_file import read_text, validate
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
 
 
 def told(result):
@@ -127,8 +126,7 @@ def test_console_and_page_give_the_same_difference_of_hand_and_solid(result):
     import io
 
     from rich.console import Console
-
-    from alula.reports.tables.console import print_result
+    from told import print_result
 
     case = result.load_cases["weight"]
     near = tuple(replace(c, difference=0.0007) for c in case.links["GF"].comparisons)

@@ -237,7 +237,7 @@ def test_extreme_values_have_the_unit_of_their_axis(result):
 
 
 def test_the_worst_load_case_is_drawn(result):
-    from alula.reports.page.pictures import governing_load_cases
+    from alula.reports.check.linkage import governing_load_cases
 
     assert governing_load_cases(result) == ("weight",)
     turned = {name: result.load_cases[name] for name in ("idle", "weight")}

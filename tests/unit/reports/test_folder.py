@@ -9,8 +9,8 @@ from PIL import Image
 from solved import told
 
 from alula.fea.claims.sources import claims_of
+from alula.reports.check.folder import report_names, write_report
 from alula.reports.figures import figures
-from alula.reports.page.folder import report_names, write_report
 
 
 @pytest.fixture

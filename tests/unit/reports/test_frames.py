@@ -11,16 +11,14 @@ import pytest
 import solved
 from edited_cases import PLANAR, edited
 from rich.console import Console
+from told import print_result, render, result_record
 
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_text, validate
-from alula.reports.page.html import render
-from alula.reports.tables.console import print_result
 from alula.reports.tables.frames import frame_lines, frame_record
-from alula.reports.tables.record import result_record
 
 WING = "owl-wing-static"
 

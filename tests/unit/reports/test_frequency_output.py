@@ -22,7 +22,7 @@ from alula.reports.figures.sheet.marks import Area, Stroke
 from alula.reports.figures.sheet.style import GROUND, JOINT_FORCE, LINK, LOAD
 from alula.reports.figures.vibration.campbell import NO_BANDS, UPPER_ENDS, campbell_diagram
 from alula.reports.figures.vibration.shapes import axis_lines, shapes_drawing
-from alula.reports.tables.record import field_units
+from alula.reports.renderers.record import field_units
 
 
 @cache

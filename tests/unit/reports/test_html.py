@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import pytest
 from html_pages import Page, stands_alone
+from told import not_covered, render
 
 from alula.fea.claims import sources
 from alula.fea.common.band import Band
@@ -10,8 +11,6 @@ from alula.fea.common.verdict import Quantity, Verdict, worst_of_each
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.page import claims_page
 from alula.reports.page.claims_page import CLAIMS
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
 from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
 from alula.reports.words.wording import checks_of
 

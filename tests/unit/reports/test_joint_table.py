@@ -7,13 +7,12 @@ import re
 import pytest
 import solved
 from edited_cases import PLANAR
+from told import render
 from typer.testing import CliRunner
 
 from alula.fea.frame.case_statics import solve_case_statics
 from alula.loads.case.case_file import read_case
-from alula.reports.page.html import render
-from alula.reports.tables.frames import shown_components
-from alula.reports.tables.loads import weight_sentence
+from alula.reports.check.statics import shown_components, weight_sentence
 
 WING, FLIGHT = "owl-wing-static", "owl-wing-flight"
 BONDED = 'joint_model="bonded"'

@@ -9,17 +9,14 @@ import numpy as np
 import pytest
 from programs import ROOT
 from rich.console import Console
+from told import as_json, not_covered, print_result, render
 
 from alula.fea.common.band import Band
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.solid.layers import Layers, best_directions, build_directions
 from alula.reports.figures.build_map import _project, build_map
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
 from alula.reports.page.pictures import layers_name
-from alula.reports.tables.console import print_result
-from alula.reports.tables.layers import build_directions_of, direction
-from alula.reports.tables.record import as_json
+from alula.reports.sections.layers import build_directions_of, direction
 
 LINK = "GF"
 

@@ -8,6 +8,7 @@ import solved
 from edited_cases import PLANAR, edited
 from html_pages import Page
 from rich.console import Console
+from told import print_result, render
 
 from alula.fea.buckling.linkage import NO_EQUILIBRIUM
 from alula.fea.check.run import check_case
@@ -18,10 +19,9 @@ from alula.fea.sizing.changes import changes
 from alula.fea.study.margin import least_margin, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.notebook.check_report import CheckReport
-from alula.reports.page.html import render
 from alula.reports.page.template import fill
-from alula.reports.tables.console import print_result, say_checks
-from alula.reports.tables.data import check_records
+from alula.reports.sections.checks import check_records
+from alula.reports.tables.console import say_checks
 from alula.reports.words.wording import checks_of, decision, inapplicable
 
 ENTRIES = (

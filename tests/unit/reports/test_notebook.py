@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 from rocker_case import TOML
+from told import result_record
 
 import alula
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.notebook.shown import Picture, Table
-from alula.reports.tables.record import result_record
 
 HOSTILE = "<script>alert('&')</script>"
 

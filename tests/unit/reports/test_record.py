@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 import solved
+from told import as_json, result_record
 
 from alula.fea.common.band import Band
 from alula.geometry.base.version import RESULT_SCHEMA_VERSION, alula_version
-from alula.reports.tables.record import as_json, field_units, result_record
+from alula.reports.renderers.record import field_units
 
 ROOT = Path(__file__).resolve().parents[3]
 

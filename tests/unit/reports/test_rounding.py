@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from legible import written
+from told import print_result, render
 
 from alula.fea.check.run import check_case
 from alula.fea.frame.case_statics import solve_case_statics
@@ -16,8 +17,6 @@ from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.commands.statics import print_statics
 from alula.reports.figures import drawings
 from alula.reports.notebook.check_report import CheckReport
-from alula.reports.page.html import render
-from alula.reports.tables.console import print_result
 
 FAR = re.compile(r"\d(?:·10⁻1?[¹⁰-⁹]{2}|e-[1-9]\d)")
 """A number of size 1e-10 or less."""

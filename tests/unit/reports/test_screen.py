@@ -6,10 +6,11 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 from solved import by_hand
+from told import print_result, print_screen
 
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, deciding, worst_of_each
-from alula.reports.tables.console import MATTER, SCREEN, print_result, print_screen
+from alula.reports.check.screen import MATTER, SCREEN
 from alula.reports.words.wording import BRIEF, brief, checks_of, decision
 
 CASES = ("owl-wing-static", "owl-wing-braking", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")

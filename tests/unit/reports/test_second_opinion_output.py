@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
+from told import print_result, render, result_record
 from typer.testing import CliRunner
 
 import alula.fea.check.run
@@ -11,9 +12,6 @@ from alula.fea.calculix.second_opinion import second_opinions
 from alula.fea.outcomes.opinion import Answer
 from alula.fea.outcomes.result import HandResult
 from alula.reports.commands.cli import app
-from alula.reports.page.html import render
-from alula.reports.tables.console import print_result
-from alula.reports.tables.record import result_record
 from alula.reports.tables.second_opinion import with_second_opinions
 
 

@@ -5,6 +5,7 @@ import pytest
 import solved
 from PIL import Image
 from sprung_cases import CROWN, case_of, stands
+from told import not_covered, render, result_record
 
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
@@ -15,10 +16,7 @@ from alula.reports.figures.drawings import linkage_drawing
 from alula.reports.figures.sheet.style import SPRING
 from alula.reports.figures.sprung import coil, spiral, stop_mark
 from alula.reports.motion.csv_tables import write_tables
-from alula.reports.page.coverage import not_covered
-from alula.reports.page.html import render
-from alula.reports.tables.record import result_record
-from alula.reports.tables.springs import holding_sentence, spring_sentences
+from alula.reports.sections.springs import holding_sentence, spring_sentences
 
 PEDAL = "spring-pedal"
 WITHOUT_FOOT = ['load_cases.foot.forces.0.force=["0 N", "0 N"]']

@@ -7,9 +7,9 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
+from told import print_result
 
 from alula.fea.common.verdict import Subject, Verdict
-from alula.reports.tables.console import print_result
 from alula.reports.words.terminal import KEPT, say, say_table
 
 LONG = "wing-of-the-left-side-outer-section"

@@ -12,11 +12,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mesh_states import state
+from told import as_json, render
 
 from alula.fea.solid.stress import stress_field
 from alula.reports.figures.figures import colours
-from alula.reports.page.html import render
-from alula.reports.tables.record import as_json
 from alula.reports.turnable.link import link_model, link_models, link_name
 from alula.reports.turnable.pack import data_block, indices, quantised
 from alula.reports.turnable.script import FOLDER, built_from, sources_digest, viewer

@@ -7,9 +7,9 @@ from typing import Any
 from alula.fea.common.verdict import by_nearness
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
-from alula.reports.sections.links import worst_load_case
+from alula.reports.check.links import worst_load_case
+from alula.reports.check.statics import shown_components
 from alula.reports.sections.section import Beside, Column, Folded, Number, Part, Picture, Section, Table, say, words
-from alula.reports.sections.statics import shown_components
 from alula.reports.words.numbers import plain
 from alula.reports.words.wording import checks_of
 

@@ -1,17 +1,16 @@
 """What would change a verdict: factors on loads, strengths, sources of the band, the command that finds a size."""
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from alula.fea.common.change import MaterialChange, VerdictChange
+from alula.fea.common.change import MaterialChange, VerdictChange, rounded
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import CheckResult, HandResult
 from alula.fea.sizing.changes import rounded
 from alula.reports.sections.data import entries
-from alula.reports.sections.markup import code
-from alula.reports.sections.section import Items, Section
+from alula.reports.sections.section import Command, Items, Part, Section
 from alula.reports.sentences import told as told_reason
 from alula.reports.words.numbers import joined, number, plain, sentence
 from alula.reports.words.wording import named
@@ -34,41 +33,39 @@ _NARROWED: dict[SourceKind, str] = {
 """What narrows a source of error, of those that an entry of the case or an option narrows."""
 
 
-def changes_section(result: CheckResult, found: Sequence[VerdictChange]) -> Section:
+def changes_section(result: CheckResult) -> Section:
     """Return what would change the verdict of the checks that decide it.
 
     Parameters
     ----------
     result : CheckResult
-    found : sequence of VerdictChange
 
     Returns
     -------
     Section
     """
-    records = change_records(result, found)
+    records = change_records(result)
     return Section(
         key="changes",
         title="What would change it",
-        parts=(Items(tuple((f"{sentence(one['title'])[:-1]} ({one['verdict']})", _told(one)) for one in records)),)
-        if records
-        else (),
+        parts=tuple(part for record in records for part in _parts(record)),
         data={"changes": records},
     )
 
 
-def _told(record: Mapping[str, Any]) -> str:
-    size = f" Find the size: {code(record['command'])}" if record["command"] else ""
-    return " ".join(record["sentences"]) + size
+def _parts(record: Mapping[str, Any]) -> Iterator[Part]:
+    title = f"{sentence(record['title'])[:-1]} ({record['verdict']})"
+    yield Items(((title, " ".join(record["sentences"])),))
+    if record["command"]:
+        yield Command("Find the size:", record["command"])
 
 
-def change_records(result: CheckResult, found: Sequence[VerdictChange]) -> list[dict[str, Any]]:
+def change_records(result: CheckResult) -> list[dict[str, Any]]:
     """Return what would change the verdict of the checks that decide it, as entries of ``result.json``.
 
     Parameters
     ----------
     result : CheckResult
-    found : sequence of VerdictChange
 
     Returns
     -------
@@ -88,7 +85,7 @@ def change_records(result: CheckResult, found: Sequence[VerdictChange]) -> list[
             "sentences": change_sentences(change, result),
             "command": size_command(change, result) or None,
         }
-        for change in found
+        for change in result.changes
     ]
 
 

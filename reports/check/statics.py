@@ -16,10 +16,10 @@ from alula.loads.records.carried import CarriedSpread
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.loads.statics.statics import Reactions
 from alula.reports.sections.data import entries
+from alula.reports.sections.friction import friction_record, friction_sentence
 from alula.reports.sections.markup import bold, code, sub
 from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
-from alula.reports.tables.friction import friction_record, friction_sentence
-from alula.reports.tables.springs import holding_sentence, spring_sentences, standing_record
+from alula.reports.sections.springs import holding_sentence, spring_sentences, standing_record
 from alula.reports.words.numbers import joined, plain, turning
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")

@@ -6,41 +6,37 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.sizing.changes import VerdictChange
 from alula.geometry.base.version import alula_version
+from alula.reports.check.changes import changes_section
+from alula.reports.check.displacement import displacement_section
+from alula.reports.check.linkage import governing_load_cases, linkage_picture, linkage_section
+from alula.reports.check.links import links_section, worst_load_case
+from alula.reports.check.mass_and_size import whole_section
+from alula.reports.check.opinion import opinion_section
+from alula.reports.check.pins import pins_left_out
+from alula.reports.check.stated import audit_section, case_section, hand_section, limits_section, materials_section
+from alula.reports.check.statics import ground_section, statics_section
 from alula.reports.renderers.page import Page
 from alula.reports.renderers.record import as_record
 from alula.reports.sections.air import air_section, flapping_section
 from alula.reports.sections.assembly import assembly_section
-from alula.reports.sections.changes import changes_section
 from alula.reports.sections.checks import checks_section, has_all, nearest
 from alula.reports.sections.design import design_section
-from alula.reports.sections.displacement import displacement_section
 from alula.reports.sections.frequencies import frequencies_section
-from alula.reports.sections.linkage import governing_load_cases, linkage_picture, linkage_section
-from alula.reports.sections.links import links_section, worst_load_case
 from alula.reports.sections.markup import code
-from alula.reports.sections.opinion import opinion_section
-from alula.reports.sections.pins import pins_left_out
 from alula.reports.sections.section import Picture, Section, parts_of
-from alula.reports.sections.stated import audit_section, case_section, hand_section, limits_section, materials_section
-from alula.reports.sections.statics import ground_section, statics_section
-from alula.reports.sections.whole import whole_section
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from alula.reports.words.numbers import fixed
 from alula.reports.words.wording import checks_of, headline
 
 
-def check_sections(
-    result: CheckResult, changes: Sequence[VerdictChange], published: str = ""
-) -> tuple[Section, ...]:
+def check_sections(result: CheckResult, published: str = "") -> tuple[Section, ...]:
     """Return all that is told of a check.
 
     Parameters
     ----------
     result : CheckResult
-    changes : sequence of VerdictChange
-        What would change its verdict.
+        With what ``alula.fea.findings.of_check`` finds besides.
     published : str, optional
         How many published figures ``claims.html`` has, in a sentence; "" where there is no such page.
 
@@ -51,7 +47,7 @@ def check_sections(
     """
     several = len(result.load_cases) > 1
     sections = (
-        changes_section(result, changes),
+        changes_section(result),
         case_section(result, published),
         checks_section(checks_of(result), result.verdict, "In this pose", several=several),
         _model(result),

@@ -35,8 +35,8 @@ def opinion_section(result: CheckResult) -> Section:
     text = (
         "CalculiX solved the same mesh with the same material, supports and nodal loads. The table compares the "
         "largest von Mises stress at the integration points and the largest displacement. A difference is the "
-        "largest one anywhere in the link, relative to alula’s largest value. This verifies assembly and solution; it does not "
-        "verify the mesh or the loads."
+        "largest one anywhere in the link, relative to alula’s largest value. This verifies assembly and solution; it "
+        "does not verify the mesh or the loads."
     )
     return Section(
         key="second-opinion",

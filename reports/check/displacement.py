@@ -9,12 +9,12 @@ from alula.fea.frame.thrust import thrusts
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.solid.buckling_factor import MOST
 from alula.loads.statics.rounding import size_of, without_rounding
+from alula.reports.check.pins import pin_parts, pin_record
+from alula.reports.check.statics import reaction_records
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
-from alula.reports.sections.pins import pin_parts, pin_record
 from alula.reports.sections.play import play_parts, play_record
 from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
-from alula.reports.sections.statics import reaction_records
 from alula.reports.words.numbers import joined
 
 _LOST = ("no equilibrium", "unstable")

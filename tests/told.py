@@ -1,0 +1,65 @@
+"""A check as it is told: page, console, ``result.json``, what is not covered."""
+
+import io
+
+from rich.console import Console
+
+from alula.fea.findings.of_check import with_findings
+from alula.reports.check import screen
+from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
+from alula.reports.renderers.page import as_page
+from alula.reports.sections.section import parts_of
+
+_FOUND = {}
+
+
+def found(result):
+    """The result with what a report tells besides; one that has it already stays as it is."""
+    if result.changes or result.motion is not None:
+        return result
+    if id(result) not in _FOUND:
+        _FOUND[id(result)] = result, with_findings(result)
+    return _FOUND[id(result)][1]
+
+
+def sections(result, published=""):
+    return check_sections(found(result), published)
+
+
+def section(result, key):
+    [own] = [one for one in sections(result) if one.key == key]
+    return own
+
+
+def tables(result, key):
+    return [part for part in parts_of(section(result, key).parts) if type(part).__name__ == "Table"]
+
+
+def render(result, pictures=None, published="", models=None):
+    return as_page(check_page(found(result), sections(result, published)), pictures or {}, models or {})
+
+
+def result_record(result):
+    return check_record(result, sections(result))
+
+
+def as_json(result):
+    return check_json(result, sections(result))
+
+
+def print_result(result, console):
+    screen.print_result(found(result), sections(result), console)
+
+
+def print_screen(result, console):
+    screen.print_screen(found(result), sections(result), console)
+
+
+def printed(result, width=80):
+    stream = io.StringIO()
+    print_result(result, Console(file=stream, width=width, color_system=None))
+    return stream.getvalue()
+
+
+def not_covered(result):
+    return tuple(entry for one in sections(result) for entry in one.not_covered)
