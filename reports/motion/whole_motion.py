@@ -12,7 +12,7 @@ from alula.reports.motion.poses import motion_section
 from alula.reports.motion.rates import rates_section
 from alula.reports.motion.series import motion_series
 from alula.reports.renderers.page import Page
-from alula.reports.renderers.record import as_record
+from alula.reports.renderers.record import as_brief_record
 from alula.reports.sections.air import flapping_parts
 from alula.reports.sections.assembly import clearance_record, gap_parts
 from alula.reports.sections.design import design_section
@@ -124,7 +124,7 @@ def motion_record(found: MotionFindings, name: str, sections: tuple[Section, ...
     dict
         As ``docs/result.md`` describes it.
     """
-    return as_record(sections, listed=False, units=UNITS, case=name, title=found.moved.case.title)
+    return as_brief_record(sections, units=UNITS, case=name, title=found.moved.case.title)
 
 
 def motion_page(found: MotionFindings, name: str, sections: tuple[Section, ...]) -> Page:

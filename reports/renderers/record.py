@@ -19,14 +19,12 @@ def field_units() -> dict[str, Any]:
     return {**found["dimensions"], "fields": found["fields"]}
 
 
-def as_record(sections: Iterable[Section], *, listed: bool = True, **head: Any) -> dict[str, Any]:
+def as_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
     """Return all entries of sections as data that JSON can hold.
 
     Parameters
     ----------
     sections : iterable of Section
-    listed : bool, optional
-        False for a record without ``nulls``.
     **head
         Entries above theirs.
 
@@ -39,7 +37,24 @@ def as_record(sections: Iterable[Section], *, listed: bool = True, **head: Any) 
     nulls: dict[str, str] = {}
     found = finite({**result_stamp(), "units": field_units(), **head, **entries}, nulls)
     assert isinstance(found, dict)
-    return found | {"nulls": nulls} if listed else found
+    return found | {"nulls": nulls}
+
+
+def as_brief_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
+    """Return all entries of sections as data that JSON can hold, without ``nulls`` and without the unit of each field.
+
+    Parameters
+    ----------
+    sections : iterable of Section
+    **head
+        Entries above theirs.
+
+    Returns
+    -------
+    dict
+        Infinite and undefined numbers are None.
+    """
+    return dict(finite({**result_stamp(), **head, **merged(section.data for section in sections)}, {}))
 
 
 def as_json(record: Mapping[str, Any]) -> str:
