@@ -61,7 +61,11 @@ def _parts(
     rows += [(f"joint {joint}", "N", row) for joint, row in (record["joints"] or {}).items()]
     yield Table(
         key="drive",
-        columns=(words("quantity"), words("unit"), *extreme_columns(moved.motion.unit, ends=True)),
+        columns=(
+            words("quantity"),
+            words("unit"),
+            *extreme_columns(moved.motion.unit, ends=True, known=not moved.dead_points),
+        ),
         rows=tuple((quantity, own, *extreme_cells(row, ends=True)) for quantity, own, row in rows),
         under=(("load case", name),),
     )

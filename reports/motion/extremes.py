@@ -90,7 +90,7 @@ def finite_or_none(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def extreme_columns(at: str, *, ends: bool) -> tuple[Column, ...]:
+def extreme_columns(at: str, *, ends: bool, known: bool = True) -> tuple[Column, ...]:
     """Return the columns of ``extreme_cells``.
 
     Parameters
@@ -99,14 +99,16 @@ def extreme_columns(at: str, *, ends: bool) -> tuple[Column, ...]:
         Unit of the coordinate.
     ends : bool
         Whether first and last value stand before the extremes.
+    known : bool, optional
+        False where extremes mean nothing, next to a dead point: columns for notebooks alone.
 
     Returns
     -------
     tuple of Column
     """
     found = ("smallest", "smallest at", "largest", "largest at")
-    titles = ("first", "last", *found) if ends else found
-    return tuple(Column(title, at if title.endswith(" at") else "") for title in titles)
+    own = tuple(Column(title, at if title.endswith(" at") else "", hidden=not known) for title in found)
+    return (Column("first"), Column("last"), *own) if ends else own
 
 
 def extreme_cells(row: Mapping[str, Any], *, ends: bool) -> tuple[Number, ...]:

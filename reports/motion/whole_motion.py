@@ -11,12 +11,11 @@ from alula.reports.motion.play import play_section
 from alula.reports.motion.poses import motion_section
 from alula.reports.motion.rates import rates_section
 from alula.reports.motion.series import motion_series
-from alula.reports.renderers.page import Page
+from alula.reports.renderers.page import Page, page_footer
 from alula.reports.renderers.record import as_brief_record
 from alula.reports.sections.air import flapping_parts
 from alula.reports.sections.assembly import clearance_record, gap_parts
 from alula.reports.sections.design import design_section
-from alula.reports.sections.markup import code
 from alula.reports.sections.section import Picture, Section
 from alula.reports.tables.loads import motion_air_record
 from alula.reports.turnable.moving import LINKAGE, MOTION_CAPTION
@@ -148,27 +147,5 @@ def motion_page(found: MotionFindings, name: str, sections: tuple[Section, ...])
         kind="Motion of a planar linkage",
         heading=case.title,
         sections=sections,
-        footer=page_footer(name, "the tables (.csv)"),
-    )
-
-
-def page_footer(name: str, tables: str) -> tuple[str, str]:
-    """Return what stands below a page.
-
-    Parameters
-    ----------
-    name : str
-        Of the case.
-    tables : str
-        What holds the numbers besides ``result.json``.
-
-    Returns
-    -------
-    tuple of (str, str)
-    """
-    from alula.geometry.base.version import alula_version
-
-    return (
-        f"alula {alula_version()}. Case {code(name)}.",
-        f"All numbers as data: {code('result.json')} and {tables} in the same folder.",
+        footer=page_footer(name, "*.csv"),
     )
