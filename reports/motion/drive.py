@@ -59,13 +59,10 @@ def _parts(
     rows = [(f"drive {what} on {moved.drive.link}", unit, record[f"drive_{what}"])]
     rows += [("drive power", "W", record["drive_power"])] if "drive_power" in record else []
     rows += [(f"joint {joint}", "N", row) for joint, row in (record["joints"] or {}).items()]
+    told = extreme_columns(moved.motion.unit, ends=True, known=not moved.dead_points)
     yield Table(
         key="drive",
-        columns=(
-            words("quantity"),
-            words("unit"),
-            *extreme_columns(moved.motion.unit, ends=True, known=not moved.dead_points),
-        ),
+        columns=(words("quantity"), words("unit"), *told),
         rows=tuple((quantity, own, *extreme_cells(row, ends=True)) for quantity, own, row in rows),
         under=(("load case", name),),
     )

@@ -65,7 +65,7 @@ def frequencies_section(found: CaseFrequencies | None, *, alone: bool = False) -
     return Section(
         key="frequencies",
         title="Natural frequencies",
-        short="Natural frequencies",
+        short="" if alone else "Natural frequencies",
         parts=tuple(_parts(found, alone=alone)),
         data={"frequencies": _record(found)},
         series=(_series(found),),
