@@ -291,8 +291,15 @@ class Store:
         )
         return dict(self._db.execute(asked))
 
-    def rows(self) -> Iterator[tuple[int, dict[str, object], VariantResult, int]]:
+    def rows(
+        self, positions: Sequence[int] | None = None
+    ) -> Iterator[tuple[int, dict[str, object], VariantResult, int]]:
         """Yield every point that has a result, in order.
+
+        Parameters
+        ----------
+        positions : sequence of int, optional
+            These points alone.
 
         Yields
         ------
@@ -301,10 +308,12 @@ class Store:
         """
         asked = (
             "SELECT p.position, p.parameters, r.id, r.state, r.verdict, r.sentence, r.seconds, r.processor, r.attempts"
-            " FROM points p JOIN results r ON r.id = p.result ORDER BY p.position"
+            " FROM points p JOIN results r ON r.id = p.result"
         )
+        if positions is not None:
+            asked += f" WHERE p.position IN ({', '.join(str(int(one)) for one in positions)})"
         for position, parameters, number, state, verdict, sentence, seconds, processor, attempts in self._db.execute(
-            asked
+            f"{asked} ORDER BY p.position"
         ):
             answer = VariantResult(
                 state=state,

@@ -1,11 +1,11 @@
 """Child processes for foreign code that can crash or never end, which no exception reports.
 
-A child is stopped at its time limit and on an interruption. Its standard input is a pipe that only the parent holds
-open, so that the end of that pipe is the end of the parent. Programs that are not alula's do not look there; the
-system ends them with their parent (``alula.geometry.base.leash``). Children that answer requests are
-``alula.geometry.base.child_server``'s.
+A child is stopped at its time limit and on an interruption. alula's own answer requests
+(``alula.geometry.base.child_server``); other programs run once, and the system ends them with their parent
+(``alula.geometry.base.leash``).
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -13,28 +13,20 @@ import threading
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
+from weakref import WeakSet
 
 from alula.geometry.base.errors import CannotRunError
 
 _ROOT = str(Path(str(sys.modules["alula"].__file__)).resolve().parents[1])
 """The folder on the path in which the package ``alula`` stands."""
 _lock = threading.RLock()
-_running: set[subprocess.Popen[bytes]] = set()
+_running: WeakSet[subprocess.Popen[bytes]] = WeakSet()
 _stopped = threading.Event()
 _SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VTK_SMP_MAX_THREADS", "LP_NUM_THREADS"), "1")
 """One thread for a child's libraries, VTK and Mesa's software renderer: children run beside each other instead."""
-
-
-class _Places:
-    """How many children may run at once, and who may; None for any number."""
-
-    def __init__(self, count: int | None) -> None:
-        self.count = count
-        self.free = nullcontext() if count is None else threading.BoundedSemaphore(count)
-
-
-_places = _Places(None)
+_most, _places = math.inf, cast("AbstractContextManager[object]", nullcontext())
+"""How many children may be at work at once, and the context in which one is."""
 
 
 def module_command(module: str, *arguments: str) -> list[str]:
@@ -105,14 +97,14 @@ def at_most(children: int) -> Iterator[None]:
     None
         While the bound holds.
     """
-    global _places
-    before = _places
-    if before.count is None or children < before.count:
-        _places = _Places(children)
+    global _most, _places
+    before = _most, _places
+    if children < _most:
+        _most, _places = children, threading.BoundedSemaphore(children)
     try:
         yield
     finally:
-        _places = before
+        _most, _places = before
 
 
 def run(
@@ -123,7 +115,7 @@ def run(
     folder: Path | None = None,
     output: Path | None = None,
 ) -> tuple[int, str]:
-    """Run a child process to its end.
+    """Run a program that is not alula's to its end, without standard input.
 
     Parameters
     ----------
@@ -154,9 +146,15 @@ def run(
     CannotRunError
         After ``stop_all``.
     """
-    with place():
-        status, told = _communicate(command, environment, time_limit, folder, output)
-    return status, last_line(told)
+    with place(), open(output or os.devnull, "wb") as told_out:
+        pipes = {"stdin": subprocess.DEVNULL, "stdout": told_out, "stderr": subprocess.PIPE}
+        with start(command, cwd=folder, env=environment, **pipes) as process:
+            try:
+                _, told = process.communicate(timeout=time_limit)
+            except BaseException:
+                process.kill()
+                raise
+    return process.returncode, last_line(told)
 
 
 def last_line(told: bytes) -> str:
@@ -183,11 +181,11 @@ def place() -> AbstractContextManager[object]:
     context manager
         For one use.
     """
-    return _places.free
+    return _places
 
 
 def start(command: list[str], **options: Any) -> subprocess.Popen[bytes]:
-    """Start a child that ``stop_all`` will kill, until it is given to ``forget``.
+    """Start a child that ``stop_all`` will kill if it is still there.
 
     Parameters
     ----------
@@ -214,40 +212,6 @@ def start(command: list[str], **options: Any) -> subprocess.Popen[bytes]:
         process = subprocess.Popen(command, **options)
         _running.add(process)
     return process
-
-
-def forget(process: subprocess.Popen[bytes]) -> None:
-    """Leave a child that has ended out of ``stop_all``.
-
-    Parameters
-    ----------
-    process : subprocess.Popen
-        As ``start`` returned it.
-    """
-    with _lock:
-        _running.discard(process)
-
-
-def _communicate(
-    command: list[str], environment: dict[str, str], time_limit: float, folder: Path | None, output: Path | None
-) -> tuple[int, bytes]:
-    """Status of a child and its standard error."""
-    read, write = os.pipe()
-    try:
-        with open(output or os.devnull, "wb") as told_out:
-            process = start(command, cwd=folder, env=environment, stdin=read, stdout=told_out, stderr=subprocess.PIPE)
-        with process:
-            try:
-                _, told = process.communicate(timeout=time_limit)
-            except BaseException:
-                process.kill()
-                raise
-            finally:
-                forget(process)
-    finally:
-        os.close(read)
-        os.close(write)
-    return process.returncode, told
 
 
 def stop_all() -> None:

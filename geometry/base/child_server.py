@@ -1,24 +1,24 @@
 """A child process that answers one request after another, so that what it has made once serves later requests.
 
-Requests and answers are bytes, each behind its length, on the child's standard input and output: an answer is whole or
-none. A server takes a place (``alula.geometry.base.child.at_most``) only while it works on a request. Between requests
-it waits in a pool, for ``IDLE`` seconds or until this process ends.
+Requests and answers are bytes, on the child's standard input and output. Each is pickled, which tells its end: it is
+whole or none. A server takes a place (``alula.geometry.base.child.at_most``) only while it works on a request. Between
+requests it waits in a pool, for ``IDLE`` seconds or until this process ends.
 """
 
 import atexit
 import os
+import pickle
 import queue
-import struct
 import subprocess
 import threading
+import time
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import IO
 
 from alula.geometry.base import child
 
-_LENGTH = struct.Struct("<Q")
 IDLE = 60.0
 """Seconds after which a server that nobody asks is ended: it holds some hundred megabytes."""
 
@@ -49,6 +49,15 @@ class ChildServer:
     environment : dict of str to str
         Its environment variables.
 
+    Attributes
+    ----------
+    started_with : tuple
+        Command and environment.
+    topics : set
+        What it was asked about, as the pool remembers.
+    idle : threading.Timer
+        Ends it while it waits in the pool.
+
     Raises
     ------
     OSError
@@ -57,22 +66,29 @@ class ChildServer:
         After ``stop_all``.
     """
 
+    idle: threading.Timer
+
     def __init__(self, command: list[str], environment: dict[str, str]) -> None:
         pipe = subprocess.PIPE
-        self._process = child.start(command, env=environment, stdin=pipe, stdout=pipe, stderr=pipe)
+        self._process = process = child.start(command, env=environment, stdin=pipe, stdout=pipe, stderr=pipe)
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        self._requests, self._answers, self._errors = process.stdin, process.stdout, process.stderr
+        self.started_with = command, environment
+        self.topics: set[Hashable] = set()
         self._told = b""
         self._listener = threading.Thread(target=self._listen, daemon=True)  # a full pipe would block the child
         self._listener.start()
 
     def _listen(self) -> None:
-        assert self._process.stderr is not None
         with suppress(OSError, ValueError):
-            while told := self._process.stderr.read(1 << 16):
+            while told := self._errors.read(1 << 16):
                 self._told = (self._told + told)[-4096:]
 
     @property
     def alive(self) -> bool:
-        """False once it has ended."""
+        """False once it has ended, and in a process that is a fork of the one that started it."""
         return self._process.poll() is None
 
     def ask(self, request: bytes, time_limit: float) -> bytes:
@@ -97,21 +113,14 @@ class ChildServer:
         ChildEndedError
             Where the child has ended, or ends without a whole answer.
         """
-        late = threading.Event()
-
-        def stop() -> None:
-            late.set()
-            self._process.kill()
-
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        timer = threading.Timer(time_limit, stop)
+        end = time.monotonic() + time_limit
+        timer = threading.Timer(time_limit, self._process.kill)
         timer.daemon = True
         timer.start()
         try:
             with suppress(OSError):  # it has ended, and the missing answer tells
-                _send(self._process.stdin, request)
-            answer = _receive(self._process.stdout)
+                _send(self._requests, request)
+            answer = _receive(self._answers)
         except BaseException:
             self.end()
             raise
@@ -119,10 +128,9 @@ class ChildServer:
             timer.cancel()
         if answer is not None:
             return answer
-        if late.is_set():
-            self.end()
-            raise subprocess.TimeoutExpired(self._process.args, time_limit)
-        raise ChildEndedError(*self.end(killed=False))
+        late = time.monotonic() >= end
+        ended = self.end(killed=late)
+        raise subprocess.TimeoutExpired(self._process.args, time_limit) if late else ChildEndedError(*ended)
 
     def end(self, *, killed: bool = True) -> tuple[int, str]:
         """End the child.
@@ -143,11 +151,8 @@ class ChildServer:
             self._process.kill()
         self._process.wait()
         self._listener.join()
-        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
-            assert pipe is not None
-            with suppress(OSError):  # what a child that has ended did not read
-                pipe.close()
-        child.forget(self._process)
+        with suppress(OSError), self._process:  # what a child that has ended did not read
+            pass
         return self._process.returncode, child.last_line(self._told)
 
 
@@ -156,8 +161,8 @@ class ServerPool:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._waiting: list[_Waiting] = []
-        self._announced: list[tuple[int, list[str], dict[str, str]]] = []
+        self._waiting: list[ChildServer] = []
+        self._announced: list[tuple[list[str], dict[str, str]]] = []
         atexit.register(self.close)
 
     @contextmanager
@@ -186,16 +191,15 @@ class ServerPool:
             After ``stop_all``.
         """
         with child.place():
-            started_with = os.getpid(), command, environment
-            found = self._take(started_with, topic)
-            server, topics = (found.server, found.topics) if found else (ChildServer(command, environment), set())
+            server = self._take((command, environment), topic) or ChildServer(command, environment)
             try:
                 yield server
             except BaseException:
                 server.end()
                 raise
             if server.alive:
-                self._put(_Waiting(server, started_with, topics | {topic}))
+                server.topics.add(topic)
+                self._put(server)
 
     def start(self, command: list[str], environment: dict[str, str]) -> None:
         """Start a server that will be asked soon, the first time that it is announced.
@@ -214,52 +218,42 @@ class ServerPool:
         CannotRunError
             After ``stop_all``.
         """
-        started_with = os.getpid(), command, environment
+        started_with = command, environment
         with self._lock:
             if started_with in self._announced:
                 return
             self._announced.append(started_with)
-        self._put(_Waiting(ChildServer(command, environment), started_with, set()))
+        self._put(ChildServer(command, environment))
 
-    def _take(self, started_with: object, topic: Hashable) -> "_Waiting | None":
+    def _take(self, started_with: tuple[list[str], dict[str, str]], topic: Hashable) -> ChildServer | None:
         with self._lock:
-            alive = [w for w in self._waiting if w.started_with == started_with and w.server.alive]
-            found = next((w for w in alive if topic in w.topics), alive[-1] if alive else None)
+            alive = [one for one in self._waiting if one.started_with == started_with and one.alive]
+            found = next((one for one in alive if topic in one.topics), alive[-1] if alive else None)
             if found is not None:
                 self._waiting.remove(found)
-                found.timer.cancel()
+                found.idle.cancel()
         return found
 
-    def _put(self, waiting: "_Waiting") -> None:
-        waiting.timer = threading.Timer(IDLE, self._end, [waiting])
-        waiting.timer.daemon = True
+    def _put(self, server: ChildServer) -> None:
+        server.idle = threading.Timer(IDLE, self._end, [server])
+        server.idle.daemon = True
         with self._lock:
-            self._waiting.append(waiting)
-        waiting.timer.start()
+            self._waiting.append(server)
+        server.idle.start()
 
-    def _end(self, waiting: "_Waiting") -> None:
+    def _end(self, server: ChildServer) -> None:
         with self._lock:
-            if waiting not in self._waiting:
+            if server not in self._waiting:
                 return
-            self._waiting.remove(waiting)
-        waiting.server.end()
+            self._waiting.remove(server)
+        server.end()
 
     def close(self) -> None:
         """End the servers that wait."""
-        for waiting in tuple(self._waiting):
-            waiting.timer.cancel()
-            if waiting.started_with[0] == os.getpid():
-                self._end(waiting)
-
-
-@dataclass(eq=False)
-class _Waiting:
-    """A server that waits, what it was started with (by which process, command, environment), and its topics."""
-
-    server: ChildServer
-    started_with: tuple[int, list[str], dict[str, str]]
-    topics: set[Hashable]
-    timer: threading.Timer = field(init=False)
+        for server in tuple(self._waiting):
+            server.idle.cancel()
+            if server.alive:  # in a fork none is, and the pipes are held by a thread that it has not
+                self._end(server)
 
 
 class ChildService:
@@ -317,22 +311,14 @@ class ChildService:
 
 
 def _send(stream: IO[bytes], told: bytes) -> None:
-    stream.write(_LENGTH.pack(len(told)) + told)
+    pickle.dump(told, stream)
     stream.flush()
 
 
 def _receive(stream: IO[bytes]) -> bytes | None:
     """Return what was sent, or None where the stream ends before."""
-    head = _exactly(stream, _LENGTH.size)
-    return None if head is None else _exactly(stream, *_LENGTH.unpack(head))
-
-
-def _exactly(stream: IO[bytes], count: int) -> bytes | None:
-    parts: list[bytes] = []
-    while count:
-        part = stream.read(min(count, 1 << 24))
-        if not part:
-            return None
-        parts.append(part)
-        count -= len(part)
-    return b"".join(parts)
+    try:
+        told: bytes = pickle.load(stream)
+    except (EOFError, pickle.UnpicklingError):
+        return None
+    return told

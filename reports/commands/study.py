@@ -1,7 +1,6 @@
 """The command ``alula study``: many variants of a case, and what became of them."""
 
 import csv
-import json as jsonlib
 import math
 import sys
 import time
@@ -98,6 +97,7 @@ def run(
     """Compute the variants of a case that are missing in a folder."""
     from alula.fea.study.compute import compute_study
     from alula.loads.plans.variants import Variants
+    from alula.reports.study.sections import headline
 
     workers = at_a_time(threads, workers)
     plan, folder = _plan(case, stated(vary, "--vary"), stated(link, "--link"), points, sample, seed, overrides, {
@@ -105,20 +105,21 @@ def run(
     })  # fmt: skip
     variants = Variants(plan, folder)
     if pictures is not None:
-        from alula.reports.page.study_page import refuse_folder
+        from alula.reports.study.page import refuse_folder
 
         refuse_folder(output, pictures)
     if len(variants) > MANY and not yes:
         _refuse_many(variants, workers)
     done, counts = compute_study(variants, output, workers=workers, scheduler=scheduler, retry=retry, tell=_teller())
-    print(summary(done, counts))
+    stood = f"; {done.stood} stood already" if done.stood else ""
+    print(f"{headline(counts, done.total)} Computed {done.computed}{stood}.")
     if pictures is not None:
         _draw(output, pictures, (), sys.stdout)
     print(f"Show them: alula study show {output}")
 
 
 def _draw(folder: Path, output: Path, wanted: Sequence[str], told: TextIO) -> None:
-    from alula.reports.page.study_page import write_study
+    from alula.reports.study.page import write_study
 
     print(f"Pictures: {write_study(folder, output, wanted)}", file=told)
 
@@ -231,25 +232,6 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
-def summary(done: "Progress", counts: Mapping[str, int]) -> str:
-    """Say what a run did.
-
-    Parameters
-    ----------
-    done : Progress
-    counts : mapping of str to int
-        Points by verdict or state.
-
-    Returns
-    -------
-    str
-    """
-    order = ("pass", "fail", "undecided", "done", "refused", "crashed")
-    told = ", ".join(f"{counts[name]} {name}" for name in order if name in counts)
-    stood = f"; {done.stood} stood already" if done.stood else ""
-    return f"{done.total} points: {told}. Computed {done.computed}{stood}."
-
-
 @app.command()
 def show(
     folder: Annotated[Path, typer.Argument(help="Folder of a study.", show_default=False)],
@@ -264,22 +246,26 @@ def show(
     ] = None,
     numbers: Annotated[
         list[str] | None,
-        typer.Option("--number", help='Draw numbers of this name as well, such as "drive torque".', show_default=False),
+        typer.Option("--number", help='Show numbers of this name as well, such as "drive torque".', show_default=False),
     ] = None,
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
     from alula.fea.study.store import Store
-    from alula.reports.study.rows import as_record, columns, print_study
+    from alula.reports.renderers.console import print_sections
+    from alula.reports.renderers.record import as_json, as_record
+    from alula.reports.study.columns import read_study
+    from alula.reports.study.rows import lines, results_section
+    from alula.reports.study.sections import study_sections
 
     with Store.reading(folder) as store:
         if csv_file is not None:
-            _write_csv(csv_file, columns(store))
+            _write_csv(csv_file, lines(store))
         if json:
-            print(jsonlib.dumps(as_record(store), indent=2, allow_nan=False))
+            print(as_json(as_record([results_section(store)])))
         else:
             from rich.console import Console
 
-            print_study(store, Console(), most)
+            print_sections(study_sections(read_study(store, numbers or (), most)), Console())
     if output is not None:
         _draw(folder, output, numbers or (), sys.stderr if json else sys.stdout)
 

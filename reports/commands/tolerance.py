@@ -52,7 +52,7 @@ def tolerance(
     from alula.fea.tolerance.analysis import tolerance_case
     from alula.loads.case.case_file import read_case
     from alula.reports.page.output import refuse_unusable
-    from alula.reports.study.tolerance_table import as_json, print_tolerance
+    from alula.reports.study.tolerance import tolerance_sections
     from alula.reports.words.limits import limited
 
     with limited(threads, memory):
@@ -63,11 +63,13 @@ def tolerance(
             parsed, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=progress
         )
         if json:
-            print(as_json(result), flush=True)
+            print(_record(result), flush=True)
         else:
             from rich.console import Console
 
-            print_tolerance(result, Console())
+            from alula.reports.renderers.console import print_sections
+
+            print_sections(tolerance_sections(result), Console())
         if output is not None:
             write_tolerance(result, output)
             if not json:
@@ -111,10 +113,9 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
 
     from alula.reports.figures.study.tolerance_pictures import tolerance_pictures
     from alula.reports.page.output import MARK, write_folder
-    from alula.reports.study.tolerance_table import as_json
 
     def fill(folder: Path) -> None:
-        (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")
+        (folder / MARK).write_text(_record(result) + "\n", encoding="utf-8")
         arrays: dict[str, Any] = {
             name: np.array([getattr(one, name) for one in result.numbers]) for name in ("values", "low", "high")
         }
@@ -123,3 +124,11 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
             (folder / name).write_bytes(picture.png())
 
     write_folder(target, "tolerance", fill)
+
+
+def _record(result: "ToleranceResult") -> str:
+    from alula.reports.renderers.record import as_json, as_record
+    from alula.reports.study.tolerance import tolerance_sections
+
+    head = {"case": result.nominal.name, "samples": result.samples, "seed": result.seed}
+    return as_json(as_record(tolerance_sections(result), **head))

@@ -13,11 +13,10 @@ from alula.reports.motion.rates import rates_section
 from alula.reports.motion.series import motion_series
 from alula.reports.renderers.page import Page, page_footer
 from alula.reports.renderers.record import as_brief_record
-from alula.reports.sections.air import flapping_parts
+from alula.reports.sections.air import flapping_parts, motion_air_record
 from alula.reports.sections.assembly import clearance_record, gap_parts
 from alula.reports.sections.design import design_section
 from alula.reports.sections.section import Picture, Section
-from alula.reports.tables.loads import motion_air_record
 from alula.reports.turnable.moving import LINKAGE, MOTION_CAPTION
 
 UNITS = {

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.findings.of_motion import MotionFindings, PlayOverMotion, motion_findings, play_over_motion
+from alula.fea.findings.rates import QUANTITIES, rates_record, series
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.rate_rows import whole_rows
-from alula.fea.findings.rates import QUANTITIES, rates_record, series
 from alula.reports.motion.record import record
 from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
 

@@ -5,8 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from alula.fea.study.store import Store
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled
-from alula.reports.study.rows import nearest_text, study_rows
+from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
+from alula.reports.study.columns import read_study
+from alula.reports.study.page import pictures_of
+from alula.reports.study.rows import study_rows
+from alula.reports.study.sections import points_table, study_sections
 
 
 @dataclass(frozen=True)
@@ -24,31 +27,32 @@ class StudyReport(Tabled):
     folder: Path
     counts: Mapping[str, int]
 
-    def table(self) -> Table:
-        """Return one row a point: what varies, the verdict, the margin of the check that is nearest to its limit, mass.
+    def table(self, of: str = "points") -> Table:
+        """Return a table of ``alula study show``.
+
+        Parameters
+        ----------
+        of : str, optional
+            ``points``: one row a point, with what varies, the verdict, the check that is nearest to its limit and the
+            mass; ``entries``, what varies; ``limits``, what limits how many points; where more than two quantities
+            vary ``sensitivity``.
 
         Returns
         -------
         Table
             ``margin`` is 1 where the worse end of that check's band is at its limit, and larger on the safe side.
         """
-        rows: list[Row] = []
         with Store.reading(self.folder) as store:
-            for row in study_rows(store):
-                found: Row = {path: str(value) for path, value in row.parameters.items()}
-                found |= {"verdict": row.outcome, "margin": row.margin, "nearest": nearest_text(row)}
-                rows.append(found | {"mass [g]": row.mass})
-        return Table(tuple(rows))
+            if of == "points":
+                return Table.of([points_table(list(study_rows(store)))], {"nearest": "nearest to its limit"})
+            return table_of(study_sections(read_study(store)), of)
 
     @property
     def pictures(self) -> Mapping[str, Picture]:
         """What ``alula study show`` draws of the variants, by the title of each picture."""
-        from alula.reports.figures.study.choice import pictures
-        from alula.reports.study.columns import read_study
-
         with Store.reading(self.folder) as store:
-            drawn, _ = pictures(read_study(store))
-        return {one.title: Picture(one.drawn.png()) for one in drawn}
+            found = pictures_of(study_sections(read_study(store)))
+        return {one.alt: Picture(one.draw().png()) for one in found if one.draw is not None}
 
     def __str__(self) -> str:
         return str(self.table())

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
+from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
+from alula.reports.study.tolerance import names, tolerance_sections
 
 
 @dataclass(frozen=True)
@@ -27,19 +28,22 @@ class ToleranceReport(Tabled):
     @property
     def numbers(self) -> Mapping[str, ToleranceNumber]:
         """Every number that was sampled, by quantity, subject and load case."""
-        return {one.title + (f", {one.load_case}" if one.load_case else ""): one for one in self.result.numbers}
+        return dict(zip(names(self.result), self.result.numbers, strict=True))
 
-    def table(self) -> Table:
-        """Return one row a number: nominal value, 1 %, median and 99 % of the samples, limit, probability to pass."""
-        rows: list[Row] = []
-        for name, one in self.numbers.items():
-            low, median, high = (float(value) for value in one.percentiles(1.0, 50.0, 99.0))
-            row: Row = {"number": name, "unit": one.unit, "nominal": one.nominal[0], "1 %": low, "median": median}
-            asked = one.certain is not None
-            row |= {"99 %": high, "sense": ("≥" if one.at_least else "≤") if asked else ""}
-            row |= {"limit": one.limit if asked else None, "passes": one.certain.value if one.certain else None}
-            rows.append(row)
-        return Table(tuple(rows))
+    def table(self, of: str = "numbers") -> Table:
+        """Return a table of ``alula tolerance``.
+
+        Parameters
+        ----------
+        of : str, optional
+            ``numbers``: nominal value, 1 %, median and 99 % of the samples, limit, probability to pass; or ``causes``,
+            the Sobol' indices of what matters.
+
+        Returns
+        -------
+        Table
+        """
+        return table_of(tolerance_sections(self.result), of, {"sense": "limit sense"})
 
     def plot_spread(self, number: str) -> Picture:
         """Draw how a number spreads over the samples, with its limit.

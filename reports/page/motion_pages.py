@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from alula.fea.common.verdict import by_nearness
+from alula.fea.findings.rates import rates_record
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
 from alula.fea.outcomes.unchecked import caveats
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
-from alula.fea.findings.rates import rates_record
 from alula.reports.page.decided import held, meaning, reasons
 from alula.reports.page.template import fill
 from alula.reports.turnable.moving import ENVELOPE_CAPTION, MOTION_CAPTION, envelope_linkage, motion_linkage

@@ -1,8 +1,9 @@
 """An output folder: alula replaces there what alula wrote, all of it or nothing, and leaves every other file alone.
 
 Each command keeps a list of its files and their digests in the folder, ``.alula-COMMAND.json``. A run fills a hidden
-folder inside of the output folder. When that is whole, the files of the earlier run are moved out and the new ones in.
-A journal of these moves lets the next run take them back where this one was killed in between.
+folder inside of the output folder. When that is whole, the files of the earlier run are moved out and the new ones in,
+the list last. Where a run was killed before that, the list is still in its hidden folder, and by it the next run takes
+the moves back.
 """
 
 import contextlib
@@ -28,7 +29,7 @@ EXPORT = "export"
 _TOP = ("check", EXPORT)
 """Commands that write into the folder itself; the others write into a subfolder of their own name."""
 _PREFIX = ".alula-"
-_NEW, _OLD, _JOURNAL = "new", "old", "journal.json"
+_NEW, _OLD, _LIST = "new", "old", "list.json"
 
 
 def folder_named(name: str | os.PathLike[str]) -> Path:
@@ -97,29 +98,35 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
     work: Path | None = None
 
     def tidy() -> None:
-        if work is not None and not (work / _JOURNAL).exists():
+        if work is not None and not (work / _LIST).exists():
             shutil.rmtree(work, ignore_errors=True)
         for folder in made:
             with contextlib.suppress(OSError):  # it holds the result
                 folder.rmdir()
 
+    def begin() -> None:
+        nonlocal work
+        target.mkdir(parents=True, exist_ok=True)
+        with _alone_in(target):
+            _recover(target)
+            _refuse_in_the_way(target, command, ())
+            work = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=target))
+            held.enter_context(_alone_in(work))
+
     with contextlib.ExitStack() as held, tidied(tidy):
         try:
             _refuse_no_folder(output, target)
-            target.mkdir(parents=True, exist_ok=True)
-            with _alone_in(target):
-                _recover(target)
-                _refuse_in_the_way(target, command, ())
-                work = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=target))
-                mine = locked(work)
-                if mine is not None:
-                    held.callback(os.close, mine)
+            try:
+                begin()
+            except FileNotFoundError:  # another run, which had made the folder, has failed and removed it
+                begin()
         except OSError as error:
             raise _unwritable(target, error) from None
+        assert work is not None
         try:
             _replace(target, command, work, fill)
         except OSError as error:
-            begun = (work / _JOURNAL).exists()
+            begun = (work / _LIST).exists()
             state = "the next run into it restores what was there" if begun else "nothing was changed there"
             raise CannotRunError(f"output: writing to '{target}' failed ({error.strerror or error}); {state}") from None
 
@@ -195,24 +202,21 @@ def _replace(target: Path, command: str, work: Path, fill: Callable[[Path], obje
         own, left = _list_of(command), _written(target, command)
         kept = {name: left[name] for name in left if command == EXPORT and name not in {own, *files}}
         leaving = [name for name in left if name not in kept and _is(target / name)]
-        (new / own).write_text(json.dumps({"files": files | kept}, indent=1) + "\n", encoding="utf-8")
-        entering = files | {own: _digest(new / own)}
-        journal = {"leaving": _mark_last(leaving)[::-1], "entering": {n: entering[n] for n in _mark_last(entering)}}
-        (work / _JOURNAL).write_text(json.dumps(journal), encoding="utf-8")
-        for path in (*work.rglob("*"), work):
-            _flush(path)
-        if child.stopped():
-            (work / _JOURNAL).unlink()
-            raise KeyboardInterrupt
         try:
-            for name in journal["leaving"]:
+            listed = json.dumps({"files": files | kept, "kept": [*kept]}, indent=1)
+            (work / _LIST).write_text(listed + "\n", encoding="utf-8")
+            for path in (*work.rglob("*"), work):
+                _flush(path)
+            if child.stopped():
+                raise KeyboardInterrupt
+            for name in reversed(_mark_last(leaving)):
                 _move(target / name, work / _OLD / name)
-            for name in journal["entering"]:
+            for name in _mark_last(files):
                 _move(new / name, target / name)
+            _move(work / _LIST, target / own)  # from here on the new result stands
         except BaseException:
             _take_back(target, work)
             raise
-        (work / _JOURNAL).unlink()  # from here on the new result stands
         _remove_empty(target, leaving)
 
 
@@ -221,19 +225,23 @@ def _mark_last(names: Iterable[str]) -> list[str]:
 
 
 def _take_back(target: Path, work: Path) -> None:
-    """Undo the moves that the journal in a working folder tells of, as far as they were made."""
-    try:
-        journal = json.loads((work / _JOURNAL).read_text(encoding="utf-8"))
-        entering, leaving = _files_in(journal["entering"]), _files_in(dict.fromkeys(journal["leaving"], ""))
-    except (FileNotFoundError, ValueError, LookupError, TypeError):  # killed before the first move
+    """Undo the moves of a run whose list is still in its working folder, as far as they were made."""
+    new, old = work / _NEW, work / _OLD
+    if not _is(work / _LIST):  # killed before the first move, or after the last
         return
-    for name, digest in reversed(entering.items()):
-        if not os.path.lexists(work / _NEW / name) and _stands_in_folders(target, name) and _is(target / name, digest):
-            _move(target / name, work / _NEW / name)
-    for name in reversed(leaving):
-        if _is(work / _OLD / name) and _stands_in_folders(target, name) and not os.path.lexists(target / name):
-            _move(work / _OLD / name, target / name)
-    (work / _JOURNAL).unlink()
+    try:
+        table = json.loads((work / _LIST).read_text(encoding="utf-8"))
+        entering = {name: digest for name, digest in _files_in(table["files"]).items() if name not in table["kept"]}
+    except (ValueError, LookupError, TypeError):  # half a list, and nothing was moved
+        entering = {}
+    for name in reversed(_mark_last(entering)):
+        stands = _stands_in_folders(target, name) and _stands_in_folders(new, name)
+        if stands and not os.path.lexists(new / name) and _is(target / name, entering[name]):
+            _move(target / name, new / name)
+    for name in _mark_last(path.relative_to(old).as_posix() for path in old.rglob("*") if _is(path)):
+        if _stands_in_folders(target, name) and not os.path.lexists(target / name):
+            _move(old / name, target / name)
+    (work / _LIST).unlink()
     _remove_empty(target, entering)
 
 
@@ -253,7 +261,7 @@ def _recover(target: Path) -> None:
 
 
 def _is_working_folder(folder: Path) -> bool:
-    return {path.name for path in folder.iterdir()} <= {_NEW, _OLD, _JOURNAL}
+    return all(path.name in (_NEW, _OLD, _LIST) and not path.is_symlink() for path in folder.iterdir())
 
 
 def _list_of(command: str) -> str:
@@ -314,7 +322,7 @@ def _remove_empty(target: Path, names: Iterable[str]) -> None:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Keep other runs from changing names in a folder meanwhile."""
+    """Hold the lock of a folder: of the output while names change, of a working folder while its run lives."""
     held = locked(folder)
     try:
         yield

@@ -4,7 +4,8 @@ import re
 from html import escape
 
 _MARKS = {"b": ("\ue000", "\ue001"), "code": ("\ue002", "\ue003"), "sub": ("\ue004", "\ue005")}
-_NOTHING = str.maketrans("", "", "".join(mark for pair in _MARKS.values() for mark in pair))
+_BREAK = "\ue009"
+_NOTHING = str.maketrans("", "", _BREAK + "".join(mark for pair in _MARKS.values() for mark in pair))
 _LINK = re.compile("\ue006([^\ue007]*)\ue007([^\ue008]*)\ue008")
 
 
@@ -16,6 +17,11 @@ def bold(text: object) -> str:
 def code(text: object) -> str:
     """Return a text in letters of equal width: a command, an entry of a file."""
     return _within("code", text)
+
+
+def entry(path: str) -> str:
+    """Return the path of an entry as code, of which a line may be broken after dots."""
+    return code(path.replace(".", f".{_BREAK}"))
 
 
 def sub(text: object) -> str:
@@ -61,4 +67,4 @@ def as_html(text: str) -> str:
     found = _LINK.sub(r'<a href="\1">\2</a>', escape(text))
     for tag, (first, last) in _MARKS.items():
         found = found.replace(first, f"<{tag}>").replace(last, f"</{tag}>")
-    return found
+    return found.replace(_BREAK, "<wbr>")

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
 from alula.reports.sentences import told
-from alula.reports.words.numbers import band, fixed, number, percent, plain, sentence
+from alula.reports.words.numbers import band, chance, fixed, number, percent, plain, sentence
 
 KEPT = "\u00a0"
 """A space at which no line is broken, such as between a name and its number."""
@@ -38,6 +38,8 @@ class Number:
         A number of the case: told as it was written.
     share : bool
         Told as a signed percentage.
+    probable : bool
+        A probability: told as a percentage.
     beside : float
         A number of which this one is a part: below its rounding error it is 0.
     factor : float
@@ -54,6 +56,7 @@ class Number:
     decimals: int | None = field(default=None, kw_only=True)
     stated: bool = field(default=False, kw_only=True)
     share: bool = field(default=False, kw_only=True)
+    probable: bool = field(default=False, kw_only=True)
     beside: float = field(default=0.0, kw_only=True)
     factor: float = field(default=1.0, kw_only=True)
     sense: str = field(default="", kw_only=True)
@@ -79,6 +82,8 @@ class Number:
             return plain(value)
         if self.share:
             return percent(value)
+        if self.probable:
+            return chance(value)
         if self.decimals is not None and math.isfinite(value):
             return fixed(value, self.decimals)
         return number(value, self.digits or 4, self.beside)

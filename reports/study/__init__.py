@@ -1,4 +1,4 @@
-"""What studies and samples tell: the columns of a study, its rows for the console, regression, tables of samples.
+"""What studies and samples tell: sections made of the points of a study, and of a case under its tolerances.
 
-Hands on ``read_study``.
+Hands on ``study_sections``, ``write_study`` and ``tolerance_sections``.
 """

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.reports.study.columns import Parameter, Response
-
-Real = NDArray[np.float64]
+from alula.reports.figures.study.points import Parameter, Real, Response
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,26 +1,16 @@
-"""The points of a study as tables: for the terminal, for CSV and as plain data."""
+"""The points of a study one by one: what became of each, for tables, for CSV and as plain data."""
 
-from bisect import insort
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import margin, nearest, sense_of
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import Store
-from alula.geometry.base.version import result_stamp
-from alula.reports.tables.data import finite
-from alula.reports.words.numbers import band, number
-from alula.reports.words.terminal import say, say_table
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-
-ALIKE = "No point is best or worst: each is open by a check that is not known, or whose band leaves no margin."
+from alula.reports.sections.section import Number, Section
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,9 +42,11 @@ class Row:
         return 0.0 if self.nearest is None else margin(self.nearest)
 
     @property
-    def merit(self) -> tuple[int, float]:
-        """What the best point has most of: the verdict, then the margin."""
-        return (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS).index(self.answer.verdict or Verdict.FAIL), self.margin
+    def merit(self) -> tuple[int, float] | None:
+        """What the best point has most of: the verdict, then the margin; None where nothing was checked."""
+        if self.answer.verdict is None or self.nearest is None:
+            return None
+        return (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS).index(self.answer.verdict), self.margin
 
     @property
     def mass(self) -> float | None:
@@ -67,24 +59,31 @@ class Row:
         """The verdict, or the state where there is none."""
         return str(self.answer.verdict or self.answer.state)
 
+    @property
+    def stated(self) -> str:
+        """Its values, such as ``parts.bar.thickness = 3 mm, parts.bar.width = 8 mm``."""
+        return ", ".join(f"{path} = {value}" for path, value in self.parameters.items())
 
-def study_rows(store: Store) -> Iterator[Row]:
-    """Yield the points of a study in order.
+
+def study_rows(store: Store, positions: Sequence[int] | None = None) -> Iterator[Row]:
+    """Yield points of a study that have a result, in order.
 
     Parameters
     ----------
     store : Store
+    positions : sequence of int, optional
+        These alone.
 
     Yields
     ------
     Row
     """
-    for position, parameters, answer, attempts in store.rows():
+    for position, parameters, answer, attempts in store.rows(positions):
         yield Row(position=position, parameters=parameters, answer=answer, attempts=attempts)
 
 
-def as_record(store: Store) -> dict[str, Any]:
-    """Return a study as plain data.
+def results_section(store: Store) -> Section:
+    """Return all points with all their numbers, as plain data alone.
 
     Parameters
     ----------
@@ -92,10 +91,8 @@ def as_record(store: Store) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        Numbers that are not known are None.
+    Section
     """
-    facts = store.facts()
     points = [
         {
             "position": row.position,
@@ -109,10 +106,10 @@ def as_record(store: Store) -> dict[str, Any]:
         }
         for row in study_rows(store)
     ]
-    return dict(finite({**result_stamp(), **facts, "counts": store.counts(), "results": points}, {}))
+    return Section(key="results", data={**store.facts(), "counts": store.counts(), "results": points})
 
 
-def columns(store: Store) -> Iterator[Sequence[object]]:
+def lines(store: Store) -> Iterator[Sequence[object]]:
     """Yield the lines of a CSV file: one a point, with value and band of every number.
 
     Parameters
@@ -129,15 +126,11 @@ def columns(store: Store) -> Iterator[Sequence[object]]:
     for row in study_rows(store):
         paths |= dict.fromkeys(row.parameters)
         names |= {title(found): None for found in row.answer.numbers}
-    ends = ("", " low", " high")
+    ends = {"": "value", " low": "low", " high": "high"}
     yield ["point", *paths, "state", "verdict", "sentence", *(name + end for name in names for end in ends)]
     for row in study_rows(store):
         known = {title(found): found for found in row.answer.numbers}
-        values = [
-            ("" if name not in known else getattr(known[name], end.strip() or "value"))
-            for name in names
-            for end in ends
-        ]
+        values = [getattr(known.get(name), end, "") for name in names for end in ends.values()]
         stated = [row.parameters.get(path, "") for path in paths]
         yield [row.position, *stated, row.answer.state, row.answer.verdict or "", row.answer.sentence, *values]
 
@@ -159,130 +152,25 @@ def title(found: VariantNumber) -> str:
     return f"{found.quantity} of {found.subject}{where}{check} [{found.unit}]"
 
 
-def print_study(store: Store, console: "Console", most: int) -> None:
-    """Print a study: its counts, the best, the worst and the undecided points, and the table.
+def checked(found: VariantNumber) -> dict[str, Any]:
+    """Return what a check looks at (``what``), its ``value`` with the band, and its ``limit``, as they are told.
 
     Parameters
     ----------
-    store : Store
-    console : rich.console.Console
-    most : int
-        Rows of the table.
-    """
-    facts, chosen, shown, count, weighed = store.facts(), Chosen(), list[Row](), 0, False
-    paths: dict[str, None] = {}
-    for row in study_rows(store):
-        count += 1
-        chosen.add(row)
-        weighed = weighed or row.mass is not None
-        paths |= dict.fromkeys(row.parameters)
-        if len(shown) < most:
-            shown.append(row)
-    told = ", ".join(f"{number} {name}" for name, number in sorted(store.counts().items()))
-    what, total = f"{facts['plan']['case']} ({facts['plan']['analysis']})", facts["points"]
-    say(console, f"Study of {what}: {count} of {total} points; {told or 'none yet'}.")
-    for which, row in chosen.ends.items():
-        stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
-        say(console, f"{which.capitalize()}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")
-    if len(chosen.undecided) > 1 and not chosen.ends:
-        say(console, ALIKE)
-    if chosen.undecided:
-        say(console, f"Undecided: {_numbers(chosen.undecided)}.")
-    heads = [("point", True), *((path, False) for path in paths), ("verdict", False), ("nearest to its limit", False)]
-    cells = [_cells(row, list(paths)) for row in shown]
-    if weighed:
-        heads.append(("mass\n[g]", True))
-        cells = [[*line, "" if r.mass is None else number(r.mass, 4)] for line, r in zip(cells, shown, strict=True)]
-    say_table(console, heads, cells)
-    if count > most:
-        say(console, f"{count - most} more points: --most {count}, or all numbers with --csv FILE.")
-
-
-class Chosen:
-    """The best and the worst of the points that have a verdict and a margin, and which of them are undecided.
-
-    Parameters
-    ----------
-    most : int
-        Points of each kind that are kept.
-
-    Attributes
-    ----------
-    undecided : list of int
-        Positions of all.
-    open : list of Row
-        The first undecided.
-    """
-
-    def __init__(self, most: int = 1) -> None:
-        self._most = most
-        self._best: list[tuple[int, float, int, Row]] = []
-        self._worst: list[tuple[int, float, int, Row]] = []
-        self.undecided: list[int] = []
-        self.open: list[Row] = []
-
-    @property
-    def best(self) -> list[Row]:
-        """The best points, the best first; of equal ones, the first."""
-        return [row for *_, row in self._best]
-
-    @property
-    def worst(self) -> list[Row]:
-        """The worst points, the worst first; of equal ones, the first."""
-        return [row for *_, row in self._worst]
-
-    @property
-    def ends(self) -> dict[str, Row]:
-        """The best and the worst point; empty where no point is better than another."""
-        if not self._best or self.best[0].merit == self.worst[0].merit:
-            return {}
-        return {"best": self.best[0], "worst": self.worst[0]}
-
-    def add(self, row: Row) -> None:
-        """Take a point into account.
-
-        Parameters
-        ----------
-        row : Row
-        """
-        if row.answer.verdict is None or row.nearest is None:
-            return
-        verdict, margin = row.merit
-        for kept, sign in ((self._best, -1), (self._worst, 1)):
-            place = sign * verdict, sign * margin, row.position
-            if len(kept) < self._most or place < kept[-1][:3]:
-                insort(kept, (*place, row), key=lambda one: one[:3])
-                del kept[self._most :]
-        if row.answer.verdict is Verdict.UNDECIDED:
-            self.undecided.append(row.position)
-            if len(self.open) < self._most:
-                self.open.append(row)
-
-
-def _numbers(positions: Sequence[int]) -> str:
-    shown = ", ".join(map(str, positions[:20]))
-    return f"points {shown}" + (f" and {len(positions) - 20} more" if len(positions) > 20 else "")
-
-
-def _cells(row: Row, paths: Sequence[str]) -> list[str]:
-    return [str(row.position), *(str(row.parameters.get(path, "")) for path in paths), row.outcome, nearest_text(row)]
-
-
-def nearest_text(row: Row) -> str:
-    """Return the check that is nearest to its limit, with its number; the sentence of a point without one.
-
-    Parameters
-    ----------
-    row : Row
+    found : VariantNumber
+        Of a check.
 
     Returns
     -------
-    str
+    dict
+        A text and two numbers.
     """
-    found = row.nearest
-    if found is None:
-        return row.answer.sentence
-    return number_text(found)
+    unit = "" if found.unit == "1" else found.unit
+    return {
+        "what": f"{found.quantity} of {found.subject}",
+        "value": Number(Band(value=found.value, low=found.low, high=found.high), unit),
+        "limit": Number(found.limit, unit, stated=True, sense=sense_of(found).value),
+    }
 
 
 def number_text(found: VariantNumber) -> str:
@@ -298,7 +186,4 @@ def number_text(found: VariantNumber) -> str:
     str
         Such as ``safety factor of AE 2.1 (1.9 to 2.3) (≥ 1.5)``.
     """
-    value = Band(value=found.value, low=found.low, high=found.high)
-    unit = "" if found.unit == "1" else f" {found.unit}"
-    shown = band(value) if value.unknowable else f"{band(value)}{unit}"
-    return f"{found.quantity} of {found.subject} {shown} ({sense_of(found).value} {found.limit:g}{unit})"
+    return "{what} {value} ({limit})".format(**checked(found))

@@ -68,6 +68,22 @@ def plain(value: float) -> str:
     return f"{value:g}".replace("-", "−")
 
 
+def short(value: float, digits: int) -> str:
+    """Return a number with some significant digits at most, without padding zeros.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+
+    Returns
+    -------
+    str
+    """
+    text = f"{value:.{digits}g}"
+    return text.replace("-", "−") if math.isfinite(value) and "e" not in text else number(value, digits)
+
+
 def band(value: Band, digits: int = 3) -> str:
     """Return ``3.21 (2.44 to 3.21)``, the value alone where the band has no visible width, or ``3.21 (no band)``.
 
@@ -138,6 +154,25 @@ def percent(ratio: float) -> str:
     return f"{text[1:] if float(text) == 0.0 else text} %".replace("-", "−")
 
 
+def chance(share: float) -> str:
+    """Return a probability as a percentage, which is 0 % or 100 % only where it is that exactly.
+
+    Parameters
+    ----------
+    share : float
+        From 0 to 1.
+
+    Returns
+    -------
+    str
+        Such as ``79.31 %`` or ``> 99.99 %``.
+    """
+    text = f"{100.0 * share:.2f}"
+    if (text == "100.00" and share < 1.0) or (text == "0.00" and share > 0.0):
+        return "> 99.99 %" if share > 0.5 else "< 0.01 %"
+    return f"{text.rstrip('0').rstrip('.')} %"
+
+
 def joined(words: tuple[str, ...] | list[str]) -> str:
     """Return ``a, b and c``.
 
@@ -150,6 +185,21 @@ def joined(words: tuple[str, ...] | list[str]) -> str:
     str
     """
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+
+
+def ordinal(n: int) -> str:
+    """Return ``1st``, ``2nd``, ``3rd``, ``4th``.
+
+    Parameters
+    ----------
+    n : int
+        From 1 to 20.
+
+    Returns
+    -------
+    str
+    """
+    return f"{n}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(n, 'th') }"
 
 
 def turning(torque: float) -> str:

@@ -64,5 +64,5 @@ def test_a_renderer_that_was_started_early_draws_without_temporary_files(
     pictures, warnings = figures.plots_of({"AE": scene()}, {"AE": {}})
     assert warnings == ()
     assert pictures["AE"].png().startswith(b"\x89PNG")
-    assert [waiting.server for waiting in pool._waiting] == [early.server]
+    assert pool._waiting == [early]
     pool.close()

@@ -81,7 +81,7 @@ def test_killed_at_every_step_of_writing(tmp_path: Path, earlier: str) -> None:
     seen = json.loads(done.stdout)
     assert seen["steps"] > 60
     assert seen["new"] >= 1
-    assert seen["none"] > 20  # while files are moved there is no result.json ...
+    assert seen["none"] > 15  # while files are moved there is no result.json ...
     assert seen["old"] > (50 if earlier == "earlier" else -1)  # ... and not even then is the earlier result lost
 
 

@@ -1,4 +1,4 @@
 """Pictures of studies and of samples.
 
-Hands on ``pictures`` and ``tolerance_pictures``; ``histogram`` and ``tornado`` take plain arrays.
+Each takes arrays (``points.py``) and returns a figure, which ``png`` writes; ``tolerance_pictures`` takes a result.
 """

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
+from alula.reports.figures.study.points import Parameter, Response
 from alula.reports.figures.study.style import (
     LOOKS,
     Words,
@@ -19,7 +20,6 @@ from alula.reports.figures.study.style import (
     styled,
     wants_decades,
 )
-from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
 Panel = tuple[str, NDArray[np.bool_]]

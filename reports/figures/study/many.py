@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 
 from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
 from alula.reports.figures.study.curves import reach
+from alula.reports.figures.study.points import MOST_LINES, MOST_MARKS, Parameter, Response, marked
 from alula.reports.figures.study.style import (
     LOOKS,
-    MOST_MARKS,
     Words,
     legend,
     limit_handle,
     mark_size,
-    marked,
     present,
     scale,
     scatter,
@@ -24,11 +23,8 @@ from alula.reports.figures.study.style import (
     tick,
     wants_decades,
 )
-from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
-MOST_LINES = 300
-"""Of parallel coordinates; of more points so many are drawn, evenly through the study."""
 _APART = 16.0
 """Least distance of two points of a front that carry their numbers [points of the sheet]."""
 

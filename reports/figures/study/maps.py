@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from alula.reports.figures.sheet.style import INK
 from alula.reports.figures.study.curves import Panel, name_axes, subplots
+from alula.reports.figures.study.points import Parameter, Response
 from alula.reports.figures.study.style import (
     LOOKS,
     Words,
@@ -21,7 +22,6 @@ from alula.reports.figures.study.style import (
     tick,
     wants_decades,
 )
-from alula.reports.study.columns import Parameter, Response
 
 Real = NDArray[np.float64]
 _TINT = 0.22

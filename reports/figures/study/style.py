@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 
 from alula.reports.figures.sheet.chart import Chart
 from alula.reports.figures.sheet.style import GROUND, INK, LOAD, STYLE
+from alula.reports.figures.study.points import OUTCOMES
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
 Words = NDArray[np.str_]
-MOST_MARKS = 5000
-"""Points that have a mark in a picture; more would cover each other."""
 _Given = ParamSpec("_Given")
 
 
@@ -54,7 +53,7 @@ LOOKS: Mapping[str, Look] = {
     "crashed": Look(colour=INK, mark="*", hatch="++", dashes=(0, (1, 3))),
     "done": Look(colour=LOAD, mark="o"),
 }
-"""In the order of legends; colours of verdicts as ``report.css`` has them."""
+"""Colours of verdicts as ``report.css`` has them."""
 _STYLE = {**STYLE, "hatch.linewidth": 0.5}
 _NICE = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
@@ -104,7 +103,7 @@ def present(outcome: Words) -> list[str]:
     -------
     list of str
     """
-    return [name for name in LOOKS if np.any(outcome == name)]
+    return [name for name in OUTCOMES if np.any(outcome == name)]
 
 
 def scatter(axes: Any, x: Real, y: Real, outcome: Words, *, size: float = 5.0, **more: Any) -> None:
@@ -128,29 +127,6 @@ def scatter(axes: Any, x: Real, y: Real, outcome: Words, *, size: float = 5.0, *
             markeredgecolor=look.colour if look.hollow else "white", markeredgewidth=1.1 if look.hollow else 0.4,
             markerfacecolor="white" if look.hollow else look.colour, zorder=4, label=name, **more,
         )  # fmt: skip
-
-
-def marked(here: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
-    """Return which points have a mark: all of few, else so many, drawn at random with a fixed seed.
-
-    Every other point, or each tenth, would follow the lines of a grid.
-
-    Parameters
-    ----------
-    here : ndarray of bool, shape (n,)
-        Which points there are.
-    most : int
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-    """
-    points = np.flatnonzero(here)
-    if len(points) <= most:
-        return here
-    found = np.zeros_like(here)
-    found[np.random.default_rng(0).choice(points, most, replace=False)] = True
-    return found
 
 
 def mark_size(count: int) -> float:

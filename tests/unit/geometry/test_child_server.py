@@ -96,6 +96,28 @@ def test_a_child_that_waits_long_is_ended(pool: ServerPool, monkeypatch: pytest.
     assert ask(pool, b"who") != first
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_fork_leaves_the_children_of_its_parent_alone(pool: ServerPool) -> None:
+    first = ask(pool, b"who")
+    fork = os.fork()
+    if not fork:
+        other = ask(pool, b"who")
+        pool.close()
+        os._exit(0 if other != first else 1)
+    assert os.waitpid(fork, 0)[1] == 0
+    assert ask(pool, b"who") == first
+
+
+HALF = "import pickle, sys; out = sys.stdout.buffer; out.write(pickle.dumps(bytes(10**6))[:{length}]); sys.exit('half')"
+
+
+@pytest.mark.parametrize("length", [0, 1, 9, 500_000, 10**6])
+def test_half_an_answer_is_none(pool: ServerPool, length: int) -> None:
+    command = [sys.executable, "-c", HALF.format(length=length)]
+    with pytest.raises(ChildEndedError, match="half"), pool.server(command, child.environment(), "") as server:
+        server.ask(b"", 30.0)
+
+
 def test_an_exception_beside_the_request_ends_the_child(pool: ServerPool) -> None:
     lent = pool.server(COMMAND, child.environment(), "")
     first = lent.__enter__().ask(b"who", 30.0)

@@ -15,7 +15,7 @@ import pytest
 
 import alula
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.reports.page.study_page import write_study
+from alula.reports.study.page import write_study
 
 UNITS = pint.UnitRegistry()
 BAR = {"shape": "bar", "material": "aluminium-6061-t6", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "2 mm"}

@@ -21,6 +21,10 @@ def fill(files: Mapping[str, str] = {"result.json": "{}", "sub/a.png": "new"}) -
     return write
 
 
+def failing(folder: Path) -> None:
+    raise OSError(28, "No space left on device")
+
+
 def files_of(folder: Path) -> dict[str, str]:
     """Return name -> text of every file in a folder, but for the lists of what alula wrote."""
     found = {path.relative_to(folder).as_posix(): path for path in sorted(folder.rglob("*")) if not path.is_dir()}
@@ -87,6 +91,27 @@ def test_parts_of_another_case_stay(tmp_path: Path) -> None:
     assert files_of(tmp_path) == {"AE.step": "owl again", "GF.step": "in CAD", "crank.step": "four-bar"}
     with pytest.raises(CaseError, match=r"GF\.step' was not written by alula, or was edited since"):
         write_folder(tmp_path, EXPORT, fill({"GF.step": "owl again"}))
+
+
+@pytest.mark.parametrize("step", range(5))
+def test_parts_of_another_case_stay_where_the_disk_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: int
+) -> None:
+    write_folder(tmp_path, EXPORT, fill({"AE.step": "owl", "GF.step": "owl"}))
+    move, left = output._move, [step]
+
+    def failing(source: Path, to: Path) -> None:
+        left[0] -= 1
+        if left[0] < 0:  # so that only the next run takes back what was moved
+            raise OSError(5, "Input/output error")
+        move(source, to)
+
+    monkeypatch.setattr(output, "_move", failing)
+    with pytest.raises(CannotRunError, match="restores" if step else "nothing was changed"):
+        write_folder(tmp_path, EXPORT, fill({"AE.step": "again", "crank.step": "four-bar"}))
+    monkeypatch.undo()
+    refuse_unusable(tmp_path, EXPORT)
+    assert files_of(tmp_path) == {"AE.step": "owl", "GF.step": "owl"}
 
 
 def unlisted(out: Path) -> None:
@@ -166,7 +191,7 @@ def test_a_file_that_changes_while_the_run_fills_its_folder_is_seen(out: Path, c
 
 @pytest.mark.parametrize("name", ["../victim", "/victim", "sub/../../victim", "link/victim"])
 def test_a_list_of_files_elsewhere_harms_nothing(out: Path, name: str) -> None:
-    """A folder from somebody else: its list, or its journal of moves, names a file that is not in it."""
+    """A folder from somebody else: its list, or the one of a run that was killed, names a file that is not in it."""
     victim = out.parent / "victim"
     (out / "link").symlink_to(out.parent)
     victim.write_text("old")
@@ -178,26 +203,65 @@ def test_a_list_of_files_elsewhere_harms_nothing(out: Path, name: str) -> None:
     with pytest.raises(CaseError, match="rename it or choose another folder"):
         write_folder(out, "check", fill())
     (out / LIST).unlink()
-    for journal in (
-        {"leaving": [], "entering": {name: files["result.json"]}},
-        {"leaving": [name], "entering": {}},
-    ):
-        (out / ".alula-work").mkdir()
-        (out / ".alula-work" / "journal.json").write_text(json.dumps(journal))
-        write_folder(out, "check", fill())
-        assert not (out / ".alula-work").exists()
-        assert victim.read_text() == "old"
+    digest = files["result.json"]
+    (out / ".alula-work").mkdir()
+    (out / ".alula-work" / "list.json").write_text(json.dumps({"files": {name: digest}, "kept": []}))
+    write_folder(out, "check", fill())
+    assert not (out / ".alula-work").exists()
+    assert victim.read_text() == "old"
 
 
-def test_nothing_is_put_back_behind_a_link(out: Path) -> None:
+@pytest.mark.parametrize("told", ['{"files": {}, "kept": []}', '{"fil'])
+def test_nothing_is_put_back_behind_a_link(out: Path, told: str) -> None:
     (out / "link").symlink_to(out.parent)
     (out / ".alula-work" / "old" / "link").mkdir(parents=True)
     (out / ".alula-work" / "old" / "link" / "planted").write_text("x")
-    journal = {"leaving": ["link/planted"], "entering": {}}
-    (out / ".alula-work" / "journal.json").write_text(json.dumps(journal))
+    (out / ".alula-work" / "list.json").write_text(told)
     write_folder(out, "check", fill())
     assert not (out / ".alula-work").exists()
     assert not (out.parent / "planted").exists()
+
+
+@pytest.mark.parametrize("link", ["old", "new", "new/sub"])
+def test_a_leftover_that_leads_elsewhere_moves_nothing(out: Path, link: str) -> None:
+    """A folder from somebody else: a part of what a killed run left is a link."""
+    elsewhere = out.parent / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "precious").write_text("mine")
+    listed = json.loads((out / LIST).read_text())["files"]
+    (out / ".alula-work" / link).parent.mkdir(parents=True)
+    (out / ".alula-work" / link).symlink_to(elsewhere)
+    (out / ".alula-work" / "list.json").write_text(json.dumps({"files": listed, "kept": []}))
+    with pytest.raises(CannotRunError):
+        write_folder(out, "check", failing)
+    assert files_of(elsewhere) == {"precious": "mine"}
+    assert {name: files_of(out).get(name) for name in MINE} == MINE
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_leftover_whose_list_is_a_pipe_is_not_waited_for(out: Path) -> None:
+    (out / ".alula-work").mkdir()
+    os.mkfifo(out / ".alula-work" / "list.json")
+    write_folder(out, "check", fill())
+    assert files_of(out) == MINE | {"result.json": "{}", "sub/a.png": "new"}
+    assert not (out / ".alula-work").exists()
+
+
+def test_a_fresh_folder_is_made_again_where_a_failing_run_removes_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two runs into one folder that neither found there: what the second computed was lost."""
+    lock, left = output.locked, [None]
+
+    def removed(folder: Path, *, wait: bool = True) -> int | None:
+        if left:
+            left.pop()
+            folder.rmdir()
+        return lock(folder, wait=wait)
+
+    monkeypatch.setattr(output, "locked", removed)
+    write_folder(tmp_path / "deep" / "out", "check", fill())
+    assert files_of(tmp_path) == {"deep/out/result.json": "{}", "deep/out/sub/a.png": "new"}
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("crash"), KeyboardInterrupt()])
@@ -214,6 +278,16 @@ def test_a_failure_leaves_the_earlier_result_untouched(out: Path, error: BaseExc
     with pytest.raises((CannotRunError, RuntimeError, KeyboardInterrupt)):
         write_folder(out.parent / "deep" / "fresh", "motion", half)
     assert list(out.parent.iterdir()) == [out]
+
+
+def test_a_disk_that_fails_before_the_first_move_keeps_nothing(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It said that the next run restores what was there, and kept the new files in a hidden folder until then."""
+    before = files_of(out)
+    monkeypatch.setattr(output, "_flush", failing)
+    with pytest.raises(CannotRunError, match="nothing was changed there"):
+        write_folder(out, "check", fill())
+    assert files_of(out) == before
+    assert folders_of(out) == {"sub", "gone"}
 
 
 @pytest.mark.parametrize("error", [OSError(5, "Input/output error"), KeyboardInterrupt()])

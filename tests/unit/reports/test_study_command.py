@@ -19,7 +19,7 @@ def test_a_study_of_motions_is_computed_and_shown(tmp_path: Path) -> None:
     assert done.stdout.startswith("2 points: 2 done. Computed 2.\n"), done.stderr
     assert "Computed 0; 2 stood already" in programs.inside(*arguments, folder=tmp_path).stdout
     shown = programs.inside("study", "show", "out", "--csv", "all.csv", folder=tmp_path)
-    assert "2 of 2 points" in shown.stdout
+    assert "2 points: 2 done." in shown.stdout
     assert "motion.poses" in shown.stdout
     with (tmp_path / "all.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))

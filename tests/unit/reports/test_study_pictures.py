@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from io import StringIO
 from itertools import product
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import programs
 import pytest
 from edited_cases import PLANAR
 from html_pages import Page, stands_alone
+from rich.console import Console
 
 from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import least_margin, margin, margin_band, nearest
@@ -18,16 +20,20 @@ from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
 from alula.reports.figures.study import style
-from alula.reports.figures.study.choice import chosen
 from alula.reports.figures.study.curves import curves
 from alula.reports.figures.study.many import front, parallel, pareto
 from alula.reports.figures.study.maps import verdict_map
+from alula.reports.figures.study.points import OUTCOMES, Parameter, Response
 from alula.reports.figures.study.spread import histogram, tornado
 from alula.reports.figures.study.style import LOOKS
-from alula.reports.page.study_page import write_study
-from alula.reports.study.columns import Parameter, Response, read_study
+from alula.reports.renderers.console import print_sections
+from alula.reports.sections.section import Command, numbers_of, parts_of, tables_of
+from alula.reports.study.choice import picture_sections
+from alula.reports.study.columns import read_study
+from alula.reports.study.page import pictures_of, write_study
 from alula.reports.study.regression import regression
-from alula.reports.study.rows import ALIKE, Chosen, Row
+from alula.reports.study.rows import study_rows
+from alula.reports.study.sections import ALIKE, points_table, study_sections
 
 CSS = Path(__file__).resolve().parents[3] / "reports" / "templates" / "report.css"
 
@@ -60,10 +66,10 @@ def store_of(folder, points, link=(), case="owl-wing-static"):
     return folder
 
 
-def columns_of(folder, points, **options):
+def columns_of(folder, points, most=40, **options):
     """Read a study of these points."""
     with Store.reading(store_of(folder, points, **options)) as store:
-        return read_study(store)
+        return read_study(store, most=most)
 
 
 def quantity(values, path="parts.bar.thickness"):
@@ -125,7 +131,7 @@ def test_points_that_are_open_alike_have_no_best_and_no_worst(tmp_path):
     page = write_study(tmp_path / "alike", tmp_path / "out").read_text(encoding="utf-8")
     assert ALIKE in page
     assert "The report of the best point" not in page
-    assert "not known (≥ 2)" in page
+    assert "not known" in page
     assert "contours" not in page
     assert "Distribution of the least margin" not in page
     [one, other] = [columns_of(tmp_path / name, points[:1] + more).extremes for name, more in
@@ -159,7 +165,7 @@ def test_a_study_is_read_into_columns(tmp_path):
     assert study.mass == pytest.approx([10.0, 12.0, math.nan], nan_ok=True)
     assert (study.safety_factor.limit, list(study.outcome)) == (2.0, ["pass", "fail", "refused"])
     assert (study.extremes["best"].position, study.extremes["worst"].position) == (0, 1)
-    assert study.sentences == {("refused", refused.sentence): 1}
+    assert study.sentences == {("refused", refused.sentence): [2]}
 
 
 GRID = {"a": ["1 mm", "2 mm", "3 mm"], "b": ["1 mm", "2 mm", "3 mm"], "c": ["1 mm", "2 mm"], "k": ["x", "y"]}
@@ -182,8 +188,8 @@ def test_what_varies_chooses_the_pictures(varied, expected, tmp_path):
         size = math.prod(float(value[0]) if value[0].isdigit() else ord(value) / 100 for value in values)
         points.append((dict(zip(varied, values, strict=True)), answer(size, 3.0 * size)))
     study = columns_of(tmp_path, points)
-    assert [one[0] for one in chosen(study)] == [*expected.split(), "margins", "pareto"]
-    assert "pareto" not in [one[0] for one in chosen(replace(study, mass=None))]
+    assert [one.key for one in picture_sections(study)] == [*expected.split(), "margins", "pareto"]
+    assert "pareto" not in [one.key for one in picture_sections(replace(study, mass=None))]
 
 
 def test_a_curve_shows_values_verdicts_and_limit():
@@ -296,6 +302,7 @@ def test_parallel_coordinates_hold_every_point_and_end_where_nothing_is_known():
 def test_colours_of_verdicts_are_those_of_the_report():
     stated = dict(re.findall(r"--(pass|fail|undecided): (#\w+)", CSS.read_text(encoding="utf-8")))
     assert {name: LOOKS[name].colour for name in stated} == stated
+    assert tuple(LOOKS) == OUTCOMES
     assert len({look.mark for look in LOOKS.values()}) == len(LOOKS) - 1  # "done" never stands beside "pass"
 
 
@@ -311,8 +318,8 @@ def test_the_page_stands_alone_and_leaves_the_study_as_it_is(tmp_path):
     stands_alone(Page(text))
     words = Page(text).words
     assert "7 points: 3 pass, 1 undecided, 2 fail and 1 refused." in words
-    assert re.search(r"Best, point 5: pass *, safety factor of AE 4.00", words)
-    assert "1 refused: <script>alert(1)</script>" in words
+    assert "Best, point 5: pass, safety factor of AE 4.00" in words
+    assert "Refused, point 6: <script>alert(1)</script>" in words
     assert "<script" not in text
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     names = {path.stem for path in (page.parent / "pictures").iterdir()}
@@ -325,7 +332,7 @@ def test_the_page_of_many_points_is_bounded_and_says_how(tmp_path, monkeypatch):
     """The table holds the ends and the undecided; a map some marks of every panel, the front all of its own."""
     factors = [1.0 + 0.01 * ((37 * i) % 200) for i in range(200)]  # 1 to 2.99, each once, in no order
     points = [({"a.x": f"{i % 20} mm", "a.y": f"{i // 20} mm"}, answer(f, mass=f)) for i, f in enumerate(factors)]
-    monkeypatch.setattr("alula.reports.figures.study.choice.MOST_MARKS", 50)
+    monkeypatch.setattr("alula.reports.study.choice.MOST_MARKS", 50)
     monkeypatch.setattr("alula.reports.figures.study.many.MOST_MARKS", 50)
     study = columns_of(tmp_path / "s", points)
     assert study.rows[0].position == factors.index(2.99)
@@ -334,17 +341,17 @@ def test_the_page_of_many_points_is_bounded_and_says_how(tmp_path, monkeypatch):
     shown = [row.position for row in study.rows if row.answer.verdict is Verdict.UNDECIDED]
     assert shown == undecided[: len(shown)]
     assert len(study.rows) == 3 * len(shown) <= 40
-    drawn = {name: (caption, figure) for name, _, caption, figure in chosen(study)}
+    drawn = {picture.name: picture for picture in pictures_of(list(picture_sections(study)))}
     for name, extra in (("map", 0), ("pareto", 120)):
-        caption, figure = drawn[name]
-        assert "of the 200 points" in caption
-        count = sum(len(line.get_xdata()) for line in figure.axes[0].lines if line.get_label() in LOOKS)
+        assert "of the 200 points" in drawn[name].caption
+        lines = drawn[name].draw().figure.axes[0].lines
+        count = sum(len(line.get_xdata()) for line in lines if line.get_label() in LOOKS)
         assert 50 <= count <= 50 + extra
     page = write_study(tmp_path / "s", tmp_path / "out").read_text(encoding="utf-8")
     assert "the first undecided ones, and the worst" in page
     few = columns_of(tmp_path / "few", points[:40])
     assert [row.position for row in few.rows] == list(range(40))
-    assert not any("points are drawn" in caption for _, _, caption, _ in chosen(few))
+    assert not any("points are drawn" in picture.caption for picture in pictures_of(list(picture_sections(few))))
 
 
 def test_a_legend_is_as_wide_as_its_picture_at_most():
@@ -359,18 +366,64 @@ def test_a_legend_is_as_wide_as_its_picture_at_most():
         assert 0.0 <= legend.get_window_extent().x0 < legend.get_window_extent().x1 <= figure.bbox.width
 
 
-def test_the_best_and_the_worst_are_those_of_all_points_sorted():
+def test_the_best_and_the_worst_are_those_of_all_points_sorted(tmp_path):
     """Against a sort of all; of equal points, the first."""
-    rng = np.random.default_rng(3)
-    rows = [Row(position=i, parameters={}, answer=answer(round(float(f), 1)), attempts=1)
-            for i, f in enumerate(rng.uniform(1.0, 4.0, 300))]  # fmt: skip
-    found = Chosen(7)
-    for row in rows:
-        found.add(row)
-    assert [r.position for r in found.best] == [
-        r.position for r in sorted(rows, key=lambda row: (-row.merit[0], -row.merit[1]))[:7]
+    factors = [round(float(factor), 1) for factor in np.random.default_rng(3).uniform(1.0, 4.0, 300)]
+    study = columns_of(tmp_path, [({"a": f"{i} mm"}, answer(factor)) for i, factor in enumerate(factors)], most=21)
+    with Store.reading(tmp_path) as store:
+        every = list(study_rows(store))
+    best = sorted(every, key=lambda row: (-row.merit[0], -row.merit[1]))[:7]
+    worst = sorted(every, key=lambda row: row.merit)[:7]
+    shown = [row.position for row in study.rows]
+    assert shown[:7] == [row.position for row in best]
+    assert shown[-7:] == [row.position for row in worst][::-1]
+    assert (study.extremes["best"].position, study.extremes["worst"].position) == (best[0].position, worst[0].position)
+
+
+def test_console_page_notebook_and_store_tell_the_same_of_a_study(tmp_path):
+    """Every number of the sections stands on console and page as it is written, and in the tables with its value."""
+    refused = VariantResult(state="refused", sentence="it must be positive")
+    points = [
+        ({"a": f"{i} mm", "b": f"{j} mm", "c": f"{k} mm", "pin": f"{i + 1} mm"}, answer(i**2 * j / k, 3.0 * i + j))
+        for i, j, k in product((1, 2, 3), (1, 2), (1, 2, 3))
     ]
-    assert [r.position for r in found.worst] == [r.position for r in sorted(rows, key=lambda row: row.merit)[:7]]
+    folder = store_of(tmp_path / "study", [*points, (points[0][0], refused)], link={"pin": "a + 1 mm"})
+    with Store.reading(folder) as store:
+        study, rows = read_study(store), list(study_rows(store))
+    sections = study_sections(study)
+    with Console(file=StringIO(), width=300, color_system=None) as console:
+        print_sections(sections, console)
+    printed = " ".join(console.file.getvalue().split())
+    page = Page(write_study(folder, tmp_path / "out").read_text(encoding="utf-8")).words
+    parts = [part for section in sections for part in parts_of(section.parts)]
+    for text in (*map(str, numbers_of(parts)), "Refused, point 18: it must be positive", "= a + 1 mm"):
+        assert " ".join(text.split()) in printed, text
+        assert " ".join(text.split()) in " ".join(page.split()), text
+    tables = tables_of(sections)
+    assert set(tables) == {"entries", "sensitivity", "limits", "points"}
+    assert [row["how many"] for row in tables["entries"]] == [3.0, 2.0, 3.0, None]
+    assert tables["limits"] == [{"check": "safety factor of AE", "points": 18.0}]
+    for row, told in zip(rows[:-1], tables["points"], strict=False):
+        found = row.answer.numbers[0]
+        assert (told["point"], told["verdict"], told["a"]) == (row.position, row.outcome, row.parameters["a"])
+        assert (told["value"], told["value low"], told["value high"]) == (found.value, found.low, found.high)
+        assert (told["margin"], told["limit"], told["mass [g]"]) == (row.margin, 2.0, row.mass)
+    assert [row["standardised coefficient"] for row in tables["sensitivity"]] == pytest.approx(
+        sorted(regression(study.parameters, study.margin).coefficients, key=abs, reverse=True)
+    )
+    [command] = [part.command for part in parts if isinstance(part, Command)]
+    assert "--set 'a=3 mm' --set 'b=2 mm' --set 'c=1 mm'" in command
+    asked = points_table(rows, ["mass of the linkage [g]"]).records
+    assert [row["mass of the linkage [g]"] for row in asked] == [row.mass for row in rows]
+
+
+def test_a_study_without_a_result_yet_is_told_so(tmp_path):
+    folder = tmp_path / "empty"
+    with Store.writing(folder) as store:
+        plan = {"case": "x", "analysis": "check", "fidelity": "beam", "set": {}, "vary": {}, "link": {}}
+        store.begin({"plan": plan, "versions": ["0.1.0", "4.13.1"], "points": 7}, ())
+    shown = programs.inside("study", "show", "empty", folder=tmp_path)
+    assert (shown.returncode, "0 of 7 points: none yet." in shown.stdout) == (0, True), shown.stderr
 
 
 def test_mistakes_are_one_sentence(tmp_path):

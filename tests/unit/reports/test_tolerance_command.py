@@ -1,11 +1,19 @@
 """``alula tolerance`` as a user meets it: what it prints and writes, and one sentence per mistake."""
 
 import json
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import programs
 import pytest
+from rich.console import Console
+
+import alula
+from alula.reports.renderers.console import print_sections
+from alula.reports.renderers.record import as_record
+from alula.reports.sections.section import Number, numbers_of, parts_of
+from alula.reports.study.tolerance import tolerance_sections
 
 LOAD = "load_cases.lift.forces.0=10 %"
 ONE_LINK = 'checks={strength={type="safety-factor",minimum=1.5,links=["crank"]}}'
@@ -53,3 +61,36 @@ def test_mistakes_are_told_in_one_sentence(arguments: tuple[str, ...], words: li
     assert done.returncode == 2
     assert all(word in done.stderr for word in words), done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_console_record_and_notebook_tell_the_same_of_samples() -> None:
+    """Two checks of one number are named apart; a probability near 1 is not told as certain."""
+    case = alula.read_case("four-bar").with_values({
+        "checks": {
+            "strength": {"type": "safety-factor", "minimum": 6.0, "links": ["crank"]},
+            "more": {"type": "safety-factor", "minimum": 9.0, "links": ["crank"]},
+        }
+    })  # fmt: skip
+    report = alula.tolerance(case, {"load_cases.lift.forces.0": "10 %"}, samples=200, accuracy="10 %")
+    sections = tolerance_sections(report.result)
+    record, rows = as_record(sections), list(report.table())
+    assert [row["number"] for row in rows] == list(report.numbers)
+    assert {"strength: safety factor of crank, lift", "more: safety factor of crank, lift"} <= set(report.numbers)
+    for told, kept in zip(rows, record["numbers"], strict=True):
+        assert (told["nominal"], told["median"]) == (kept["nominal"][0], kept["percentiles"]["50"])
+        assert told["limit"] == kept["limit"]
+        assert told["passes"] == (kept["certain"] and kept["certain"]["value"])
+    [first, *_] = report.table("causes")
+    assert first["in all"] == pytest.approx(max(record["numbers"][-1]["total"]), abs=0.2)
+    with Console(file=StringIO(), width=200, color_system=None) as console:
+        print_sections(sections, console)
+    printed = console.file.getvalue().replace("\xa0", " ")
+    parts = [part for section in sections for part in parts_of(section.parts)]
+    assert all(str(number).replace("\xa0", " ") in printed for number in numbers_of(parts))
+    assert str(Number(0.99999, probable=True)) == "> 99.99 %"
+    assert [str(Number(share, probable=True)) for share in (0.0, 1e-6, 0.5, 1.0)] == [
+        "0 %",
+        "< 0.01 %",
+        "50 %",
+        "100 %",
+    ]
