@@ -36,7 +36,7 @@ from alula.reports.sections.section import (
 )
 from alula.reports.sentences import told
 from alula.reports.turnable.moving import ENVELOPE_CAPTION
-from alula.reports.words.numbers import fixed
+from alula.reports.words.numbers import fixed, sentence
 from alula.reports.words.wording import besides, decision
 
 UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
@@ -126,12 +126,14 @@ def _motion(result: EnvelopeResult) -> Section:
     """Return which poses were evaluated, and the warnings."""
     motion, ends = result.moved.motion, np.degrees(result.angles[[0, -1]])
     text = say(
-        f"{motion.coordinate} from {{first}}° to {{last}}°, driven at {result.drive.link}; "
+        f"From {motion.coordinate} = {{first}}° to {{last}}°, driven at {result.drive.link}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated",
         first=Number(float(ends[0]), stated=True),
         last=Number(float(ends[1]), stated=True),
     )
-    warnings = (Items(tuple(told(warning) for warning in result.warnings), "warnings"),) if result.warnings else ()
+    warnings = (
+        (Items(tuple(sentence(told(warning)) for warning in result.warnings), "warnings"),) if result.warnings else ()
+    )
     idle = (Text(f"Links without load: {', '.join(result.idle)}."),) if result.idle else ()
     return Section(
         key="motion",
@@ -163,7 +165,7 @@ def _links(result: EnvelopeResult) -> Section:
 
         return envelope_figure(result)
 
-    every = [(link, found) for link in result.links.values() for found in link.load_cases.values()]
+    every = [(name, link, found) for name, link in result.links.items() for found in link.load_cases.values()]
     table = Table(
         key="links",
         columns=(
@@ -179,7 +181,7 @@ def _links(result: EnvelopeResult) -> Section:
         ),
         rows=tuple(
             (
-                link.link,
+                name,
                 found.name,
                 Number(found.safety_factor),
                 link.measure,
@@ -190,7 +192,7 @@ def _links(result: EnvelopeResult) -> Section:
                 Number(None if found.fatigue is None or found.fatigue.repetitions is None
                        else found.fatigue.repetitions.value),
             )
-            for link, found in sorted(every, key=lambda pair: pair[1].severity)
+            for name, link, found in sorted(every, key=lambda row: row[2].severity)
         ),
         caption="Least safety factor over the motion",
     )  # fmt: skip

@@ -49,7 +49,7 @@ def range_text(moved: CaseMotion) -> Text:
     """
     motion = moved.motion
     first, last = (Number(float(motion.told(motion.angles[i])), stated=True) for i in (0, -1))
-    told = f"{motion.coordinate} from {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
+    told = f"From {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
     told += f"{len(motion.angles)} poses"
     facts: dict[str, object] = {"first": first, "last": last}
     if motion.times is not None:
