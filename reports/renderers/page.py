@@ -8,7 +8,7 @@ from typing import Any
 
 from alula.geometry.base.version import alula_version
 from alula.reports.page.policy import sealed
-from alula.reports.sections.markup import as_html
+from alula.reports.sections.markup import as_html, code
 from alula.reports.sections.section import Beside, Cell, Column, Folded, Group, Mark, Part, Picture, Section, parts_of
 from alula.reports.turnable.script import viewer
 
@@ -52,6 +52,26 @@ class Page:
     def every(self) -> tuple[Section, ...]:
         """All sections."""
         return (*self.first, *self.opening, *self.sections)
+
+
+def page_footer(name: str, tables: str) -> tuple[str, str]:
+    """Return what stands below a page.
+
+    Parameters
+    ----------
+    name : str
+        Of the case.
+    tables : str
+        File of the numbers besides ``result.json``.
+
+    Returns
+    -------
+    tuple of (str, str)
+    """
+    return (
+        f"alula {alula_version()}. Case {code(name)}.",
+        f"All numbers as data: {code('result.json')} and {code(tables)} in the same folder.",
+    )
 
 
 def as_page(

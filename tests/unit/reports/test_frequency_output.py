@@ -204,8 +204,10 @@ def test_a_notebook_has_table_and_pictures():
     report = alula.frequencies(lever(), poses=3)
     band = report.lowest["turning"]
     first = report.table()[0]
-    told = (first["frequency [Hz]"], first["low"], first["high"])
+    told = (first["frequency [Hz]"], first["frequency [Hz] low"], first["frequency [Hz] high"])
     assert told == pytest.approx((band.value, band.low, band.high), rel=1e-9)
+    with pytest.warns(DeprecationWarning, match=r"the column 'low' is called 'frequency \[Hz\] low' now"):
+        assert first["low"] == first["frequency [Hz] low"]
     assert "driving frequency of 10 Hz" in str(report)
     assert report.plot_campbell("turning").png == report.plot_campbell().png
     assert report.plot_shapes().png.startswith(b"\x89PNG")
