@@ -150,7 +150,7 @@ def drawn(picture: Any, alt: str) -> str:
     Parameters
     ----------
     picture : object
-        A drawing, which is set as SVG, or the bytes of a PNG or WebP file.
+        A drawing, or the bytes of a PNG or WebP file.
     alt : str
         What it shows.
 
@@ -158,8 +158,8 @@ def drawn(picture: Any, alt: str) -> str:
     -------
     str
     """
-    if hasattr(picture, "svg"):
-        return str(picture.svg(alt))
+    if hasattr(picture, "element"):
+        return str(picture.element(alt))
     return f'<img src="{data_uri(picture)}" alt="{as_html(alt)}">'
 
 

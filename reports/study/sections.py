@@ -12,7 +12,20 @@ import numpy as np
 from alula.loads.case.case_file import built_in_cases
 from alula.reports.figures.study.points import OUTCOMES, Parameter
 from alula.reports.sections.markup import bold, code, entry
-from alula.reports.sections.section import Cell, Column, Command, Items, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import (
+    Cell,
+    Column,
+    Command,
+    Items,
+    Mark,
+    Number,
+    Part,
+    Section,
+    Table,
+    Text,
+    say,
+    words,
+)
 from alula.reports.study.choice import picture_sections
 from alula.reports.study.columns import StudyColumns
 from alula.reports.study.rows import Row, checked, title
