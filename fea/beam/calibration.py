@@ -11,16 +11,17 @@ from functools import cache
 from importlib.resources import files
 
 from alula.fea.beam.critical_locations import LocationKind
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import Body, PartKind, clamped_end, patch_span
 from alula.geometry.bodies.eyes import eye_reach
 
 Interval = tuple[float, float]
 _GAPS = {
-    "gap between eyes over width": "its eyes",
-    "gap at holes over width": "a hole and its neighbour",
-    "gap at a loaded end over width": "a loaded end and the nearest eye or hole",
+    "gap between eyes over width": "eyes_too_close",
+    "gap at holes over width": "holes_too_close",
+    "gap at a loaded end over width": "loaded_end_too_close",
 }
-"""Proportions that are distances between neighbours, with who they are."""
+"""Proportions that are distances between neighbours, with the reason where these are too near."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,8 +76,8 @@ class Calibration:
     principal: Mapping[LocationKind, Factors]
     displacement: Factors
 
-    def outside(self, body: Body, nu: float) -> str:
-        """Say which proportion of a link lies outside of what was measured.
+    def outside(self, body: Body, nu: float) -> Reason | None:
+        """Return which proportion of a link lies outside of what was measured.
 
         Parameters
         ----------
@@ -87,20 +88,20 @@ class Calibration:
 
         Returns
         -------
-        str
-            For people; "" where all proportions lie within.
+        Reason or None
+            None where all proportions lie within.
         """
         if body.part.fillet_radius == 0.0:
-            return "its junctions are sharp, where stress has no limit"
+            return reason("sharp_junctions")
         if any(pin.y != 0.0 for pin in body.pins):
-            return "a pin lies off its axis"
+            return reason("pin_off_axis")
         for name, value in proportions(body, nu).items():
             low, high = self.ranges.get(name, (1.0, 0.0))
             if not low * (1.0 - 1e-6) <= value <= high * (1.0 + 1e-6):
                 if name in _GAPS:
-                    return f"{_GAPS[name]} are too close for the hand formula (gap {value:.3g} widths, needs {low:.3g})"
-                return f"its {name} {value:.3g} is outside the calibrated range {low:.3g} to {high:.3g}"
-        return ""
+                    return reason(_GAPS[name], gap=value, needed=low)
+                return reason("outside_calibration", proportion=name, value=value, low=low, high=high)
+        return None
 
 
 def proportions(body: Body, nu: float) -> dict[str, float]:
@@ -161,8 +162,8 @@ def calibrations() -> Mapping[str, Calibration]:
     return {shape: _parsed(entry) for shape, entry in data.items()}
 
 
-def uncalibrated(body: Body, nu: float) -> str:
-    """Say why hand calculation is not calibrated for a link.
+def uncalibrated(body: Body, nu: float) -> Reason | str | None:
+    """Return why hand calculation is not calibrated for a link.
 
     Parameters
     ----------
@@ -173,25 +174,25 @@ def uncalibrated(body: Body, nu: float) -> str:
 
     Returns
     -------
-    str
-        For people; "" where it is calibrated.
+    Reason, str or None
+        The part's own text where it has one; None where it is calibrated.
     """
     if body.part.shape == "disc":
-        return "a disc is as wide as it is long, where beam theory does not hold"
+        return reason("disc_is_no_beam")
     if not body.part.is_beam:
-        return f"no part of shape {body.part.shape} was measured"
+        return reason("shape_not_measured", shape=body.part.shape)
     if any(pin.slot > 0.0 for pin in body.pins):
-        return "it has a slot"
+        return reason("has_slot")
     if any(pin.fork is not None for pin in body.pins):
-        return "it has a fork"
+        return reason("has_fork")
     if any(pin.ring is not None for pin in body.pins):
-        return "it has an eye of sizes of its own"
+        return reason("has_eye_of_own_sizes")
     if clamped_end(body) is not None:
-        return "it is clamped, and what the edge of a clamp adds was not measured"
+        return reason("clamp_not_measured")
     if body.part.unmeasured:
         return body.part.unmeasured
     if body.part.shape not in calibrations():
-        return f"no part of shape {body.part.shape} was measured"
+        return reason("shape_not_measured", shape=body.part.shape)
     return calibration_of(body.part).outside(body, nu)
 
 

@@ -20,6 +20,7 @@ from alula.fea.beam.piecewise import Side
 from alula.fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import extent, patch_span
 from alula.geometry.bodies.eyes import eye_reach
 from alula.geometry.parts.part import Body, HoleRow, Pin
@@ -35,8 +36,8 @@ class CriticalLocation:
     ----------
     kind : Kind
         Of place.
-    name : str
-        For people: "the eye at A".
+    name : Reason or str
+        Such as ``the eye at A``.
     x : float
         Station of its middle [mm].
     low : float
@@ -48,7 +49,7 @@ class CriticalLocation:
     """
 
     kind: LocationKind
-    name: str
+    name: Reason | str
     x: float
     low: float
     high: float
@@ -306,5 +307,5 @@ def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> C
         transverse = rim_shear(section, beam.poisson)[1 if row.along == "y" else 0] * abs(shear)
     rim = tension * abs(n) / section.area + bending * abs(opened) * at_rim + 4.0 * (stress.torsion + transverse)
     estimate = max(rim, stress.equivalent, abs(n) / section.area + abs(across) * aside + rim / 3.0)
-    return CriticalLocation(kind="hole", name=f"hole at x = {x:g} mm of row {number + 1}", x=x, low=x - row.diameter,
+    return CriticalLocation(kind="hole", name=reason("hole_of_row", x=x, row=number + 1), x=x, low=x - row.diameter,
                 high=x + row.diameter, estimate=float(estimate))  # fmt: skip

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.piecewise import Piecewise, divided
 from alula.fea.beam.section_stress import SectionStress, section_stress
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import Body
 from alula.geometry.bodies.cut_section import CutSection
 
@@ -231,19 +232,19 @@ def beam_sections(body: Body) -> tuple[CutSection, ...]:
     return tuple(cut for cut in body.cuts if not _against(body, cut))
 
 
-def _against(body: Body, cut: CutSection) -> str:
-    """Say what speaks against beam theory at a section; "" where nothing does."""
+def _against(body: Body, cut: CutSection) -> Reason | None:
+    """Return what speaks against beam theory at a section; None where nothing does."""
     size = max(cut.width, cut.height)
     reaches = [(pin.x, body.across(pin) / 2.0) for pin in body.pins] + [(end.x, end.patch) for end in body.ends]
     if cut.pieces > 1:
-        return "its sections are in several pieces"
+        return reason("sections_in_pieces")
     for other in body.cuts:
         step = abs(other.x - cut.x)
         if 0.0 < step < 1.5 * _pitch(body) and _steep(cut, other, step):
-            return "its sections change fast along the line of its pins, or run off it"
+            return reason("sections_change_fast")
     if any(abs(cut.x - x) < reach + size for x, reach in reaches):
-        return "its pins are too near one another for its depth"
-    return ""
+        return reason("pins_too_near_for_depth")
+    return None
 
 
 def _pitch(body: Body) -> float:
@@ -258,32 +259,25 @@ def _steep(one: CutSection, other: CutSection, step: float) -> bool:
     return bool(places.max() > STEEPEST * step or abs(one.area - other.area) > STEEPEST * area)
 
 
-def cut_remark(body: Body) -> str:
-    """Say where the hand calculation of a part from a file holds.
+def cut_remark(body: Body) -> Reason | None:
+    """Return where the hand calculation of a part from a file holds.
 
     Parameters
     ----------
     body : Body
-        The body; of a part that alula draws nothing is said.
+        The body.
 
     Returns
     -------
-    str
-        For people.
+    Reason or None
+        None of a part that alula draws.
     """
     cuts = body.cuts
     if not cuts:
-        return ""
+        return None
     reasons = [_against(body, cut) for cut in cuts]
-    held = [cut.x for cut, reason in zip(cuts, reasons, strict=True) if not reason]
+    held = [cut.x for cut, why in zip(cuts, reasons, strict=True) if not why]
     if not held:
-        return (
-            f"the part is no beam: {max(reasons, key=reasons.count)}; hand calculation by its sections at {len(cuts)} "
-            "stations is an estimate that decides nothing"
-        )
-    where = f"x = {held[0]:.3g} to {held[-1]:.3g} mm" if len(held) > 1 else f"x = {held[0]:.3g} mm"
-    said = f"hand calculation cuts the part at {len(cuts)} stations between its pins and decides nothing; beam theory "
-    said += f"holds at {len(held)} of them ({where})"
-    if any(cut.plain is None for cut in cuts):
-        said += "; sections that are no rectangle, rod or tube count with their mean shear stress"
-    return said
+        return reason("cut_part_is_no_beam", why=max(reasons, key=reasons.count), stations=len(cuts))
+    odd = any(cut.plain is None for cut in cuts)
+    return reason("cut_part", stations=len(cuts), held=len(held), ends=(held[0], held[-1]), odd_sections=odd)

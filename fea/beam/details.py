@@ -34,6 +34,7 @@ from alula.fea.beam.piecewise import Piecewise
 from alula.fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
 from alula.fea.beam.theory import Floats
 from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import extent
 from alula.geometry.parts.part import Body, Pin, Section, rectangle
 
@@ -49,19 +50,19 @@ class Detail:
     Attributes
     ----------
     name : str
-        For people.
+        Such as ``the slot at A``.
     x : float
         Station [mm].
     stress : SectionStress
         The largest.
-    remark : str
+    remark : Reason
         What its number holds.
     """
 
     name: str
     x: float
     stress: SectionStress
-    remark: str
+    remark: Reason
 
 
 def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.3) -> tuple[Detail, ...]:
@@ -96,8 +97,8 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
     return tuple(found)
 
 
-def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
-    """Say what hand calculation found at the details, and where its section is but an estimate.
+def remarks(body: Body, found: Sequence[Detail]) -> tuple[Reason | str, ...]:
+    """Return what hand calculation found at the details, and where its section is but an estimate.
 
     Parameters
     ----------
@@ -108,25 +109,21 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
 
     Returns
     -------
-    tuple of str
-        Sentences for people.
+    tuple of Reason or str
+        A text is the part's own.
     """
-    said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
+    said: list[Reason | str] = [
+        reason("detail_bears", name=d.name, stress=d.stress.equivalent, x=d.x, remark=d.remark) for d in found
+    ]
     if any(pin.slot > 0.0 for pin in body.pins):
-        said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
+        said.append(reason("pin_on_slot_flank"))
     said += [told for told in (body.part.by_hand, cut_remark(body)) if told]
-    open_ones = [f"{pin.name} has {body.ring(pin).share:.0%}" for pin in body.pins if body.ring(pin).share < 1.0]
+    open_ones = tuple((pin.name, body.ring(pin).share) for pin in body.pins if body.ring(pin).share < 1.0)
     if open_ones:
-        said.append(
-            f"bores are not round all the way ({', '.join(open_ones)} of its circle): pressure acts on the rest"
-        )
+        said.append(reason("open_bores", bores=open_ones))
     off = [pin for pin in body.pins if body.ring(pin).off_plane]
     if off:
-        places = ", ".join(f"{pin.name} at z = {body.ring(pin).middle:.4g} mm" for pin in off)
-        said.append(
-            f"the middles of bores lie off the plane of forces ({places}): there the couple of the force about the "
-            "middle is a pressure linear along the bore"
-        )
+        said.append(reason("bores_off_plane", bores=tuple((pin.name, body.ring(pin).middle) for pin in off)))
     return tuple(said)
 
 
@@ -215,16 +212,15 @@ def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise, poisson: float
     stress = section_stress(flank, own, poisson)
     stress = replace(stress, axial=float(axial), bending=abs(stress.axial - float(axial)) + stress.bending)
     slender = length / height
-    remark = f"net section of two flanks {height:.3g} mm high, and their own bending"
-    if slender < SLENDER:
-        remark += f"; an estimate, since they are only {slender:.2g} times as long as high"
+    kind = "net_section_of_flanks" if slender >= SLENDER else "net_section_of_stocky_flanks"
+    remark = reason(kind, height=height, slender=slender)
     return Detail(name=f"the slot at {pin.name}", x=worst_x, stress=stress, remark=remark)
 
 
 def _through(body: Body, pin: Pin, forces: Piecewise, poisson: float) -> Detail:
     table = [_inside(forces, pin.x, side) for side in ("before", "after")]
     found = [holed_tube_stress(body.part.section, pin.diameter, pin.y, row, poisson) for row in table]
-    remark = "net section of the tube's walls, without the stress concentration at the hole"
+    remark = reason("net_section_of_walls")
     worst = max(found, key=lambda stress: stress.equivalent)
     return Detail(name=f"the pin hole at {pin.name}", x=pin.x, stress=worst, remark=remark)
 
@@ -257,7 +253,7 @@ def _fork(body: Body, pin: Pin, load: PinLoad, torque: float, poisson: float) ->
         own[2] = (load.wrench[5] + torque) * length / ring.thickness
         moment = own + np.cross(along * pin.fork.depth, force)
         found.append(section_stress(cheek, np.concatenate([axes @ force, axes @ moment]), poisson))
-    remark = "a cheek built in at the root of the gap, without the stress concentration there"
+    remark = reason("cheek_built_in")
     worst = max(found, key=lambda stress: stress.equivalent)
     return Detail(name=f"the fork at {pin.name}", x=pin.x, stress=worst, remark=remark)
 
@@ -271,5 +267,5 @@ def _arm(body: Body, pin: Pin, foot: tuple[float, float], load: PinLoad, poisson
     root = start + along * body.arm_root(pin)
     moment = load.wrench[3:] + np.cross(end - root, load.wrench[:3])
     stress = section_stress(part.arm_section, np.concatenate([axes @ load.wrench[:3], axes @ moment]), poisson)
-    remark = "its own section at the eye or wall from which it starts, under the pin's force alone"
+    remark = reason("section_of_arm")
     return Detail(name=f"the arm to {pin.name}", x=foot[0], stress=stress, remark=remark)

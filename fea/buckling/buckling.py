@@ -37,6 +37,7 @@ from alula.fea.beam.column_factor import AxialForce, column_factors
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.holding import Plane, columns, holding, of_cuts
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -229,11 +230,16 @@ def buckling_outcomes(
     for link, beam in beams.items():
         if case.part_of(link).is_beam and (found := column(case, link, beam)) is not None:
             outcome = column_outcome(case, load_case, link, found, moved)
-            yield outcome.because(outcome.reason + beyond_strength({link: beam}))
+            yield outcome.because(together(outcome.reason, beyond_strength({link: beam})))
 
 
 def column_outcome(
-    case: Case, load_case: str, link: str, found: Column, moved: LargeDisplacement | None = None, where: str = ""
+    case: Case,
+    load_case: str,
+    link: str,
+    found: Column,
+    moved: LargeDisplacement | None = None,
+    where: Reason | None = None,
 ) -> CheckOutcome:
     """Return the outcome of a link in compression.
 
@@ -248,19 +254,19 @@ def column_outcome(
     found : Column
     moved : LargeDisplacement, optional
         What became of the linkage in large displacement; left out over a motion, whose links are taken as rigid.
-    where : str, optional
-        Of several poses the one of ``found``, for people.
+    where : Reason, optional
+        Of several poses the one of ``found``.
 
     Returns
     -------
     CheckOutcome
     """
     band = factor_band(case, load_case, link, found.value, (found.least, found.most))
-    pins = " and ".join(f"{x:.4g}" for x in found.outermost)
-    held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
-    load = f"largest compression {found.compression:.3g} N{where}; buckling at {band.value:.3g} times that, {held}"
+    load = reason(
+        "compressed_column", compression=found.compression, where=where, factor=band.value, pins=found.outermost
+    )
     outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, load)
-    return outcome.because(load + judgement(outcome, moved))
+    return outcome.because(reason("buckling_judged", found=load, judgement=judgement(outcome, moved)))
 
 
 def factor_band(
@@ -291,7 +297,7 @@ def factor_band(
         high=ends[1] / compliance.low,
         sources=(
             *compliance.sources,
-            Source(kind=SourceKind.IMPERFECTION, detail="bending that grows with compression"),
+            Source(kind=SourceKind.IMPERFECTION, detail=reason("bending_grows")),
             Source(kind=SourceKind.RESTRAINT),
             *sources,
         ),
@@ -299,8 +305,8 @@ def factor_band(
     return load_scatter(case, load_case).inverse.on(band)
 
 
-def judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
-    """Say, for the end of a reason, what follows from a link's buckling factor.
+def judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> Reason | None:
+    """Return, for the end of a reason, what follows from a link's buckling factor.
 
     Parameters
     ----------
@@ -310,25 +316,25 @@ def judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
 
     Returns
     -------
-    str
+    Reason or None
+        Its sentence begins with what separates it from the one before; None where nothing follows.
     """
     band, verdict = outcome.value, outcome.verdict
     if verdict is Verdict.FAIL:
-        return f", and at {band.high:.3g} times with the stiffest joints, so it buckles"
+        return reason("buckles_with_stiffest_joints", most=band.high)
     if verdict is Verdict.UNDECIDED and band.value < 1.0:
-        return f"; stiffer joints can raise this to {band.high:.3g} times"
+        return reason("stiffer_joints_raise_it", most=band.high)
     if verdict is Verdict.UNDECIDED:
-        return f"; within {LEAST_LINEAR:g} times the load, geometric imperfections grow too much"
+        return reason("imperfections_grow", within=LEAST_LINEAR)
     if band.value < LEAST_FACTOR and moved is not None and moved.state == "small":
-        return f"; the linkage buckles at {moved.buckling:.3g} times its load, so bending grows little"
+        return reason("bending_grows_little", linkage=moved.buckling)
     if band.value < LEAST_FACTOR and (moved is None or moved.state in ("deformed", "off", "unknown")):
-        times = 1.0 / (1.0 - 1.0 / band.value)
-        return f"; bending is up to {times:.3g} times that of linear theory; stress and deflection include this"
-    return ""
+        return reason("bending_has_grown", times=1.0 / (1.0 - 1.0 / band.value))
+    return None
 
 
-def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
-    """Say, for the end of a reason, which link bears more than its strength by beam theory; nothing where none does.
+def beyond_strength(beams: Mapping[str, BeamCheck]) -> Reason | None:
+    """Return which link bears more than its strength by beam theory.
 
     Parameters
     ----------
@@ -337,13 +343,11 @@ def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
 
     Returns
     -------
-    str
+    Reason or None
+        None where none does.
     """
     link, worst = max(beams.items(), key=lambda item: item[1].worst.equivalent / item[1].strength)
     stress = worst.worst.equivalent
     if stress <= worst.strength:
-        return ""
-    return (
-        f"; all this is elastic and void once material gives way, and {link} bears {stress:.3g} MPa by beam theory "
-        f"where its strength is {worst.strength:.3g} MPa"
-    )
+        return None
+    return reason("beyond_strength", link=link, stress=stress, strength=worst.strength)

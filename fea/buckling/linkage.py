@@ -16,6 +16,7 @@ from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.buckling import NAME as BUCKLING
 from alula.fea.buckling.buckling import beyond_strength
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
@@ -23,7 +24,7 @@ from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, L
 from alula.fea.nonlinear.stability import SNAP, growth
 
 NAME = "large displacement"
-NO_EQUILIBRIUM = "the linkage gives way, so there is no equilibrium to judge; numbers are those of the undeformed pose"
+NO_EQUILIBRIUM = reason("no_equilibrium")
 
 
 def linkage_outcomes(
@@ -60,21 +61,21 @@ def linkage_outcomes(
     elif value is not None and least is not None and own[0] < least:
         how = _by_itself(weakest, own[0])
         found = by_linear_theory(load_case, own[0], max(own[0], min(value, own[1])), moved.scatter, how)
-        yield found.because(found.reason + beyond_strength(beams))
+        yield found.because(together(found.reason, beyond_strength(beams)))
     elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
-        how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
+        how = reason("unstable_by_linear_theory", factor=value)
         if least < value:
-            how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
+            how = reason("dead_point_by_linear_theory", factor=least)
         found = by_linear_theory(load_case, least, value, moved.slack, how)
-        yield found.because(found.reason + beyond_strength(beams))
+        yield found.because(together(found.reason, beyond_strength(beams)))
 
 
-def _by_itself(link: str, factor: float) -> str:
-    return f"link {link} by itself buckles at {factor:.3g} times its load, as a solid"
+def _by_itself(link: str, factor: float) -> Reason:
+    return reason("link_buckles_by_itself", link=link, factor=factor)
 
 
 def by_linear_theory(
-    load_case: str, least: float, factor: float, slack: Scatter, how: str, remedy: str = "follow its deformed shape"
+    load_case: str, least: float, factor: float, slack: Scatter, how: Reason, remedy: Reason | None = None
 ) -> CheckOutcome:
     """Return the outcome of the linkage by its linear frame.
 
@@ -90,10 +91,10 @@ def by_linear_theory(
         On all loads, at which the linear frame becomes unstable.
     slack : Scatter
         Of load over stiffness.
-    how : str
-        What happens at ``least``, for people.
-    remedy : str, optional
-        What tells more, for people.
+    how : Reason
+        What happens at ``least``.
+    remedy : Reason, optional
+        What tells more; by default following its deformed shape.
 
     Returns
     -------
@@ -103,15 +104,16 @@ def by_linear_theory(
         value=least,
         low=least / SNAP / slack.high,
         high=factor / slack.low,
-        sources=(*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high")),
+        sources=(*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail=reason("linear_theory_too_high"))),
     )
     found = CheckOutcome.of(BUCKLING, LINKAGE, load_case, Quantity.BUCKLING_FACTOR, band, 1.0, how)
     if found.verdict is Verdict.FAIL:
-        return found.because(f"{how}, so the linkage gives way")
+        return found.because(reason("so_linkage_gives_way", how=how))
     if found.verdict is Verdict.UNDECIDED:
-        return found.because(f"{how}; it may snap through at {least / SNAP:.3g} times its load: {remedy}")
+        remedy = remedy or reason("follow_deformed_shape")
+        return found.because(reason("may_snap_through", how=how, factor=least / SNAP, remedy=remedy))
     if least < LEAST_FACTOR:
-        return found.because(f"{how}; displacements are up to {growth(least):.3g} times those of linear theory")
+        return found.because(reason("displacements_grow", how=how, times=growth(least)))
     return found
 
 
@@ -145,17 +147,20 @@ def _rests_on_it(outcome: CheckOutcome) -> bool:
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
     if outcome.verdict is Verdict.PASS or (outcome.subject.kind == "point" and outcome.value.unknowable):
         return outcome.not_applicable(NO_EQUILIBRIUM)
-    return outcome.because(f"{outcome.reason}; {NO_EQUILIBRIUM}")
+    return outcome.because(together(outcome.reason, NO_EQUILIBRIUM))
 
 
-def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:
+def _followed(load_case: str, moved: LargeDisplacement, beyond: Reason | None) -> CheckOutcome:
     """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
     share = moved.held_share
     found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, share, 1.0, share.without)
-    open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
-    if moved.softness is not None:
-        soft = moved.softness.value
-        open_end += f"; by their solids the links are {soft:.3g} times as soft as the plain beams of that shape"
-    informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
-    return found.because(moved.sentence + open_end + informs + beyond)
+    return found.because(
+        together(
+            moved.reason,
+            found.reason if found.verdict is Verdict.UNDECIDED else None,
+            None if moved.softness is None else reason("softer_by_solids", times=moved.softness.value),
+            reason("linear_buckling_factor", factor=moved.buckling) if linear else None,
+            beyond,
+        )
+    )

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -42,7 +43,7 @@ class SolidHolding:
         Where it may be built in and free elsewhere, each by itself; empty where its joints stay in place.
     most : ndarray or None
         Joints hold it as well as they can; None where that is not known.
-    words : str
+    words : Reason
         How ``value`` holds it, for people.
     """
 
@@ -50,7 +51,7 @@ class SolidHolding:
     value: Real
     alone: tuple[Real, ...]
     most: Real | None
-    words: str
+    words: Reason
 
 
 def solid_holding(case: Case, link: str) -> SolidHolding:
@@ -84,7 +85,7 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     kept = {point for name, point in joints.items() if linkage.joints[name].bonded or name == drive}
     most = [held.kept(held.surface(p), ALL if p in kept else ALL[:TURN_Z]) for p in joints.values()]
     if support is not None:
-        value, words = held.kept(f"end:{support}", ALL), f"built in at {support}"
+        value, words = held.kept(f"end:{support}", ALL), reason("built_in_at", place=support)
         return SolidHolding(places=places, value=value, alone=(), most=np.vstack([*most, value]), words=words)
     value, words = held.in_place(held_joints)
     return SolidHolding(
@@ -117,13 +118,13 @@ class _Conditions:
         """Conditions (k, 6 p) that these motions of a place are zero."""
         return np.array([self.row((name, np.eye(6)[motion])) for motion in motions])
 
-    def in_place(self, points: list[str]) -> tuple[Real, str]:
-        """Conditions that take the rigid motions by bores that stay where they are, and the words for it."""
+    def in_place(self, points: list[str]) -> tuple[Real, Reason]:
+        """Conditions that take the rigid motions by bores that stay where they are, and the reason that tells it."""
         at = {point: self._places[self.surface(point)][:2] for point in points}
         pairs = list(itertools.combinations(points, 2))
         lengths = [float(np.linalg.norm(at[b] - at[a])) for a, b in pairs]
         if not pairs or max(lengths) <= 1e-9 * float(np.abs(list(self._places.values())).max()):
-            return self.kept(self.surface(points[0]), ALL), f"built in at {points[0]}"
+            return self.kept(self.surface(points[0]), ALL), reason("built_in_at", place=points[0])
         first, last = pairs[int(np.argmax(lengths))]
         along = (at[last] - at[first]) / max(lengths)
         one, other = self.surface(first), self.surface(last)
@@ -131,11 +132,11 @@ class _Conditions:
         third = max(points, key=off.__getitem__)
         if off[third] > OFF_LINE * max(lengths):
             last_row = self.row((self.surface(third), np.eye(6)[2]))
-            words = f"in place at pins {first} and {last}, out of the plane at {third} too, and free to turn there"
+            words = reason("on_pins_and_third", first=first, last=last, third=third)
         else:
             turn = [0.0, 0.0, 0.0, *along, 0.0]
             last_row = self.row((one, turn), (other, turn))
-            words = f"in place at pins {first} and {last} and free to turn there"
+            words = reason("on_pins", first=first, last=last)
         rows = [
             *self.kept(one, (0, 1, 2)),
             self.row((other, [-along[1], along[0], 0.0, 0.0, 0.0, 0.0])),

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.links.fidelity import DecidedLink, Decision, HandBands, left_out
@@ -22,9 +23,9 @@ from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.forks import of_pair
 
-BEAM_ALONE = "beam theory without stress concentration"
-NO_BEAM = "no beam stands for this link; run the solid model (--fidelity solid)"
-IDLE = DecidedLink(decision=Decision(model="beam", why="nothing acts on it", next_cost=""))
+BEAM_ALONE = reason("beam_without_concentration")
+NO_BEAM = reason("no_beam")
+IDLE = DecidedLink(decision=Decision(model="beam", why=reason("idle_link"), next_cost=None))
 
 
 def link_result(
@@ -148,7 +149,7 @@ def _hand_result(
         von_mises, principal, moved = bands.von_mises, bands.principal, bands.displacement
         rows = sorted(bands.locations, key=lambda row: row.location.x)
         x = rows[first_largest([(r.principal if material.brittle else r.von_mises).high for r in rows])].location.x
-        notes: tuple[str, ...] = ()
+        notes: tuple[Reason | str, ...] = ()
     elif hand.check.without:
         von_mises = principal = moved = Band.unknown(NO_BEAM)
         notes = hand.remarks
@@ -157,8 +158,8 @@ def _hand_result(
         von_mises, principal, moved = (
             Band.exact(value, BEAM_ALONE) for value in (worst.equivalent, tension, hand.displacement)
         )
-        alone = "beam theory alone: stress concentration at eyes and holes is not in these numbers"
-        notes = ("nothing acts on this link in this load case" if worst.equivalent == 0.0 else alone, *hand.remarks)
+        alone = reason("idle_in_load_case" if worst.equivalent == 0.0 else "beam_alone")
+        notes = (alone, *hand.remarks)
     return HandResult(
         link=link,
         von_mises_max=von_mises,

@@ -7,6 +7,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason, together, under_load_cases
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
 from alula.fea.frame.case_statics import CaseStatics
 from alula.fea.frame.joint_forces import JointForces
@@ -72,7 +73,9 @@ def limit_load_outcomes(case: Case, load_case: str, linkage: LinkageNumbers) -> 
             yield limit_load_outcome(name, check, load_case, linkage.limit_load)
 
 
-def limit_load_outcome(name: str, check: LimitLoadCheck, load_case: str, factor: Band, where: str = "") -> CheckOutcome:
+def limit_load_outcome(
+    name: str, check: LimitLoadCheck, load_case: str, factor: Band, where: Reason | None = None
+) -> CheckOutcome:
     """Return the outcome of a check of the limit load.
 
     Parameters
@@ -84,15 +87,15 @@ def limit_load_outcome(name: str, check: LimitLoadCheck, load_case: str, factor:
         Its name.
     factor : Band
         Of one pose, or the least of a motion.
-    where : str, optional
-        In which poses, for people.
+    where : Reason, optional
+        In which poses.
 
     Returns
     -------
     CheckOutcome
     """
     found = CheckOutcome.of(name, LINKAGE, load_case, Quantity.LIMIT_LOAD, factor, check.minimum)
-    return found.because(f"{factor.without if factor.unknowable else found.reason}{where}")
+    return found.because(together(factor.without if factor.unknowable else found.reason, where))
 
 
 def _largest(
@@ -102,11 +105,11 @@ def _largest(
     forces: JointForces,
     links: Mapping[str, LinkResult],
     free: Mapping[str, LinkLoads],
-) -> tuple[Band, str]:
+) -> tuple[Band, Reason | str]:
     """Largest displacement of any place [mm], and that place."""
     sizes = {key: float(np.linalg.norm(d)) for key, d in moved.points.items()}
     if not sizes or moved.frame is None or moved.solution is None:
-        return Band.unknown(moved.sentence), ""
+        return Band.unknown(moved.reason), ""
     places = {tuple(np.round(moved.points[key], 9)): key for key in sizes}  # the two links at a pin move alike
     most, bands = max(sizes.values()), {}
     for link, point in places.values():
@@ -123,8 +126,8 @@ def _largest(
     return found, where
 
 
-def left_stops(statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> Iterator[str]:
-    """Yield a sentence for every load case whose stop would have to pull on the deformed shape.
+def left_stops(statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> Iterator[Reason]:
+    """Yield a reason for every load case whose stop would have to pull on the deformed shape.
 
     Parameters
     ----------
@@ -134,7 +137,7 @@ def left_stops(statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> 
 
     Yields
     ------
-    str
+    Reason
     """
     for load_case, what in moved.items():
         standing, reactions = statics.standing[load_case], what.reactions
@@ -144,8 +147,7 @@ def left_stops(statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> 
         slides = reactions.drive.pushes(linkage)
         effort = float(reactions.drive_force if slides else reactions.drive_torque)
         if effort * reactions.drive.sign(linkage) * standing.contact < 0.0:
-            yield (
-                f"load case {load_case}: on its deformed shape the linkage leaves stop '{standing.stop}', which would "
-                f"have to pull there with {abs(effort):.3g} {'N' if slides else 'N·mm'}; stiffen its links, or let it "
-                "balance beside the stop"
+            unit = "N" if slides else "N·mm"
+            yield under_load_cases(
+                [load_case], reason("leaves_stop", stop=standing.stop, effort=abs(effort), unit=unit)
             )

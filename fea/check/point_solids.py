@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from alula.fea.common.reason import reason
 from alula.fea.links.fidelity import DecidedLink, Decision
 from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import Effort, Progress, refine_links
@@ -45,9 +46,9 @@ def decide_point(
         if (solid := decided[link].solid) is None or not solid.stopped
     }
     earlier = {link: solid for link in closer if (solid := decided[link].solid) is not None}
-    why = "the displacement of a point of the linkage asked for a solid"
+    why = reason("solid_for_point")
     found = {}
     for link, solid in refine_links(closer, start, effort, earlier=earlier, threads=threads, progress=progress).items():
-        decision = decided[link].decision if link in earlier else Decision(model="solid", why=why, next_cost="")
+        decision = decided[link].decision if link in earlier else Decision(model="solid", why=why, next_cost=None)
         found[link] = replace(decided[link], decision=decision, solid=solid)
     return found

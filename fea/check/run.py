@@ -19,6 +19,7 @@ from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.at_temperature import as_known
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
@@ -392,7 +393,7 @@ def check_case(
     solved = {load_case: one.solid_shares(decided, threads) for load_case, one in by_load_case.items()}
     load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
     clock("stress")
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Reason | str, ...] = ()
     if not bare:
         warnings = (
             *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
@@ -524,42 +525,35 @@ def _cantilever(case: Case, calculation: str) -> CantileverCheck:
     return uniform_cantilever(hand.load, hand.length, part.section, strength)
 
 
-def _of(names: Sequence[str]) -> str:
-    return f"load case{'s' if len(names) > 1 else ''} {', '.join(names)}"
-
-
-def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
-    found = unusual_materials(case)
+def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[Reason | str]:
+    found: list[Reason | str] = [*unusual_materials(case)]
     by_frame = {
         load_case: (forces.model, forces.reason)
         for load_case, forces in statics.forces.items()
         if not forces.by_equilibrium and forces.model != LAYERED_FRAME
     }
-    for model, reason in dict.fromkeys(by_frame.values()):
-        names = [load_case for load_case, found_by in by_frame.items() if found_by == (model, reason)]
-        found.append(f"{_of(names)}: {reason}, so the joint forces are those of a {model}")
-    said = dict.fromkeys(what.sentence for what in moved.values() if what.state != "small")
-    for sentence in said:
-        names = [load_case for load_case, what in moved.items() if what.sentence == sentence]
-        found.append(f"{_of(names)}: {sentence}")
+    for model, because in dict.fromkeys(by_frame.values()):
+        names = [load_case for load_case, found_by in by_frame.items() if found_by == (model, because)]
+        found.append(under_load_cases(names, reason("forces_of_frame", why=because, model=model)))
+    for why in dict.fromkeys(what.reason for what in moved.values() if what.state != "small"):
+        names = [load_case for load_case, what in moved.items() if what.reason == why]
+        found.append(under_load_cases(names, why))
     found += left_stops(statics, moved)
     found += [
-        f"load case {load_case}: {sentence}"
+        under_load_cases([load_case], sentence)
         for load_case in case.load_cases
         for air in case.air_forces(load_case)
         for sentence in air.warnings
     ]
-    pose, near = statics.pose, {}
+    pose, near = statics.pose, dict[Reason, float]()
     if pose.coordinate is not None:
-        named = f"the pose coordinate {pose.coordinate}"
-        near[named] = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
+        near[reason("pose_coordinate", link=pose.coordinate)] = pose.dead_point_distance(
+            pose.coordinate, slides=pose.slides
+        )
     for reactions in statics.reactions.values():
         if reactions.drive is not None and not reactions.drive.idle:
-            near[f"the {reactions.drive.held}"] = reactions.drive.dead_point_distance(pose)
+            near[reason("held_link", held=reactions.drive.held)] = reactions.drive.dead_point_distance(pose)
     for what, distance in near.items():
         if distance < NEAR_DEAD_POINT:
-            found.append(
-                f"the pose is close to a dead point of {what} (smallest singular value {distance:.2g}): "
-                "small errors of length and angle change the joint forces considerably"
-            )
+            found.append(reason("close_to_dead_point", of=what, distance=distance))
     return found

@@ -21,6 +21,7 @@ from alula.fea.beam.calibration import uncalibrated
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
+from alula.fea.common.reason import reason, together
 from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
 from alula.fea.common.verdict import Verdict
 from alula.fea.elements.space import displacement_space
@@ -57,8 +58,8 @@ ESTIMATE = 1.0 / 0.41
 ROUNDS = 8
 """In which the directions of pin forces, and with them how bores give, are found."""
 SETTLED = 1e-4
-MESH = Source(kind=SourceKind.DISCRETISATION, detail="of the solids by whose stiffness the links share the load")
-EYES = Source(kind=SourceKind.EYES, detail="of links that are beams in the frame")
+MESH = Source(kind=SourceKind.DISCRETISATION, detail=reason("of_sharing_solids"))
+EYES = Source(kind=SourceKind.EYES, detail=reason("of_beams_in_frame"))
 
 
 def with_solids(
@@ -103,10 +104,8 @@ def with_solids(
     ]
     for name in open_cases:
         if moved[name].followed:
-            reason = (
-                f"{forces[name].reason}; equilibrium was followed on the deformed shape with the links' centre lines"
-            )
-            forces[name] = replace(forces[name], reason=reason)
+            why = together(forces[name].reason, reason("followed_with_centre_lines"))
+            forces[name] = replace(forces[name], reason=why)
     wanted = [name for name in open_cases if not moved[name].followed]
     bodies = {link: case.body(link) for link in case.bending_links if wanted and condensable(case, link)}
     if not bodies:

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from alula.fea.check.run import check_case, effort_of, hand_calculations
+from alula.fea.common.reason import reason
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
@@ -180,9 +181,7 @@ def _frames(case: Case, known: CheckResult | None) -> Mapping[str, LargeDisplace
     if not (known.case.layered and undeformed and known.case.in_one_plane() == case):
         return None
     return {
-        name: LargeDisplacement(
-            state="unknown", span=one.span, points={}, links={}, sentence="the frame in one plane was not solved"
-        )
+        name: LargeDisplacement(state="unknown", span=one.span, points={}, links={}, reason=reason("frame_not_solved"))
         for name, one in known.frames.items()
     }
 
@@ -243,7 +242,7 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
         if isinstance(link, SolidResult) and link.discretisation.status != "converged":
             raise CannotRunError(
                 f"no claim on stress can be judged, since that of {name} has not converged: "
-                f"{link.discretisation.sentence}"
+                f"its meshes are {link.discretisation.status}"
             )
     worst = max(load_case.links.values(), key=_von_mises)
     points = result.case.links[worst.link].points

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.temperature import ROOM
@@ -100,8 +101,8 @@ def _strength_unknown(case: Case, outcome: CheckOutcome) -> str:
     return next(filter(None, (strength_unknown(case.all_materials[name], case.conditions) for name in names)), "")
 
 
-def as_if_cold(case: Case) -> Iterator[str]:
-    """Yield a sentence for each property of links that numbers have as at room temperature, for a warning.
+def as_if_cold(case: Case) -> Iterator[Reason]:
+    """Yield a reason for each property of links that numbers have as at room temperature, for a warning.
 
     Parameters
     ----------
@@ -109,12 +110,12 @@ def as_if_cold(case: Case) -> Iterator[str]:
 
     Yields
     ------
-    str
+    Reason
     """
     for name in dict.fromkeys(case.part_of(link).material for link in case.checked_links):
         for unknown in (strength_unknown, modulus_unknown):
             if why := unknown(case.all_materials[name], case.conditions):
-                yield f"{why}, and until then numbers are those of room temperature"
+                yield reason("as_at_room_temperature", why=why)
 
 
 def temperature_caveats(case: Case) -> Iterator[Caveat]:

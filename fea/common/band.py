@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, distinct
 
 
@@ -17,7 +18,7 @@ class Band:
         The value and the ends of its interval; all NaN where no number stands for the quantity.
     sources : tuple of Source
         What the interval covers.
-    without : str
+    without : Reason or str
         Why the interval covers no error of the model, or the value is not known; "" where it covers one.
     """
 
@@ -25,7 +26,7 @@ class Band:
     low: float
     high: float
     sources: tuple[Source, ...] = ()
-    without: str = ""
+    without: Reason | str = ""
 
     def __post_init__(self) -> None:
         """Refuse a band that does not hold its value."""
@@ -44,12 +45,12 @@ class Band:
         return replace(self, low=math.nan, high=math.nan) if self.without else self
 
     @classmethod
-    def unknown(cls, without: str = "") -> "Band":
+    def unknown(cls, without: Reason | str = "") -> "Band":
         """Return a band of what has no value; every check of it is undecided.
 
         Parameters
         ----------
-        without : str
+        without : Reason or str
             Why there is no value.
 
         Returns
@@ -59,13 +60,13 @@ class Band:
         return cls(value=math.nan, low=math.nan, high=math.nan, without=without)
 
     @classmethod
-    def exact(cls, value: float, without: str = "") -> "Band":
+    def exact(cls, value: float, without: Reason | str = "") -> "Band":
         """Return a band of no width.
 
         Parameters
         ----------
         value : float
-        without : str
+        without : Reason or str
             Why nothing is known of the model's error.
 
         Returns
@@ -144,9 +145,9 @@ class Band:
         return replace(self, value=factor * self.value, low=factor * self.low, high=factor * self.high)
 
     @property
-    def texts(self) -> tuple[str, ...]:
+    def texts(self) -> tuple[Reason | str, ...]:
         """What the band covers, and why no error of the model where that is so, for people and files."""
-        missing = f"{'no error of the model' if self.sources else 'nothing'}: {self.without}"
+        missing = reason("covers_no_model_error" if self.sources else "covers_nothing", why=self.without)
         return (*(source.text for source in self.sources), *((missing,) if self.without else ()))
 
 

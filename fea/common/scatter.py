@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass, replace
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
@@ -100,7 +101,7 @@ def load_scatter(case: Case, load_case: str) -> Scatter:
     low, high = case.load_cases[load_case].scatter
     if low == high:
         return Scatter()
-    source = Source(kind=SourceKind.LOAD, detail=f"{low:.0%} to {high:.0%}")
+    source = Source(kind=SourceKind.LOAD, detail=reason("range_of_shares", low=low, high=high))
     return Scatter(low=low, high=high, sources=(source,))
 
 
@@ -133,10 +134,10 @@ def layer_scatter(material: Material) -> Scatter:
     Scatter
     """
     ranges = [
-        _range(SourceKind.STRENGTH, value, stated, f" {what} the layers")
+        _range(SourceKind.STRENGTH, value, stated, what)
         for value, stated, what in (
-            (material.strength_across_layers, material.strength_across_layers_range, "across"),
-            (material.shear_strength_between_layers, material.shear_strength_between_layers_range, "in shear along"),
+            (material.strength_across_layers, material.strength_across_layers_range, "_across_layers"),
+            (material.shear_strength_between_layers, material.shear_strength_between_layers_range, "_along_layers"),
         )
         if value is not None
     ]
@@ -165,5 +166,5 @@ def _range(kind: SourceKind, value: float, stated: tuple[float, float] | None, w
     if stated is None:
         return Scatter()
     low, high = min(stated[0], value), max(stated[1], value)
-    source = Source(kind=kind, detail=f"{low:.4g} to {high:.4g} MPa{what}")
+    source = Source(kind=kind, detail=reason(f"range_of_stress{what}", low=low, high=high))
     return Scatter(low=low / value, high=high / value, sources=(source,))

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from alula.fea.common.reason import Reason, reason
 from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 
@@ -46,7 +47,7 @@ class Source:
     ----------
     kind : SourceKind
         What it is.
-    detail : str
+    detail : Reason or str
         Particulars such as the range that was stated; "" where there are none.
     width : float
         Ratio of the ends of the interval that it gives by itself; NaN where that is not known. It does not make two
@@ -54,24 +55,24 @@ class Source:
     """
 
     kind: SourceKind
-    detail: str = ""
+    detail: Reason | str = ""
     width: float = field(default=math.nan, compare=False)
 
     @property
-    def text(self) -> str:
+    def text(self) -> Reason | str:
         """Kind and particulars, for people and files."""
-        return f"{self.kind} ({self.detail})" if self.detail else str(self.kind)
+        return reason("source_of_error", kind=self.kind, detail=self.detail) if self.detail else str(self.kind)
 
 
-PIN_PRESSURE = Source(kind=SourceKind.PIN_PRESSURE, detail="over 180° and over 90°")
+PIN_PRESSURE = Source(kind=SourceKind.PIN_PRESSURE, detail=reason("over_half_and_quarter"))
 CONTACT = Source(
     kind=SourceKind.CONTACT,
-    detail=f"up to {CONTACT_SHORTFALL:.0%} more than the narrower pin pressure",
+    detail=reason("more_than_pin_pressure", shortfall=CONTACT_SHORTFALL),
     width=1.0 / (1.0 - CONTACT_SHORTFALL),
 )
-TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
+TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail=reason("by_faces_and_bore"))
 
-COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in either link, or tilting in all holes"),)
+COUPLES = (Source(kind=SourceKind.COUPLES, detail=reason("tight_or_tilting_pins")),)
 
 
 def air_source(least: float, largest: float) -> Source:
@@ -86,7 +87,7 @@ def air_source(least: float, largest: float) -> Source:
     -------
     Source
     """
-    return Source(kind=SourceKind.AIR, detail=f"C_N from {least:g} to {largest:g}")
+    return Source(kind=SourceKind.AIR, detail=reason("normal_coefficients", least=least, largest=largest))
 
 
 def widest(sources: tuple[Source, ...], width: float) -> tuple[Source, ...]:
@@ -145,9 +146,8 @@ def play_source(clearances: Mapping[str, float]) -> Source:
     -------
     Source
     """
-    least, most = min(clearances.values()), max(clearances.values())
-    sizes = f"{least:.3g} mm" if least == most else f"{least:.3g} to {most:.3g} mm"
-    return Source(kind=SourceKind.PLAY, detail=f"{sizes} at {', '.join(clearances)}")
+    ends = min(clearances.values()), max(clearances.values())
+    return Source(kind=SourceKind.PLAY, detail=reason("play_at_joints", ends=ends, joints=tuple(clearances)))
 
 
 def friction_source(ranges: Mapping[str, tuple[float, float]]) -> Source:
@@ -162,11 +162,11 @@ def friction_source(ranges: Mapping[str, tuple[float, float]]) -> Source:
     -------
     Source
     """
-    told = [
-        f"{low:.3g} to {high:.3g} at {', '.join(name for name, one in ranges.items() if one == (low, high))}"
+    alike = tuple(
+        (low, high, tuple(name for name, one in ranges.items() if one == (low, high)))
         for low, high in dict.fromkeys(ranges.values())
-    ]
-    return Source(kind=SourceKind.FRICTION, detail="; ".join(told))
+    )
+    return Source(kind=SourceKind.FRICTION, detail=reason("friction_at_joints", ranges=alike))
 
 
 def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:

@@ -7,6 +7,7 @@ from enum import Enum, StrEnum
 from typing import Literal
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 
 
 class Verdict(StrEnum):
@@ -228,8 +229,8 @@ class CheckOutcome:
     limit : float
         In the unit of the quantity, as the value.
     verdict : Verdict
-    reason : str
-        One sentence that says why the verdict is what it is.
+    reason : Reason or str
+        Says why the verdict is what it is.
     applies : bool
         False where there is nothing to judge, such as a stress where the linkage gives way; undecided then.
     """
@@ -241,7 +242,7 @@ class CheckOutcome:
     value: Band
     limit: float
     verdict: Verdict
-    reason: str
+    reason: Reason | str
     applies: bool = True
 
     @classmethod
@@ -253,7 +254,7 @@ class CheckOutcome:
         quantity: Quantity,
         value: Band,
         limit: float,
-        reason: str = "",
+        reason: Reason | str = "",
     ) -> "CheckOutcome":
         """Decide a check on its whole band.
 
@@ -261,7 +262,7 @@ class CheckOutcome:
         ----------
         name, subject, load_case, quantity, value, limit
             As the attributes.
-        reason : str, optional
+        reason : Reason or str, optional
             By default where the band lies beside the limit.
 
         Returns
@@ -280,12 +281,12 @@ class CheckOutcome:
             reason=reason or reason_for(value, limit, verdict),
         )
 
-    def because(self, reason: str) -> "CheckOutcome":
+    def because(self, reason: Reason | str) -> "CheckOutcome":
         """Return the outcome with another reason.
 
         Parameters
         ----------
-        reason : str
+        reason : Reason or str
 
         Returns
         -------
@@ -293,12 +294,12 @@ class CheckOutcome:
         """
         return replace(self, reason=reason)
 
-    def left_open(self, reason: str) -> "CheckOutcome":
+    def left_open(self, reason: Reason | str) -> "CheckOutcome":
         """Return the outcome undecided whatever its band says.
 
         Parameters
         ----------
-        reason : str
+        reason : Reason or str
 
         Returns
         -------
@@ -306,12 +307,12 @@ class CheckOutcome:
         """
         return replace(self, verdict=Verdict.UNDECIDED, reason=reason, applies=True)
 
-    def not_applicable(self, reason: str) -> "CheckOutcome":
+    def not_applicable(self, reason: Reason | str) -> "CheckOutcome":
         """Return the outcome undecided, since there is nothing to judge.
 
         Parameters
         ----------
-        reason : str
+        reason : Reason or str
 
         Returns
         -------
@@ -415,8 +416,8 @@ def worst_of_each(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     return list(found.values())
 
 
-def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
-    """Say in a few words why a band gives its verdict.
+def reason_for(value: Band, limit: float, verdict: Verdict) -> Reason | str:
+    """Return why a band gives its verdict.
 
     Parameters
     ----------
@@ -428,15 +429,12 @@ def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
 
     Returns
     -------
-    str
+    Reason or str
     """
     if value.unknowable or math.isnan(value.low):
-        return value.without or "it is not known"
-    band = f"its band {value.low:.3g} to {value.high:.3g}".replace("inf", "∞")
-    if verdict is Verdict.UNDECIDED:
-        return f"{band} holds the limit {limit:g}, so it may pass or fail"
-    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
-    return f"{band} lies wholly {side} of the limit {limit:g}"
+        return value.without or reason("not_known")
+    kind = {Verdict.UNDECIDED: "band_holds_limit", Verdict.PASS: "band_keeps_limit", Verdict.FAIL: "band_misses_limit"}
+    return reason(kind[verdict], low=value.low, high=value.high, limit=limit)
 
 
 def overall(verdicts: Iterable[Verdict]) -> Verdict:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.frame.joint_forces import joint_forces
@@ -27,7 +28,7 @@ from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.statics.statics import Reactions
 
-SOURCES = (Source(kind=SourceKind.GROWTH, detail="of bending under compression and of joint forces"),)
+SOURCES = (Source(kind=SourceKind.GROWTH, detail=reason("growth_of_bending")),)
 LEAST = 1e-3
 """Growth below which it is left out."""
 NOTHING = 1e-9

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from alula.fea.buckling.buckling import least_factor
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.doubts.load_growth import LEAST, Growths
@@ -144,12 +145,12 @@ def widened(outcome: CheckOutcome, spread: Scatter) -> CheckOutcome:
     """
     if not spread.sources:
         return outcome
-    band, reason = spread.inverse.on(outcome.value), outcome.reason
+    band, why = spread.inverse.on(outcome.value), outcome.reason
     found = CheckOutcome.of(
-        outcome.name, outcome.subject, outcome.load_case, outcome.quantity, band, outcome.limit, reason
+        outcome.name, outcome.subject, outcome.load_case, outcome.quantity, band, outcome.limit, why
     )
-    by = " and ".join(dict.fromkeys(source.kind for source in spread.sources))
-    return found if found.verdict is outcome.verdict else found.because(f"{reason}; {by} may change this")
+    by = reason("may_change_this", sources=tuple(dict.fromkeys(source.kind for source in spread.sources)))
+    return found if found.verdict is outcome.verdict else found.because(together(why, by))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

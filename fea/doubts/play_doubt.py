@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, play_source
 from alula.fea.doubts.force_doubt import measures
@@ -181,8 +182,8 @@ def shaken(case: Case, load_case: str, forces: JointForces, moved: LargeDisplace
 def play_warnings(
     moved: Mapping[str, LargeDisplacement],
     forces: Mapping[str, JointForces],
-) -> list[str]:
-    """Return what the reader must know about play, a sentence each.
+) -> list[Reason]:
+    """Return what the reader must know about play.
 
     Parameters
     ----------
@@ -192,7 +193,7 @@ def play_warnings(
 
     Returns
     -------
-    list of str
+    list of Reason
     """
     found = []
     for load_case, one in forces.items():
@@ -200,17 +201,11 @@ def play_warnings(
         if play is None:
             continue
         if play.through_dead_point:
-            who = "the structure" if play.drive is None else f"the driven link {play.drive.link}"
-            found.append(
-                f"load case {load_case}: play of pins may take the linkage through a dead point of {who}, where joint "
-                "forces grow without bound, so no band that depends on them has an end"
-            )
+            driven = None if play.drive is None else play.drive.link
+            found.append(under_load_cases([load_case], reason("through_dead_point_by_play", driven=driven)))
         elif play.settled is None:
-            found.append(
-                f"load case {load_case}: with play no single place was found where the linkage rests, since the force "
-                "of a joint turns round as its pin changes sides; bands hold every place"
-            )
+            found.append(under_load_cases([load_case], reason("rests_nowhere_with_play")))
         worse = [what for what in moved[load_case].shaken if what.gives_way and not moved[load_case].gives_way]
         if worse:
-            found.append(f"load case {load_case}: where play brings it nearest to a dead point, {worse[0].sentence}")
+            found.append(under_load_cases([load_case], reason("nearest_to_dead_point", why=worse[0].reason)))
     return found

@@ -18,6 +18,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from alula.fea.common.convex import least_of_convex
+from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import air_source, friction_source
 from alula.fea.doubts.other_case import Doubt, OtherCase, shape_of
@@ -129,8 +130,8 @@ def air_scatter(stated: tuple[float, float], others: Mapping[float, float], ends
     return Scatter(low=min(low, 1.0), high=max(high, 1.0), sources=(air_source(*ends),))
 
 
-def air_warnings(moved: Mapping[str, LargeDisplacement]) -> list[str]:
-    """Return what the reader must know about the range of C_N, a sentence each.
+def air_warnings(moved: Mapping[str, LargeDisplacement]) -> list[Reason]:
+    """Return what the reader must know about the range of C_N.
 
     Parameters
     ----------
@@ -139,10 +140,10 @@ def air_warnings(moved: Mapping[str, LargeDisplacement]) -> list[str]:
 
     Returns
     -------
-    list of str
+    list of Reason
     """
     return [
-        f"load case {load_case}: with C_N = {coefficient:g}, {other.sentence}"
+        under_load_cases([load_case], reason("with_normal_coefficient", coefficient=coefficient, why=other.reason))
         for load_case, one in moved.items()
         for coefficient, other in one.airs[1:]
         if other.gives_way and not one.gives_way
@@ -251,8 +252,8 @@ def friction_scatter(
     return Scatter(low=low, high=math.inf if locks else high, sources=(friction_source(ranges),))
 
 
-def friction_warnings(moved: Mapping[str, LargeDisplacement]) -> list[str]:
-    """Return what the reader must know about the doubt in friction, a sentence each.
+def friction_warnings(moved: Mapping[str, LargeDisplacement]) -> list[Reason]:
+    """Return what the reader must know about the doubt in friction.
 
     Parameters
     ----------
@@ -261,11 +262,10 @@ def friction_warnings(moved: Mapping[str, LargeDisplacement]) -> list[str]:
 
     Returns
     -------
-    list of str
+    list of Reason
     """
     return [
-        f"load case {load_case}: with the largest friction that may be ({one.friction.detail}) the linkage locks "
-        "itself, so no band that depends on joint forces has an end; state joints.*.friction_range where it is known"
+        under_load_cases([load_case], reason("locks_with_most_friction", friction=one.friction.detail))
         for load_case, one in moved.items()
         if one.locks and one.friction is not None
     ]

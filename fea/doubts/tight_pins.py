@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.force_doubt import sharing_doubt
@@ -127,8 +128,8 @@ def _decided(check: CheckOutcome, low: float, high: float) -> bool:
     return not _open(check, band)
 
 
-def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[str]:
-    """Say once of each link whose strength the sharing of couples between layers leaves open what would tell.
+def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[Reason]:
+    """Return once of each link whose strength the sharing of couples between layers leaves open what would tell.
 
     Parameters
     ----------
@@ -136,7 +137,7 @@ def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[str]:
 
     Returns
     -------
-    list of str
+    list of Reason
     """
     found: dict[str, list[SharedCouples]] = {}
     for one in load_cases:
@@ -146,31 +147,31 @@ def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[str]:
     told = []
     for link, cases in found.items():
         names, most = [one.load_case for one in cases], max(one.told[link].high for one in cases)
-        words = "no tight_in of joints would decide its check"
+        words = reason("no_tight_pins_decide")
         if all(one.decided_by(link, None) for one in cases):
             helps = (said for said, tight in _statements(cases[0].case, link)
                      if all(one.decided_by(link, tight) for one in cases))  # fmt: skip
             words = next(helps, words)
-        told.append(
-            f"load case{'s' if len(names) > 1 else ''} {', '.join(names)}: how pins share the couples between layers "
-            f"may make the stress of {link} {'up to ' if len(names) > 1 else ''}{most:.3g} times as large; {words}"
-        )
+        kind = "couples_of_layers" if len(names) == 1 else "couples_of_layers_at_most"
+        told.append(under_load_cases(names, reason(kind, link=link, times=most, helps=words)))
     return told
 
 
-def _statements(case: Case, link: str) -> Iterator[tuple[str, dict[str, tuple[str, ...]]]]:
-    """Yield what may be stated of pins, the least first: in words, and joint by joint."""
+def _statements(case: Case, link: str) -> Iterator[tuple[Reason, dict[str, tuple[str, ...]]]]:
+    """Yield what may be stated of pins, the least first: as a reason, and joint by joint."""
     joints = case.linkage.joints
     unknown = [name for name, joint in joints.items()
                if joint.type == "revolute" and case.linkage.rise(name) != 0.0
                and not (joint.tight_in or joint.bonded)]  # fmt: skip
     own = [name for name in unknown if link in joints[name].links]
     for names, links, which in (
-        (own, "both links", slice(2)),
-        (unknown, "the first link of each", slice(1)),
-        (unknown, "the second link of each", slice(1, 2)),
-        (unknown, "both links", slice(2)),
+        (own, "both", slice(2)),
+        (unknown, "first", slice(1)),
+        (unknown, "second", slice(1, 2)),
+        (unknown, "both", slice(2)),
     ):
         if names:
-            said = f"tight_in of joints {', '.join(names)}, in {links}, would decide its check"
-            yield said, {name: tuple(joints[name].links)[which] for name in names}
+            yield (
+                reason(f"tight_in_{links}_decides", joints=names),
+                {name: tuple(joints[name].links)[which] for name in names},
+            )

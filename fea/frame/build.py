@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_beam import changes
 from alula.fea.beam.flanks import Flanks, flanks_of
+from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.condensed import CondensedLink, LinkFlexibility
 from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
 from alula.fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
@@ -177,7 +178,7 @@ class _Builder:
         self.stations: dict[str, tuple[tuple[float, int], ...]] = {}
         self.arms: dict[int, Real] = {}
         self.beams: dict[int, LinkBeam] = {}
-        self.notes: list[str] = []
+        self.notes: list[Reason] = []
         self.supports: list[Support] = []
         self.pin_ends: dict[str, int] = {}
         self.pin_beams: dict[str, int] = {}
@@ -193,7 +194,7 @@ class _Builder:
                     self._solid(link, own, LinkFlexibility.rigid(tuple(case.links[link].points)))
                 else:
                     self._rigid(link, own)
-                self.notes.append(f"link {link} has no part and is rigid in the frame")
+                self.notes.append(reason("rigid_in_frame", link=link))
             for load in own:
                 if isinstance(load, PointLoad):
                     lever = np.array([load.arm, load.wrench[:3]])

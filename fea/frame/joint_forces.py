@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.deviation import Deviation, Sharing
 from alula.fea.frame.linkage_frame import out_of_plane
@@ -48,8 +49,8 @@ class JointForces:
         Joint forces and drive torque.
     model : str
         Which one gave them.
-    reason : str
-        Why, for people.
+    reason : Reason
+        Why.
     frame : LinkageFrame or None
         Of the linkage where the model is a frame; None for equilibrium alone.
     solution : FrameSolution or None
@@ -64,7 +65,7 @@ class JointForces:
 
     reactions: Reactions
     model: str
-    reason: str
+    reason: Reason | str
     frame: "LinkageFrame | None" = None
     solution: "FrameSolution | None" = None
     solids: tuple[str, ...] = ()
@@ -165,31 +166,31 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         Where no model has them, such as at a dead point of the driven link.
     """
     bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
-    which = "its joints are bonded" if case.joint_model == "bonded" else _named(case, bonded)
+    which = reason("all_joints_bonded") if case.joint_model == "bonded" else _named(case, bonded)
     model = BONDED_FRAME if bonded else PINNED_FRAME
     system = assemble(pose.placement, case.pinned_drive, ())
     rows, columns = system.matrix.shape
     if out_of_plane(loads):
-        reason = "a load acts out of the linkage's plane, where pins carry moments"
+        why = reason("load_out_of_plane")
     elif columns > rows:
-        reason = "the linkage has more constraints than equilibrium has equations"
+        why = reason("more_constraints")
         if bonded:
-            reason = f"the case says that {which}, and so {reason}"
+            why = reason("case_says_and_so", which=which, why=why)
     elif case.layered:
-        model, reason = LAYERED_FRAME, "the links lie in layers, between which joint forces make couples"
+        model, why = LAYERED_FRAME, reason("layers_make_couples")
     else:
-        reason = "all loads act in the linkage's plane, where equilibrium alone gives the forces"
+        why = reason("loads_in_plane")
         return JointForces(
             reactions=solve_statics(pose, case.pinned_drive, loads),
             model=BONDED_STATICS if bonded else PINNED_STATICS,
-            reason=f"the case says that {which}; {reason}" if bonded else reason,
+            reason=reason("case_says", which=which, why=why) if bonded else why,
         )
     refuse_dead_point(system, case.pinned_drive)
     frame, solution = solved_frame(case, pose, loads, case.pinned_drive)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
         model=model,
-        reason="; ".join([reason, *frame.notes]),
+        reason=together(why, *frame.notes),
         frame=frame,
         solution=solution,
     )
@@ -232,13 +233,10 @@ def solved_frame(
     return frame, solve_frame(frame.model)
 
 
-def _named(case: Case, bonded: Sequence[str]) -> str:
-    """Say which joints are bonded, and which clamped."""
-    said = []
-    for how, clamped in (("bonded", False), ("clamped", True)):
-        own = [name for name in bonded if case.linkage.joints[name].clamped == clamped]
-        said += [f"joint {own[0]} is {how}" if len(own) == 1 else f"joints {', '.join(own)} are {how}"] if own else []
-    return " and ".join(said)
+def _named(case: Case, bonded: Sequence[str]) -> Reason:
+    """Return which joints are bonded, and which clamped."""
+    held = [name for name in bonded if case.linkage.joints[name].clamped]
+    return reason("joints_bonded", bonded=[name for name in bonded if name not in held], clamped=held)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -248,7 +246,7 @@ class WayToHold:
     Attributes
     ----------
     name : str
-        Of the way, for people.
+        Of the way.
     displacement : ndarray, shape (3,)
         Global axes [mm].
     play : float

@@ -21,6 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason
 from alula.fea.frame.model import FrameModel
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.pose import Pose
@@ -104,7 +105,7 @@ class LinkageFrame:
     stations: Mapping[str, tuple[tuple[float, int], ...]]
     arms: Mapping[int, Real]
     beams: Mapping[int, LinkBeam]
-    notes: tuple[str, ...]
+    notes: tuple[Reason, ...]
 
     def reactions(self, joint_wrenches: Real, residual: float, displacements: Real | None = None) -> Reactions:
         """Return joint reactions and drive torque of a solution.

@@ -14,6 +14,7 @@ A1-A11; in Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., se
 from alula.fea.beam.critical_locations import forces_at
 from alula.fea.beam.section_stress import equivalent_stress
 from alula.fea.beam.theory import BeamCheck
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.geometry.bodies.body import clamped_end, mouth
@@ -21,7 +22,7 @@ from alula.geometry.parts.part import Body
 
 EDGE = 1.95
 """Most that the edge of a clamp makes of the nominal stress at its mouth."""
-CLAMP = Source(kind=SourceKind.CLAMP, detail=f"up to {EDGE:g} times the nominal stress at its mouth", width=EDGE)
+CLAMP = Source(kind=SourceKind.CLAMP, detail=reason("times_stress_at_mouth", factor=EDGE), width=EDGE)
 CLAMP_SCATTER = Scatter(low=1.0, high=EDGE, sources=(CLAMP,))
 """The same for the largest stress of a link, where it is not told from that at the mouth."""
 

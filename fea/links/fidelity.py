@@ -14,6 +14,7 @@ from alula.fea.beam.critical_locations import CriticalLocation, critical_locatio
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind
 from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
@@ -57,15 +58,15 @@ class HandBands:
         The largest [mm].
     locations : tuple of LocationBand
         All places, the most stressed first.
-    outside : str
-        Why the calibration does not hold for this link; "" where it does. Then all bands are unknown.
+    outside : Reason, str or None
+        Why the calibration does not hold for this link; None where it does. Then all bands are unknown.
     """
 
     von_mises: Band
     principal: Band
     displacement: Band
     locations: tuple[LocationBand, ...]
-    outside: str
+    outside: Reason | str | None
 
     def deciding(self, *, brittle: bool) -> Band:
         """Return the stress that counts: the principal one of brittle materials.
@@ -90,15 +91,14 @@ class Decision:
     ----------
     model : {"beam", "solid", ""}
         "" where hand calculation was asked for and cannot decide.
-    why : str
-        For people.
-    next_cost : str
-        What a solid would have cost; "" where it ran.
+    why : Reason or str
+    next_cost : Reason or None
+        What a solid would have cost; None where it ran.
     """
 
     model: Model | Literal[""]
-    why: str
-    next_cost: str
+    why: Reason | str
+    next_cost: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,13 +168,13 @@ def decide(
         Where a mesh or a solution fails.
     """
     hands: dict[str, dict[str, HandBands]] = {}
-    reasons: dict[str, str] = {}
+    reasons: dict[str, Reason | None] = {}
     found: dict[str, DecidedLink] = {}
     rest: dict[str, LinkTask] = {}
     for link, task in tasks.items():
         rest[link] = task
         if fidelity == "solid" or effort.stated:
-            reasons[link] = "a solid was requested" if fidelity == "solid" else "an accuracy was requested"
+            reasons[link] = reason("solid_requested" if fidelity == "solid" else "accuracy_requested")
             continue
         hands[link] = _hands(task, beams[link])
         decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])
@@ -187,7 +187,7 @@ def decide(
             found[link] = DecidedLink(decision=decision, hands=hands[link], left=_left(task, rest.pop(link)))
     solids = refine_links(rest, start, effort, first=first, threads=threads, progress=progress)
     for link, solid in solids.items():
-        decision = Decision(model="solid", why=reasons[link], next_cost="")
+        decision = Decision(model="solid", why=reasons[link] or "", next_cost=None)
         left = _left(tasks[link], rest[link])
         found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid, left=left)
     return {link: found[link] for link in tasks}
@@ -209,8 +209,7 @@ def left_out(body: Body) -> Decision:
     Decision
         By no model.
     """
-    why = "no link passes where the linkage gives way, so its solid was not solved; --fidelity solid solves it"
-    return Decision(model="", why=why, next_cost=_solid_cost(body))
+    return Decision(model="", why=reason("left_out_of_what_gives_way"), next_cost=_solid_cost(body))
 
 
 def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
@@ -227,11 +226,12 @@ def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
     DecidedLink
     """
     hands = _hands(task, beams)
-    outside = next((hand.outside for hand in hands.values() if hand.outside), "")
+    outside = next((hand.outside for hand in hands.values() if hand.outside), None)
     if outside:
-        why = f"hand calculation is not calibrated for this link: {outside}; run the solid model (--fidelity solid)"
-        return DecidedLink(decision=Decision(model="", why=why, next_cost=""), hands=hands)
-    return DecidedLink(decision=Decision(model="beam", why="hand calculation was requested", next_cost=""), hands=hands)
+        why = reason("run_solid_of_uncalibrated", outside=outside)
+        return DecidedLink(decision=Decision(model="", why=why, next_cost=None), hands=hands)
+    why = reason("hand_requested")
+    return DecidedLink(decision=Decision(model="beam", why=why, next_cost=None), hands=hands)
 
 
 def _hands(task: LinkTask, beams: Mapping[str, BeamCheck]) -> dict[str, HandBands]:
@@ -261,7 +261,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         except CannotRunError as error:
             outside = str(error)
     if outside:
-        nothing = Band.unknown("hand calculation is not calibrated for this link")
+        nothing = Band.unknown(reason("uncalibrated"))
         return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, locations=(), outside=outside)
     calibration = calibration_of(body.part)
     sources = (_source(calibration),)
@@ -281,12 +281,12 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         principal=Band.largest([row.principal for row in rows]),
         displacement=_band(moved, calibration.displacement, sources),
         locations=tuple(rows),
-        outside="",
+        outside=None,
     )
 
 
-def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[Band]) -> str:
-    """Say which limit lies in a band of any load case.
+def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[Band]) -> Reason | None:
+    """Return which limit lies in a band of any load case.
 
     Parameters
     ----------
@@ -297,8 +297,8 @@ def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[
 
     Returns
     -------
-    str
-        "" where all limits are clear of all bands.
+    Reason or None
+        None where all limits are clear of all bands.
     """
     for what, unit, bands, limits in (
         ("peak stress", "MPa", stresses, task.stress_limits),
@@ -307,17 +307,8 @@ def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[
         for limit in limits:
             for band in bands:
                 if band.unknowable or (band.low <= limit[1] and limit[0] <= band.high):
-                    return (
-                        f"the {what} is {band.low:.3g} to {band.high:.3g} {unit}; the limit, {_limit(limit)} {unit}, "
-                        "lies inside"
-                    )
-    return ""
-
-
-def _limit(ends: tuple[float, float]) -> str:
-    """Say a limit, with what stated scatter makes of it."""
-    low, high = ends
-    return f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g} (with stated scatter)"
+                    return reason("limit_within", what=what, low=band.low, high=band.high, limit=limit, unit=unit)
+    return None
 
 
 def _layers_open(task: LinkTask, hands: Sequence[HandBands]) -> bool:
@@ -332,7 +323,7 @@ def _layers_open(task: LinkTask, hands: Sequence[HandBands]) -> bool:
     return any(worst > least for least, _ in task.layer_limits)
 
 
-def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, str]:
+def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, Reason | None]:
     """Return the decision, if hand calculation can make it.
 
     Parameters
@@ -343,34 +334,35 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
 
     Returns
     -------
-    tuple of (Decision or None, str)
-        The decision, and why there is none; "" where there is one.
+    tuple of (Decision or None, Reason or None)
+        The decision, and why there is none; None where there is one.
     """
     for hand in hands:
         if hand.outside:
-            return None, f"hand calculation is not calibrated for this link: {hand.outside}"
+            return None, reason("uncalibrated_since", outside=hand.outside)
     if _layers_open(task, hands):
-        return None, "by hand only the least of layers in any direction is known, so finite elements decided"
+        return None, reason("layers_open_by_hand")
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
     open_limit = undecided(task, stresses, [hand.displacement for hand in hands])
     if open_limit:
-        return None, f"by hand {open_limit}, so finite elements decided"
+        return None, reason("open_by_hand", open_limit=open_limit)
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)
     band, location = stresses[worst], hands[worst].locations[0].location
-    limits = ", ".join(map(_limit, task.stress_limits))
-    ends = f"{band.low:.3g} and {band.high:.3g} MPa"
-    why = f"by hand the peak stress lies between {ends}, at most at {location.name}"
-    why += f", clear of the limit {limits} MPa" if limits else ""
-    if task.displacement_limits:
-        moved = Band.largest([hand.displacement for hand in hands])
-        why += f"; the displacement, {moved.low:.3g} to {moved.high:.3g} mm, is clear of its limits"
-    return Decision(model="beam", why=why, next_cost=_solid_cost(task.body)), ""
+    moved = Band.largest([hand.displacement for hand in hands]) if task.displacement_limits else None
+    why = reason(
+        "clear_by_hand",
+        ends=(band.low, band.high),
+        place=location.name,
+        limits=tuple(task.stress_limits),
+        displacement=None if moved is None else (moved.low, moved.high),
+    )
+    return Decision(model="beam", why=why, next_cost=_solid_cost(task.body)), None
 
 
-def _solid_cost(body: Body) -> str:
-    """Say what a link's first mesh would cost."""
+def _solid_cost(body: Body) -> Reason:
+    """Return what a link's first mesh would cost."""
     elements = expected_elements(body)
-    return f"a solid model of some {elements:,} elements, about {max(1, round(SECONDS * elements)):,} s"
+    return reason("cost_of_solid", elements=elements, seconds=max(1, round(SECONDS * elements)))
 
 
 SECONDS = 1.0e-3
@@ -402,8 +394,9 @@ PER_WIDTH, PER_EYE, PER_HOLE = 140.0, 2400.0, 320.0
 
 
 def _source(calibration: Calibration) -> Source:
-    models = f"solid models of {calibration.parts} parts under {calibration.cases} load cases"
-    detail = f"{models}, least and largest factor, widened by {calibration.margin - 1.0:.0%}"
+    detail = reason(
+        "calibration", parts=calibration.parts, load_cases=calibration.cases, margin=calibration.margin - 1.0
+    )
     return Source(kind=SourceKind.CALIBRATION, detail=detail)
 
 

@@ -15,6 +15,7 @@ from alula.fea.beam.theory import BeamCheck, check_beam
 from alula.fea.buckling.buckling import least_factor
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
+from alula.fea.common.reason import Reason
 from alula.fea.links.on_axis import on_axis
 from alula.fea.links.second_order import second_order_loads
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -38,14 +39,14 @@ class LinkByHand:
         The largest [mm].
     details : tuple of Detail
         Places that have a stress formula of their own.
-    remarks : tuple of str
+    remarks : tuple of Reason or str
         What the reader must know about these numbers.
     """
 
     check: BeamCheck
     displacement: float
     details: tuple[Detail, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[Reason | str, ...]
 
     @property
     def worst(self) -> tuple[float, SectionStress]:

@@ -10,6 +10,7 @@ from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.solid_holding import solid_holding
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
 from alula.fea.elements.mouth import reference_surfaces
 from alula.fea.links.clamp_edge import CLAMP, EDGE, edge_stress
@@ -29,7 +30,7 @@ from alula.fea.solid.stress import stress_field
 from alula.geometry.bodies.body import clamped_end
 from alula.loads.case.case import Case
 
-NO_NUMBER = "no mesh tells what it is"
+NO_NUMBER = reason("no_mesh_tells")
 
 
 def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
@@ -64,7 +65,14 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
 
 
 def solid_result(
-    case: Case, link: str, load_case: str, beam: BeamCheck, refined: RefinedSolid, *, why: str, remarks: Sequence[str]
+    case: Case,
+    link: str,
+    load_case: str,
+    beam: BeamCheck,
+    refined: RefinedSolid,
+    *,
+    why: Reason | str,
+    remarks: Sequence[Reason | str],
 ) -> SolidResult:
     """Return the result of a link under a load case that was solved.
 
@@ -78,9 +86,9 @@ def solid_result(
         The hand calculation.
     refined : RefinedSolid
         The series of meshes, solved under all load cases of the link.
-    why : str
-        Why a solid decides the link, for people.
-    remarks : sequence of str
+    why : Reason or str
+        Why a solid decides the link.
+    remarks : sequence of Reason or str
         What the reader must know, besides what model and meshes have to say.
 
     Returns
@@ -152,7 +160,7 @@ def solid_result(
         governing_case=variant,
         stress=stress,
         comparisons=compare_sections(body, beam, stress),
-        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved), *remarks),
+        notes=(*solid.notes, precision.reason, *_edge_notes(refined, solved), *remarks),
         decided_by="solid",
         why=why,
         brittle=material.brittle,
@@ -204,13 +212,10 @@ def _layer_stress(
     )
 
 
-def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[str, ...]:
+def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[Reason, ...]:
     if refined.sharp_edges == 0 or any(refined.precision[number].sharp for number in solved):
         return ()
-    return (
-        f"elasticity has no finite stress at the {refined.sharp_edges} sharp inner edges of this link; they bear less "
-        f"than {LOADED:.0%} of its peak here, or do not grow as such edges do, and were left at that",
-    )
+    return (reason("sharp_edges_left", edges=refined.sharp_edges, share=LOADED),)
 
 
 def _peak(variant: SolidCase, precision: CasePrecision) -> VariantPeak:

@@ -17,6 +17,7 @@ from alula.fea.check.run import effort_of
 from alula.fea.common.at_temperature import as_known
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter
 from alula.fea.common.threads import bounded, bounded_run
 from alula.fea.common.verdict import CheckOutcome, overall
@@ -345,24 +346,26 @@ def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray
     return good
 
 
-def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growth: float) -> list[str]:
-    found = unusual_materials(case)
+def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growth: float) -> list[Reason | str]:
+    found: list[Reason | str] = [*unusual_materials(case)]
     left_out = int(np.count_nonzero(~evaluated))
     if moved.dead_points:
-        at = ", ".join(f"{math.degrees(angle):.2f}" for angle in moved.dead_points)
         found.append(
-            f"the driven link {moved.drive.link} has a dead point at {at} deg of {moved.motion.coordinate}; "
-            f"{left_out} of {len(evaluated)} poses are left out, where the drive torque is more than {growth:g} times "
-            "that at the best leverage"
+            reason(
+                "poses_near_dead_point",
+                link=moved.drive.link,
+                angles=tuple(math.degrees(angle) for angle in moved.dead_points),
+                coordinate=moved.motion.coordinate,
+                left_out=left_out,
+                poses=len(evaluated),
+                growth=growth,
+            )
         )
     elif left_out:
-        found.append(f"{left_out} of {len(evaluated)} poses are left out, since no drive torque balances them")
+        found.append(reason("poses_without_balance", left_out=left_out, poses=len(evaluated)))
     others = [name for name, check in case.all_checks.items() if not isinstance(check, FOLLOWED)]
     if others:
-        about = "is about" if len(others) == 1 else "are about"
-        found.append(
-            f"not checked over the motion: {', '.join(others)}, which {about} one pose or the motor; see alula check"
-        )
+        found.append(reason("not_checked_over_motion", checks=others))
     if case.large_displacement != "off":
-        found.append("links are rigid in the motion: equilibrium is that of the undeformed linkage")
+        found.append(reason("rigid_in_motion"))
     return found

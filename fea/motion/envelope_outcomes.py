@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from alula.fea.buckling.buckling import column_outcome, worst_column
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.other_case import widened
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
@@ -39,11 +40,9 @@ from alula.loads.records.check_spec import (
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.joint_reaction import JointReaction
 
-BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
-LEFT_OUT = "poses near a dead point of the driven link were left out, where its torque grows without bound"
-NOT_FOLLOWED = (
-    "no beam stands for its buckling, and its solid is not looked at over a motion; check single poses with alula check"
-)
+BEYOND_CARD = reason("repetitions_beyond_card")
+LEFT_OUT = reason("left_out_near_dead_point")
+NOT_FOLLOWED = reason("buckling_not_followed")
 FOLLOWED = (
     *(SafetyFactorCheck, PinCheck, BearingCheck),
     *(LimitLoadCheck, ClearanceCheck, FrequencyCheck, MassCheck, SizeCheck),
@@ -97,7 +96,7 @@ def envelope_outcomes(
             if over.fatigue is not None:
                 found += fatigue_outcomes(case.material_of(link).fatigue, link, load_case, over.fatigue)
             elif lasting:
-                why = envelope.no_fatigue or "its peak is not known"
+                why = envelope.no_fatigue or reason("peak_not_known")
                 subject, unknown = Subject.link(link), Band.unknown(why)
                 quantity = Quantity.FATIGUE_STRESS
                 found.append(CheckOutcome.of("fatigue", subject, load_case, quantity, unknown, STRESS_FACTOR, why))
@@ -129,13 +128,13 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
         value = Band.unknown() if found is None else found.safety_factor
         outcome = CheckOutcome.of(LAYERS, subject, load_case, Quantity.LAYERS, value, limit)
         if found is not None:
-            x, y, z = (f"{at:.1f}" for at in found.location)
-            outcome = outcome.because(f"{outcome.reason}; at {_when(moved, found.pose)}, x = {x}, y = {y}, z = {z} mm")
+            where = reason("at_pose_and_place", pose=_when(moved, found.pose), place=tuple(map(float, found.location)))
+            outcome = outcome.because(together(outcome.reason, where))
             yield outcome if material.shear_strength_between_layers else without_shear(outcome, material.title)
         elif material.strength_across_layers is None:
             yield outcome.because(no_strength(material.title))
         else:
-            yield outcome.because(over.discretisation.sentence if over.discretisation else "its peak is not known")
+            yield outcome.because(over.discretisation.reason if over.discretisation else reason("peak_not_known"))
 
 
 def layer_fatigue_outcomes(
@@ -164,11 +163,10 @@ def layer_fatigue_outcomes(
                 name, subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, layers.no_fatigue
             )
         return
-    x, y, z = (f"{at:.1f}" for at in fatigue.location)
-    pull, slip = (f"{mean:.3g} ± {amplitude:.3g} MPa" for mean, amplitude in (fatigue.tension, fatigue.shear))
-    where = f"{pull} across the layers, {slip} of shear along them, at x = {x}, y = {y}, z = {z} mm"
+    place = tuple(map(float, fatigue.location))
+    where = reason("fatigue_of_layers", tension=fatigue.tension, shear=fatigue.shear, place=place)
     for outcome in fatigue_outcomes(material.fatigue_across_layers, link, load_case, fatigue, name=name):
-        told = outcome.because(f"{outcome.reason}; {where}")
+        told = outcome.because(together(outcome.reason, where))
         yield told if material.shear_strength_between_layers else without_shear(told, material.title)
 
 
@@ -198,10 +196,7 @@ def fatigue_outcomes(
     elif fatigue.repetitions is None:
         assert data is not None
         unknown = Band.unknown(BEYOND_CARD)
-        why = (
-            f"the material's card ends at {data.cycles:g} cycles and states no exponent, so its strength "
-            f"for {wanted:g} repetitions is not known; ask for at most as many, or add an exponent to the card"
-        )
+        why = reason("card_ends_before", cycles=data.cycles, wanted=wanted)
         yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, why)
     if fatigue.repetitions is not None:
         share = fatigue.repetitions.times(1.0 / wanted)
@@ -259,7 +254,7 @@ def _joints(
             else:
                 outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force), growth)
             outcome = _complete(outcome, evaluated)
-            yield outcome.because(f"under {force:.3g} N at {_when(moved, pose)}: {outcome.reason}")
+            yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
 
 
 def _at(reaction: JointReaction, pose: int) -> JointReaction:
@@ -303,16 +298,16 @@ def column_outcomes(
             columns = [column for column in found if column is not None]
             if columns:
                 column = min(columns, key=lambda one: one.value)
-                where = f" at {_when(moved, column.pose)}"
-                outcome = column_outcome(moved.case, load_case, link, column, where=where)
+                outcome = column_outcome(moved.case, load_case, link, column, where=_when(moved, column.pose))
                 spread = column_growth(moved, load_case, link, evaluated)
                 if grown and link in grown[load_case].columns:
                     spread = spread.times(grown[load_case].columns[link])
                 yield _complete(widened(outcome, spread), evaluated)
 
 
-def _when(moved: CaseMotion, pose: int) -> str:
-    return f"{moved.motion.coordinate} = {math.degrees(float(moved.motion.angles[pose])):.5g} deg"
+def _when(moved: CaseMotion, pose: int) -> Reason:
+    angle = math.degrees(float(moved.motion.angles[pose]))
+    return reason("pose_of_motion", coordinate=moved.motion.coordinate, value=angle, unit="deg")
 
 
 def _complete(outcome: CheckOutcome, evaluated: NDArray[np.bool_]) -> CheckOutcome:

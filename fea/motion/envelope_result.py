@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.motion.fatigue import FatigueLife
 from alula.fea.motion.linkage_history import LinkageOverMotion
@@ -198,15 +199,15 @@ class LayerEnvelope:
     location : ndarray, shape (3,)
         Where, in the link's frame [mm].
     fatigue : LayerFatigue or None
-    no_fatigue : str
-        Why there is no fatigue of layers although it is asked for; empty where there is one, or none is asked for.
+    no_fatigue : Reason or None
+        Why there is no fatigue of layers although it is asked for; None where there is one, or none is asked for.
     """
 
     safety_factor: Band
     pose: int
     location: Real
     fatigue: LayerFatigue | None
-    no_fatigue: str
+    no_fatigue: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -225,7 +226,8 @@ class LinkEnvelope:
         Size of the finest mesh.
     units, modes : int
         Unit loads, and solutions that span the motion's loads.
-    solver, solver_reason : str
+    solver : str
+    solver_reason : Reason
         Its name, and why it was chosen.
     solver_error : float
         Largest relative error of a solution (energy norm).
@@ -235,9 +237,9 @@ class LinkEnvelope:
         Of the worst pose under the worst load case.
     displacement : ndarray, shape (nodes, 3)
         In that pose [mm].
-    no_fatigue : str
-        Why there is no fatigue calculation; empty where there is one.
-    notes : tuple of str
+    no_fatigue : Reason or None
+        Why there is no fatigue calculation; None where there is one.
+    notes : tuple of Reason or str
     layers : mapping of str to LayerEnvelope
         Load case -> its layers; empty where none are checked.
     """
@@ -251,14 +253,14 @@ class LinkEnvelope:
     units: int
     modes: int
     solver: str
-    solver_reason: str
+    solver_reason: Reason | str
     solver_error: float
     reaction: float
     imbalance: float
     field: StressField
     displacement: Real
-    no_fatigue: str
-    notes: tuple[str, ...]
+    no_fatigue: Reason | None
+    notes: tuple[Reason | str, ...]
     layers: Mapping[str, LayerEnvelope]
 
     @property
@@ -295,7 +297,7 @@ class EnvelopeResult:
         For every link and load case.
     verdict : Verdict
         Over all checks.
-    warnings : tuple of str
+    warnings : tuple of Reason or str
         One sentence each.
     timings : mapping of str to float
         Stage -> seconds.
@@ -315,5 +317,5 @@ class EnvelopeResult:
     clearance: Clearance | None
     checks: tuple[CheckOutcome, ...]
     verdict: Verdict
-    warnings: tuple[str, ...]
+    warnings: tuple[Reason | str, ...]
     timings: Mapping[str, float]

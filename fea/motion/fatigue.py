@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.solid.stress import extreme_principal, von_mises
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
@@ -66,8 +67,8 @@ def closed_history(history: Real, *, returns: bool) -> Real:
     return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
 
 
-def not_closed(evaluated: NDArray[np.bool_]) -> str:
-    """Say why the stress over a motion is no closed history; "" where it is.
+def not_closed(evaluated: NDArray[np.bool_]) -> Reason | None:
+    """Return why the stress over a motion is no closed history; None where it is.
 
     Parameters
     ----------
@@ -76,9 +77,9 @@ def not_closed(evaluated: NDArray[np.bool_]) -> str:
 
     Returns
     -------
-    str
+    Reason or None
     """
-    return "" if evaluated.all() else "poses near a dead point are left out, so the stress history is not closed"
+    return None if evaluated.all() else reason("history_not_closed")
 
 
 def turning_points(history: Real) -> Real:
@@ -233,8 +234,8 @@ def cycles_to_failure(stress: Real, fatigue: Fatigue) -> Real:
         return np.asarray(fatigue.cycles * (stress / fatigue.stress) ** -fatigue.exponent)
 
 
-def missing_data(material: Material) -> str:
-    """Say what the card lacks for a fatigue calculation.
+def missing_data(material: Material) -> Reason | None:
+    """Return what the card lacks for a fatigue calculation.
 
     Parameters
     ----------
@@ -242,14 +243,14 @@ def missing_data(material: Material) -> str:
 
     Returns
     -------
-    str
-        Empty if nothing.
+    Reason or None
+        None if nothing.
     """
     if material.fatigue is None:
-        return "the material's card has no fatigue data; add [materials.<name>.fatigue] with stress, cycles and source"
+        return reason("no_fatigue_data")
     if material.fatigue.rule == "goodman" and material.ultimate_strength is None:
-        return "Goodman's line needs ultimate_strength, which the material's card does not state; add it"
-    return ""
+        return reason("no_ultimate_strength")
+    return None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
@@ -21,9 +22,7 @@ from alula.loads.case.case import Case
 from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 Real = NDArray[np.float64]
-ESTIMATED = Source(
-    kind=SourceKind.DISCRETISATION, detail="fourfold estimate on one mesh, since none was refined for layers"
-)
+ESTIMATED = Source(kind=SourceKind.DISCRETISATION, detail=reason("fourfold_estimate_of_layers"))
 
 
 def layer_envelopes(
@@ -97,8 +96,8 @@ def _largest(motion: LinkMotion, curves: Sequence[VariantCurve], *, brittle: boo
     return max(found)
 
 
-def _lacking(motion: LinkMotion, repetitions: float | None) -> str:
-    """Say why there is no fatigue of layers; "" where there is one, or none is asked for.
+def _lacking(motion: LinkMotion, repetitions: float | None) -> Reason | None:
+    """Return why there is no fatigue of layers; None where there is one, or none is asked for.
 
     It is asked for where repetitions are stated, or the card has fatigue data of either kind.
     """
@@ -106,11 +105,8 @@ def _lacking(motion: LinkMotion, repetitions: float | None) -> str:
     if material.fatigue_across_layers is not None:
         return not_closed(motion.evaluated)
     if repetitions is None and material.fatigue is None:
-        return ""
-    return (
-        f"the card of '{material.title}' has no fatigue data across the layers; add "
-        "[materials.<name>.fatigue_across_layers] with stress, cycles and source, measured on specimens built upright"
-    )
+        return None
+    return reason("no_fatigue_data_of_layers", material=material.title)
 
 
 def _peaks(motion: LinkMotion, layers: Layers) -> tuple[Real, NDArray[np.int64], NDArray[np.bool_]]:
@@ -162,7 +158,7 @@ def _over_motion(
         pose=int(np.flatnonzero(motion.evaluated)[worst - curve.first]),
         location=at,
         fatigue=None,
-        no_fatigue="",
+        no_fatigue=None,
     )
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
 from alula.fea.elements.mouth import reference_surfaces
@@ -37,8 +38,8 @@ Real = NDArray[np.float64]
 
 LAWS = (WIDE, NARROW)
 ELSEWHERE, FATIGUE_ELSEWHERE = (
-    Source(kind=SourceKind.DISCRETISATION, detail=f"fourfold estimate on one mesh, since none was refined for {where}")
-    for where in ("this pose", "the place where fatigue is worst")
+    Source(kind=SourceKind.DISCRETISATION, detail=reason(f"fourfold_estimate_of_{what}"))
+    for what in ("pose", "fatigue")
 )
 
 
@@ -221,7 +222,7 @@ class LinkMotion:
         LinkEnvelope
         """
         solved, material, space = self.solved, self.material, self.solved.space
-        lacking = (missing_data(material) or not_closed(self.evaluated)) if fatigue else "it was not asked for"
+        lacking = (missing_data(material) or not_closed(self.evaluated)) if fatigue else reason("not_asked_for")
         found = {}
         for name, curves in self.curves.items():
             series, load = MeshFactors.of(refined, name, material), (scatter or {}).get(name, Scatter())
@@ -280,7 +281,7 @@ class LinkMotion:
                 without=series.without,
             )
         else:
-            peak = Band.unknown("the peak has no limit")
+            peak = Band.unknown(reason("peak_without_limit"))
         return LoadCaseEnvelope(
             name=name,
             variants=tuple(variants),

@@ -1,5 +1,6 @@
 """The linkage as a whole over a motion: whether it may give way by its linear frame, and its numbers at some poses."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from alula.fea.buckling.linkage import by_linear_theory
 from alula.fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Verdict
@@ -44,8 +46,8 @@ class LinkageOverMotion:
         Number of its pose; -1 where it is not known.
     displacement : Band
         The largest of any place [mm]; not known where it gives way at a pose.
-    where : str
-        That place, for people; "" where it is not known.
+    where : Reason or str
+        That place; "" where it is not known.
     displacement_pose : int
         Number of its pose; -1 where it is not known.
     """
@@ -54,7 +56,7 @@ class LinkageOverMotion:
     limit_load: Band
     limit_pose: int
     displacement: Band
-    where: str
+    where: Reason | str
     displacement_pose: int
 
 
@@ -93,9 +95,8 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         if not found:
             continue
         least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
-        where = f"{motion.coordinate} = {np.degrees(motion.angles[i]):.5g} deg"
-        how = f"at {where} linear theory finds it unstable or at a dead point at {least:.3g} times the load"
-        remedy = "check that pose with alula check, which follows the deformed shape"
+        where = reason("pose_of_motion", coordinate=motion.coordinate, value=math.degrees(motion.angles[i]), unit="deg")
+        how, remedy = reason("unstable_at_pose", pose=where, factor=least), reason("check_that_pose")
         slack = stated_scatter(case, load_case).times(eyes)
         outcome = by_linear_theory(load_case, least, factor, slack, how, remedy)
         if outcome.verdict is not Verdict.PASS:
@@ -202,10 +203,12 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
         if not isinstance(check, LimitLoadCheck):
             continue
         for load_case, over in found.items():
-            where = f"; the least of {len(over.poses)} of {len(moved.motion.angles)} poses"
+            pose = None
             if over.limit_pose >= 0:
-                angle = moved.motion.told(moved.motion.angles[over.limit_pose])
-                where += f", at {moved.motion.coordinate} = {float(angle):.5g} {moved.motion.unit}"
+                at, motion = moved.motion.told(moved.motion.angles[over.limit_pose]), moved.motion
+                pose = reason("pose_of_motion", coordinate=motion.coordinate, value=float(at), unit=motion.unit)
+            counts = {"looked_at": len(over.poses), "poses": len(moved.motion.angles)}
+            where = reason("least_of_poses", **counts, pose=pose)
             yield limit_load_outcome(name, check, load_case, over.limit_load, where)
 
 
@@ -217,7 +220,7 @@ def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> l
     return list(dict.fromkeys((counted[first_least(distances)], counted[first_largest(torques)])))
 
 
-def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, str]:
+def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, Reason | str]:
     """Limit-load factor and largest displacement at a pose, and the place of the latter."""
     try:
         forces, shape = forces_at(moved, load_case, i), shape_at(moved, load_case, i)
@@ -227,7 +230,7 @@ def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, str]:
         return Band.unknown(str(error)), Band.unknown(str(error)), ""
 
 
-def _over(poses: list[int], at: list[tuple[Band, Band, str]]) -> LinkageOverMotion:
+def _over(poses: list[int], at: list[tuple[Band, Band, Reason | str]]) -> LinkageOverMotion:
     limits, moves, places = zip(*at, strict=True)
     least = Band.unknown(next((b.without for b in limits if b.unknowable), ""))
     most, where, least_at, most_at = Band.unknown(next((b.without for b in moves if b.unknowable), "")), "", -1, -1

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source
 from alula.fea.motion.envelope_result import VariantCurve
 from alula.fea.refine.discretisation import Discretisation, discretisation_source, judged
@@ -18,7 +19,7 @@ from alula.loads.records.bearing import Span
 
 Real = NDArray[np.float64]
 
-ONE_MESH = "the error of its one mesh is not estimated"
+ONE_MESH = reason("error_of_one_mesh_unknown")
 AGREEMENT = 5e-3
 """Relative accuracy of the peak of a pose by unit loads, compared with a direct solution."""
 
@@ -30,7 +31,7 @@ class MeshFactors:
         self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
         self.discretisation: Discretisation | None = None
         self.sources: tuple[Source, ...] = ()
-        self.without = ONE_MESH
+        self.without: Reason | str = ONE_MESH
         self._refined: dict[tuple[Span, Transfer | None], float] = {}
         self._size = math.inf
 
@@ -56,7 +57,7 @@ class MeshFactors:
         judgements = [judged(refined, number, STRESS[material.brittle]) for number in numbers]
         found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
         source = discretisation_source(found.discretisation.stress, sharp_edges=refined.sharp_edges)
-        found.sources, found.without = (replace(source, detail=f"{source.detail}, at the worst pose"),), ""
+        found.sources, found.without = (replace(source, detail=reason("at_worst_pose", found=source.detail)),), ""
         for number, judgement in zip(numbers, judgements, strict=True):
             case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
             key = case.span, case.transfer

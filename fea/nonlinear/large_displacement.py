@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from alula.fea.common.band import Band
 from alula.fea.common.convex import least_of_convex
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.build import build_frame
@@ -77,8 +78,8 @@ class LargeDisplacement:
         Largest distance between two points of the pose [mm].
     linear : float
         Largest displacement by the linear frame [mm]; 0 where there is no frame.
-    where : str
-        Place of that displacement, for people.
+    where : Reason or str
+        Place of that displacement.
     held : float
         Share of the load up to which stable equilibrium was found; 1 for all of it.
     lost : float
@@ -105,8 +106,8 @@ class LargeDisplacement:
         On the deformed shape, in global axes; None unless deformed.
     links : dict of str to LinkLoads
         Loads of each link on the deformed shape, in its chord's frame; empty unless deformed.
-    sentence : str
-        For people.
+    reason : Reason
+        Why it was or was not followed on the deformed shape, and what was found there.
     frame : LinkageFrame or None
         The undeformed one; None where there is no frame.
     solution : FrameSolution or None
@@ -134,7 +135,7 @@ class LargeDisplacement:
     state: State
     span: float
     linear: float = 0.0
-    where: str = ""
+    where: Reason | str = ""
     held: float = 1.0
     lost: float = math.inf
     scatter: Scatter = field(default_factory=Scatter)
@@ -147,7 +148,7 @@ class LargeDisplacement:
     points: Mapping[tuple[str, str], Real]
     reactions: Reactions | None = None
     links: Mapping[str, LinkLoads]
-    sentence: str
+    reason: Reason
     frame: LinkageFrame | None = None
     solution: FrameSolution | None = None
     play: Source | None = None
@@ -253,28 +254,28 @@ class LargeDisplacement:
         Without upper end where it holds ``MOST`` times the load; not known where no frame tells.
         """
         if self.frame is None or self.buckling is None or self.factor is None:
-            return Band.unknown(self.sentence)
+            return Band.unknown(self.reason)
         if self.blind:
-            return Band.unknown(f"the frame takes link {self.blind} for a beam along its axis, which does not tell")
+            return Band.unknown(reason("frame_blind_to_link", link=self.blind))
         known, soft = self.softness, 1.0 if self.softness is None else self.softness.value
         eyes = self.eyes if known is None else Scatter(low=known.low, high=known.high, sources=known.sources)
         slack = self.scatter.times(eyes)
         sources, faults = slack.sources, self.buckling / LEAST_LINEAR / slack.high
         if self.state == "off" or self.factor / SNAP / slack.high >= MOST:
             value, low, high = self.factor / soft, self.factor / SNAP / slack.high, self.buckling / slack.low
-            sources = (*sources, Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"))
+            sources = (*sources, Source(kind=SourceKind.SNAP_THROUGH, detail=reason("linear_theory_too_high")))
         else:
             value, lost = (self.held, self.lost) if self.gives_way else _end(self.frame, self.held)
             low, high = value / slack.high, lost / slack.low
             value = value / soft if math.isfinite(lost) else MOST
-            sources = (Source(kind=SourceKind.PATH, detail="steps of the load"), *sources)
+            sources = (Source(kind=SourceKind.PATH, detail=reason("steps_of_load")), *sources)
             if faults < low:
-                detail = f"buckling at less than {LEAST_LINEAR:g} times the load"
+                detail = reason("buckling_below", factor=LEAST_LINEAR)
                 low, sources = faults, (*sources, Source(kind=SourceKind.IMPERFECTION, detail=detail))
         by_itself = self.alone / LEAST_LINEAR / self.scatter.high
         if self.alone < value or by_itself < low:
             value, low = min(value, self.alone), min(low, by_itself)
-            sources = (*sources, Source(kind=SourceKind.IMPERFECTION, detail="buckling of a link by itself"))
+            sources = (*sources, Source(kind=SourceKind.IMPERFECTION, detail=reason("buckling_of_link")))
         if value >= MOST:
             return Band(value=MOST, low=min(low, MOST), high=math.inf, sources=distinct(sources))
         return Band(value=value, low=min(low, value), high=max(high, value), sources=distinct(sources))
@@ -335,12 +336,10 @@ def examine(
     pose = forces.reactions.pose
     size = span(pose)
 
-    def left(state: State, why: str) -> LargeDisplacement:
-        sentence = f"large displacement was not checked{why}"
-        return LargeDisplacement(state=state, span=size, points={}, links={}, sentence=sentence)
+    def left(state: State, why: Reason) -> LargeDisplacement:
+        return LargeDisplacement(state=state, span=size, points={}, links={}, reason=why)
 
-    off = case.large_displacement == "off"
-    as_said = ", because the case says large_displacement = off"
+    off, as_said = case.large_displacement == "off", reason("large_displacement_off")
     frame, solution = forces.frame, forces.solution
     try:
         if frame is None or solution is None:
@@ -348,7 +347,7 @@ def examine(
             solution = solve_frame(frame.model)
         factor = linkage_factor(frame) if buckling is None else buckling
     except (CaseError, CannotRunError) as error:
-        return left("off", as_said) if off else left("unknown", f": {error}")
+        return left("off", as_said) if off else left("unknown", reason("large_displacement_unknown", error=str(error)))
     scatter = stated_scatter(case, title)
     blind = blind_link(case)
     eyes = Scatter() if blind else compliance_range(case, frame, solution)
@@ -372,10 +371,7 @@ def examine(
         links={},
         frame=frame,
         solution=solution,
-        sentence=(
-            f"the linkage moves by at most {linear:.3g} mm ({where}), {100.0 * linear / size:.3g} % of its span of "
-            f"{size:.4g} mm (limit {100.0 * LARGE:g} %): equilibrium in the undeformed pose is accurate enough"
-        ),
+        reason=reason("moves_little", linear=linear, where=where, share=linear / size, span=size, limit=LARGE),
     )
     told = max(LEAST_FACTOR, SNAP * eyes.high) * scatter.high
     if scatter.high * linear <= LARGE * size and min(factor, near) >= told:
@@ -467,29 +463,18 @@ def _deformed(
 ) -> LargeDisplacement:
     assert small.buckling is not None
     if small.share > LARGE:
-        lead = (
-            f"by linear theory the linkage moves by {small.linear:.3g} mm ({small.where}), {100.0 * small.share:.3g} % "
-            f"of its span of {small.span:.4g} mm, too far for linear theory (limit {100.0 * LARGE:g} %)"
-        )
+        share, where = small.share, small.where
+        why = reason("moves_too_far", linear=small.linear, where=where, share=share, span=small.span, limit=LARGE)
     elif small.buckling <= small.dead_point:
-        lead = (
-            f"by linear theory the linkage buckles at {small.buckling:.3g} times its load, too near for linear theory "
-            f"(limit {LEAST_FACTOR:g})"
-        )
+        why = reason("buckles_too_near", factor=small.buckling, limit=LEAST_FACTOR)
     else:
-        lead = (
-            f"{small.dead_point:.3g} times its displacements by linear theory take the linkage to a dead point, too "
-            f"near for linear theory (limit {LEAST_FACTOR:g})"
-        )
-    lead = f"{lead}; on its deformed shape "
+        why = reason("dead_point_too_near", factor=small.dead_point, limit=LEAST_FACTOR)
     try:
         found = followed(frame, 1.0)
     except NoEquilibriumError as error:
         state: State = "unstable" if error.buckled else "no equilibrium"
-        how = "buckles" if error.buckled else "gives way"
-        kind = "it is unstable beyond" if error.buckled else "a limit load or a snap-through"
-        sentence = f"{lead}it does not hold the load: it {how} at {100.0 * error.reached:.3g} % of it ({kind})"
-        return replace(small, state=state, held=error.reached, lost=error.failed, points={}, sentence=sentence)
+        lost = reason("buckles_below_load" if error.buckled else "gives_way_below_load", why=why, held=error.reached)
+        return replace(small, state=state, held=error.reached, lost=error.failed, points={}, reason=lost)
     points = frame.at_points(found.displacements)
     count = len(frame.model.nodes)
     reactions = frame.reactions(found.joint_wrenches[:count], found.residual, found.displacements[:count])
@@ -514,19 +499,20 @@ def _deformed(
             )
             for link in case.bending_links
         },
-        sentence=f"{lead}its points move by up to {moved:.3g} mm; joint forces and verdict come from that shape",
+        reason=reason("holds_on_deformed_shape", why=why, moved=moved),
     )
 
 
-def _largest(frame: LinkageFrame, solution: FrameSolution) -> tuple[float, str]:
+def _largest(frame: LinkageFrame, solution: FrameSolution) -> tuple[float, Reason | str]:
     """Largest displacement of nodes and of stations between them [mm], and where."""
     sizes = np.linalg.norm(solution.displacements[:, :3], axis=1)
     node = int(np.argmax(sizes))
-    largest, where = float(sizes[node]), frame.model.name(node)
+    largest = float(sizes[node])
+    where: Reason | str = frame.model.name(node)
     for i in range(len(frame.model.elements)):
         length = frame.model.length(i)
         between = np.linalg.norm(solution.axis_displacements(i, length * np.array(_ALONG)), axis=1).max()
         if between > largest:
             a, b = frame.model.elements[i].nodes
-            largest, where = float(between), f"between {frame.model.name(a)} and {frame.model.name(b)}"
+            largest, where = float(between), reason("between", one=frame.model.name(a), other=frame.model.name(b))
     return largest, where

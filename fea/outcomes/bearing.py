@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
 from alula.geometry.base.errors import CaseError
@@ -22,7 +23,7 @@ from alula.loads.records.check_spec import BearingCheck
 
 Real = NDArray[np.float64]
 
-WITHOUT = "the joint force of statics, evenly over the pin's projected area"
+WITHOUT = reason("evenly_over_projected_area")
 
 
 def pressing(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
@@ -134,4 +135,4 @@ def bearing_outcome(
     load = load_scatter(case, load_case).times(growth or Scatter())
     eye, factor = weakest_eye(case, name, joint, wrenches, load)
     found = CheckOutcome.of(name, Subject.pin(joint), load_case, Quantity.SAFETY_FACTOR, factor, check.limit)
-    return found.because(f"bearing on the eye of {eye}: {found.reason}")
+    return found.because(reason("bearing_on_eye", link=eye, why=found.reason))

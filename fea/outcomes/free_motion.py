@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
@@ -166,7 +167,7 @@ def rims(case: Case, joint: str, link: str) -> tuple[float, float]:
     return found or (-_shortest(case) / 2.0, _shortest(case) / 2.0)
 
 
-def unknown_lengths(case: Case) -> tuple[str, ...]:
+def unknown_lengths(case: Case) -> tuple[Reason, ...]:
     """Say how long holes with play are taken to be whose length no part and no thickness tells.
 
     Parameters
@@ -175,17 +176,14 @@ def unknown_lengths(case: Case) -> tuple[str, ...]:
 
     Returns
     -------
-    tuple of str
-        A sentence, or none.
+    tuple of Reason
+        One, or none.
     """
     holes = {(joint, link) for joint in case.joints for group in loose_holes(case, joint) for link, _ in group}
     unknown = [link for link in case.links if any(on == link and not known_hole(case, j, on) for j, on in holes)]
     if not unknown:
         return ()
-    return (
-        f"the holes of {', '.join(unknown)} are taken to be as long as the shortest of the others, "
-        f"{_shortest(case):.3g} mm, since no thickness is stated",
-    )
+    return (reason("holes_as_long_as_shortest", links=unknown, length=_shortest(case)),)
 
 
 def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> Mapping[tuple[str, str], Real]:

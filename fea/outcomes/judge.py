@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from alula.fea.buckling.linkage import linkage_outcomes
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.frame.joint_forces import JointForces
@@ -152,7 +153,7 @@ def safety_factor_outcome(
 def _with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckOutcome:
     """Return an outcome on a link with what its meshes have to do with it where it is open."""
     if meshes is not None and outcome.value.unknowable:
-        return outcome.because(meshes.sentence)
+        return outcome.because(meshes.reason)
     if meshes is not None and outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
-        return outcome.because(f"{outcome.reason}; refinement ended because {meshes.stopped}")
+        return outcome.because(reason("open_for_meshes", found=outcome.reason, why=meshes.stopped))
     return outcome

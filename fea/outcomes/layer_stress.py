@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.solid.layers import Layers
 
@@ -42,9 +43,7 @@ class LayerStress:
     scan: NDArray[np.float64] | None
 
     @property
-    def place(self) -> str:
-        """Where the peak is and what acts there, for people."""
-        x, y, z = (f"{value:.1f}".replace("-0.0", "0.0") for value in self.location)
-        kind = "compression" if self.tension < 0.0 else "tension"
-        across = f"{abs(self.tension):.3g} MPa of {kind} across the layers"
-        return f"largest at x = {x}, y = {y}, z = {z} mm: {across}, {self.shear:.3g} MPa of shear along them"
+    def peak(self) -> Reason:
+        """Where the peak is and what acts there."""
+        place = tuple(map(float, self.location))
+        return reason("peak_of_layers", place=place, tension=self.tension, shear=self.shear)

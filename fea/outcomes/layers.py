@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -47,7 +48,7 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
         if found is not None:
             yield _judged(outcome(found.safety_factor), found, material.title)
         elif result.beam.idle:
-            yield outcome(Band.exact(np.inf)).because("nothing acts on this link")
+            yield outcome(Band.exact(np.inf)).because(reason("nothing_acts_on_link"))
         elif material.strength_across_layers is None:
             yield outcome(Band.unknown()).because(no_strength(material.title))
         else:
@@ -97,7 +98,7 @@ def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_m
     if not least < factor.low or factor.low == math.inf:
         return factor
     width = factor.low / least if least > 0.0 else math.inf
-    build = Source(kind=SourceKind.BUILD, detail="none is stated", width=width)
+    build = Source(kind=SourceKind.BUILD, detail=reason("none_is_stated"), width=width)
     return replace(factor, low=least, sources=distinct(factor.sources, (build,)))
 
 
@@ -122,10 +123,8 @@ def _by_hand(material: Material, result: LinkResult) -> Band:
 
 def _bounded(outcome: CheckOutcome) -> CheckOutcome:
     if outcome.verdict is Verdict.PASS:
-        return outcome.because(f"{outcome.reason}; by hand this is the least for any direction of the layers")
-    return outcome.because(
-        "by hand only the least of layers in any direction is known; run the solid model (--fidelity solid)"
-    )
+        return outcome.because(reason("least_of_layers_by_hand", found=outcome.reason))
+    return outcome.because(reason("layers_by_hand"))
 
 
 def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> CheckOutcome:
@@ -145,24 +144,25 @@ def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> Chec
     if not (open_yet and any(source.kind is SourceKind.BUILD for source in outcome.value.sources)):
         return outcome
     material, part = case.material_of(link), case.links[link].part
-    said = f"parts.{part} states no build_direction, and built in the weakest one its layers part first; state it"
     if material.shear_strength_between_layers is None:
-        said = f"parts.{part} states no build_direction, and the card of '{material.title}' states no "
-        said += "shear_strength_between_layers, which may be the weakest; state both"
-    return outcome.because(f"{outcome.reason}; {said}")
+        why = reason("neither_direction_nor_shear_strength", part=part, material=material.title)
+    else:
+        why = reason("no_build_direction", part=part)
+    return outcome.because(together(outcome.reason, why))
 
 
 def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutcome:
     meshes = found.discretisation
     if outcome.value.unknowable:
-        return outcome.because(meshes.sentence)
-    stopped = f"; refinement ended because {meshes.stopped}" if meshes.stopped else ""
-    open_yet = outcome.verdict is Verdict.UNDECIDED
-    outcome = outcome.because(f"{outcome.reason}{stopped if open_yet else ''}; {found.place}")
+        return outcome.because(meshes.reason)
+    why = outcome.reason
+    if outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
+        why = reason("open_for_meshes", found=why, why=meshes.stopped)
+    outcome = outcome.because(together(why, found.peak))
     return outcome if found.layers.between is not None else without_shear(outcome, title)
 
 
-def no_strength(title: str) -> str:
+def no_strength(title: str) -> Reason:
     """Return why layers are not judged without their strength, and what to do.
 
     Parameters
@@ -172,12 +172,9 @@ def no_strength(title: str) -> str:
 
     Returns
     -------
-    str
+    Reason
     """
-    return (
-        f"the card of '{title}' states no strength_across_layers; add it, measured on specimens built upright, or "
-        "remove build_direction from the part"
-    )
+    return reason("no_strength_across_layers", material=title)
 
 
 def without_shear(outcome: CheckOutcome, title: str) -> CheckOutcome:
@@ -194,8 +191,5 @@ def without_shear(outcome: CheckOutcome, title: str) -> CheckOutcome:
     CheckOutcome
     """
     if outcome.verdict is not Verdict.FAIL:
-        return outcome.left_open(
-            f"shear along the layers may decide, but the card of '{title}' states no shear_strength_between_layers; "
-            f"add it. By tension across the layers alone: {outcome.reason}"
-        )
+        return outcome.left_open(reason("no_shear_strength_of_layers", material=title, by_tension=outcome.reason))
     return outcome

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from alula.fea.common.reason import Reason, reason
+
 DISPLACEMENT_AGREEMENT = 1e-3
 STRESS_AGREEMENT = 1e-2
 """Largest differences of displacements and von Mises stresses, each over its largest value, that count as agreement of
@@ -60,8 +62,8 @@ class SecondOpinion:
         False where the peak of our mesh is no result: what two programs share then is its mesh alone.
     answer : Answer or None
         None where CalculiX did not answer.
-    reason : str
-        Why it did not.
+    reason : Reason or str
+        Why it did not; "" where it did.
     """
 
     link: str
@@ -73,18 +75,20 @@ class SecondOpinion:
     displacement: float
     known: bool
     answer: Answer | None
-    reason: str = ""
+    reason: Reason | str = ""
 
     @property
-    def sentence(self) -> str:
-        """What the reader must know, or nothing where both agree."""
+    def warning(self) -> Reason | None:
+        """What the reader must know; None where both agree."""
         if self.answer is None:
-            return f"{self.link}: no second opinion: {self.reason}; its deck is {self.deck}"
+            return reason("no_second_opinion", link=self.link, why=self.reason, deck=self.deck)
         if self.answer.agrees:
-            return ""
-        return (
-            f"{self.link}: CalculiX differs by {self.answer.displacement_gap:.2%} in displacement and "
-            f"{self.answer.stress_gap:.2%} in von Mises stress on the same mesh (at most "
-            f"{DISPLACEMENT_AGREEMENT:.1%} and {STRESS_AGREEMENT:.0%} are expected); on coarse curved elements, whose "
-            "stiffness CalculiX integrates at fewer points, refining brings both together; else trust neither"
+            return None
+        return reason(
+            "second_opinion_differs",
+            link=self.link,
+            displacement=self.answer.displacement_gap,
+            stress=self.answer.stress_gap,
+            displacement_expected=DISPLACEMENT_AGREEMENT,
+            stress_expected=STRESS_AGREEMENT,
         )

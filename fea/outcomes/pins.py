@@ -47,6 +47,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.pin_between import largest_between
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
@@ -64,7 +65,7 @@ from alula.loads.text.caveat import Caveat, Topic
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 NO_TORSION = Band.exact(0.0)
-TWIST = (Source(kind=SourceKind.TORQUE_TRANSFER, detail="of a bonded joint, by its pin or by its faces"),)
+TWIST = (Source(kind=SourceKind.TORQUE_TRANSFER, detail=reason("torque_by_pin_or_faces")),)
 
 
 @dataclass(frozen=True, kw_only=True)

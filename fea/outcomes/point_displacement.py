@@ -13,6 +13,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
@@ -49,8 +50,8 @@ class PointDisplacement:
         What every link adds.
     forces : JointForces or None
         Joint forces.
-    why : str
-        Why nothing tells it; "" where something does.
+    why : Reason or None
+        Why nothing tells it; None where something does.
     """
 
     case: Case
@@ -60,7 +61,7 @@ class PointDisplacement:
     moved: LargeDisplacement
     shares: Shares
     forces: JointForces | None = None
-    why: str = ""
+    why: Reason | None = None
 
     @classmethod
     def of(
@@ -89,23 +90,27 @@ class PointDisplacement:
         """
         link, point = at
         displacement, factor, shares = moved.points.get((link, point)), moved.factor, Shares()
-        why = f"the frame gives no displacement: {moved.sentence}"
+        why: Reason | None = reason("frame_gives_no_displacement", why=moved.reason)
         if displacement is not None and moved.state in ("small", "deformed", "off"):
-            size, why = float(np.linalg.norm(displacement)), ""
+            size, why = float(np.linalg.norm(displacement)), None
             near = factor is not None and factor < SNAP
             shares = shares_of(case, moved, links, free, link, point, forces)
             if shares.framed is not None:
                 size = shares.framed.displaced(link, point).value
             blind = [other for other in shares.beams if not has_centre_line(case, other)]
             if blind:
-                taken = "rigid" if blind[0] == case.linkage.ground else "a beam along its axis"
-                why = f"the frame takes link {blind[0]} for {taken}, which does not tell how far it gives"
-                if free and moved.state == "small" and not isinstance(links[blind[0]], SolidResult):
-                    why += "; its solid model does: run --fidelity solid"
+                untold = free and moved.state == "small" and not isinstance(links[blind[0]], SolidResult)
+                why = reason(
+                    "solid_tells_how_far_it_gives" if untold else "frame_is_blind",
+                    link=blind[0],
+                    rigid=blind[0] == case.linkage.ground,
+                )
             elif not moved.followed and (near or size > LARGE * moved.span):
-                far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
-                what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
-                why = f"the linear frame {what}, so it is not valid; remove large_displacement = off from the case"
+                if near:
+                    what = reason("may_give_way_at", factor=factor, least=SNAP)
+                else:
+                    what = reason("moves_it_far", displacement=size, most=LARGE)
+                why = reason("linear_frame_not_valid", why=what)
         return cls(
             case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, forces=forces, why=why
         )
@@ -133,37 +138,33 @@ class PointDisplacement:
         return Band.unknown() if self.why else self.band()
 
     @cached_property
-    def no_end(self) -> str:
-        """Why the band has no upper end; "" where it has one."""
+    def no_end(self) -> Reason | None:
+        """Why the band has no upper end; None where it has one."""
         if self.why or math.isfinite(self.value.high):
-            return ""
+            return None
         if math.isfinite(self.elastic().high):
-            why = "play of pins may take the linkage through a dead point"
+            why = reason("play_through_dead_point")
         elif self.in_any_air.high == math.inf:
-            why = "the linkage gives way within the stated range of C_N"
+            why = reason("gives_way_in_some_air")
         elif self.moved.with_any_friction(self.link, self.point).high == math.inf:
-            why = "the linkage locks itself or gives way with friction as large as it may be"
-            if self.moved.locks and self._tight_in and not locks_on_tight_pins(self.case, self.load_case):
-                why += f", by the couples of pins that tilt in their holes; {self._tight_in}, in both links, narrows it"
+            why = reason("gives_way_with_any_friction")
+            if self.moved.locks and self._free_to_tilt and not locks_on_tight_pins(self.case, self.load_case):
+                why = reason("locks_by_tilting_pins", joints=self._free_to_tilt)
         elif math.isfinite(self.elastic(tilted=False).high):
             plain, _, most = self._tilted
-            why = (
-                f"pins that tilt in their holes let the frame move it by {most:.3g} mm in place of {plain:.3g} mm, so "
-                f"softly held that nothing bounds how this grows; {self._tight_in} narrows it"
-            )
+            why = reason("softly_held_by_tilting_pins", most=most, tight=plain, joints=self._free_to_tilt)
         elif self.moved.followed:
-            why = "the linkage gives way with links as soft, or a load as large, as they may be"
+            why = reason("gives_way_as_soft_as_may_be")
         else:
-            why = f"by linear theory a factor of {SNAP:.2g} or less on the load may make it give way"
-        return f"the band has no upper end, since {why}"
+            why = reason("near_giving_way", factor=SNAP)
+        return reason("no_upper_end", why=why)
 
     @property
-    def _tight_in(self) -> str:
-        """What narrows a band that tilting pins widen; "" where every joint says in which links its pin is tight."""
+    def _free_to_tilt(self) -> tuple[str, ...]:
+        """Joints between layers that do not say in which links their pins are tight, which would narrow a band."""
         every = self.case.linkage.joints.items()
         turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
-        loose = [x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in]
-        return f"tight_in of joints {', '.join(loose)}" if loose else ""
+        return tuple(x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in)
 
     @cached_property
     def sinking(self) -> float:
@@ -275,7 +276,7 @@ class PointDisplacement:
             after = float(np.linalg.norm(moved.grown.points[link, point])) / self._linear
             grown, least = max(grown, after), min(after, 1.0)
         value = found.value if solids or shares.framed is not None else float(np.linalg.norm(moved.points[link, point]))
-        grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
+        grows = Source(kind=SourceKind.GROWTH, detail=reason("towards_buckling_or_dead_point"))
         return Band(
             value=value,
             low=min(found.low * slack[0] * least, value),
@@ -437,31 +438,33 @@ def point_outcome(
     at = case.displaced_point(name, check)
     told = PointDisplacement.of(case, at, load_case, moved, links, free, forces)
     subject = Subject.point(told.point, told.link)
-    found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why)
+    found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why or "")
     if told.why:
         return found
-    shape = "on its deformed shape" if moved.followed else "by linear theory"
-    notes = [told.no_end] if told.no_end else []
-    notes += () if moved.frame is None else moved.frame.notes
+    notes: list[Reason | str | None] = [told.no_end, *(() if moved.frame is None else moved.frame.notes)]
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
-        notes.append(
-            "pins move as the mean of their bores; sinking into the sides that they press could add up to "
-            f"{told.sinking:.2g} mm, which the band does not hold{' and which would miss the limit' if beyond else ''}"
-        )
+        notes.append(reason("pins_may_sink_beyond_limit" if beyond else "pins_may_sink", most=told.sinking))
     if told.play is not None:
         alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), check.maximum)
-        decides = f"; without play the verdict would be {alone.value}" if alone is not found.verdict else ""
         loose, tilting = told.play.free_motion(told.link, told.point), told.tilting
-        tilted = ""
-        if tilting is not None:
-            loose = max(loose, tilting.plane.largest())
-            tilted = f" in the plane and, as they tilt in their holes, by up to {tilting.across:.3g} mm across it"
-        notes.append(f"play of pins lets it move by up to {loose:.3g} mm to either side{tilted}{decides}")
+        notes.append(
+            reason(
+                "play_lets_it_move",
+                plane=loose if tilting is None else max(loose, tilting.plane.largest()),
+                across=None if tilting is None else tilting.across,
+                without=None if alone is found.verdict else alone.value,
+            )
+        )
         notes += unknown_lengths(case) if tilting is not None else ()
     if found.verdict is Verdict.UNDECIDED:
         notes += _remedies(told, check.maximum, links)
-    return found.because("; ".join([f"by {told.shares.model}, {shape}: {found.reason}", *notes]))
+    by_model = reason(
+        "displacement_on_deformed_shape" if moved.followed else "displacement_by_linear_theory",
+        model=told.shares.model,
+        found=found.reason,
+    )
+    return found.because(together(by_model, *notes))
 
 
 def meshes_to_refine(
@@ -493,24 +496,24 @@ def meshes_to_refine(
     return found
 
 
-_NO_MESH = "finer meshes would not decide it"
+_NO_MESH = reason("no_mesh_would_decide")
 
 
-def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
+def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[Reason]:
     """Say what would decide, where something would."""
     if told.free_motion > limit:
-        return ["only less play would decide it: a smaller clearance, or longer holes"]
+        return [reason("less_play_would_decide")]
     if told.shares.unsolved or told.by_centre_lines:
-        return ["solid models of all links (--fidelity solid) have a narrower band"]
+        return [reason("solids_have_narrower_band")]
     if told.shares.framed is not None:
         exact = Quantity.DISPLACEMENT.sense.verdict(told.band(meshes=0.0), limit)
-        return [_NO_MESH if exact is Verdict.UNDECIDED else "a smaller solid.mesh_size would decide it"]
+        return [_NO_MESH if exact is Verdict.UNDECIDED else reason("smaller_mesh_size_would_decide")]
     wanted = told.meshes_to_refine(limit, links)
     if not told.shares.beams and not wanted:
         return [_NO_MESH]
     stopped = {link: links[link] for link in wanted}
     return [
-        f"refinement of {link} ended because {result.discretisation.stopped}"
+        reason("refinement_of_link_ended", link=link, why=result.discretisation.stopped)
         for link, result in stopped.items()
         if isinstance(result, SolidResult) and result.discretisation.stopped
     ]

@@ -10,6 +10,7 @@ from alula.fea.beam.deflection import virtual_work as plain_work
 from alula.fea.beam.theory import internal_forces
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
 from alula.fea.frame.joint_forces import JointForces, solved_frame
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -24,7 +25,7 @@ from alula.loads.statics.statics import Drive, Reactions, solve_statics
 
 NOTHING = 1e-9
 """Share of the unit load that is rounding: in what a link bears of it, and in what is left over of its balance."""
-MESHES = Source(kind=SourceKind.DISCRETISATION, detail="of every link's solid, as that of its largest displacement")
+MESHES = Source(kind=SourceKind.DISCRETISATION, detail=reason("as_largest_displacement_of_solids"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,14 +56,11 @@ class Shares:
     framed: JointForces | None = None
 
     @property
-    def model(self) -> str:
-        """Which model gives the displacement, for people."""
+    def model(self) -> Reason:
+        """Which model gives the displacement."""
         if self.framed is not None:
-            return "the frame of the links' solids"
-        if not self.solids:
-            return "the frame of the linkage"
-        found = f"the solid model{'s' if len(self.solids) > 1 else ''} of {', '.join(self.solids)}"
-        return found + (f" and of the frame's beams of {', '.join(self.beams)}" if self.beams else "")
+            return reason("frame_of_solids")
+        return reason("solids_and_beams", solids=tuple(self.solids), beams=self.beams)
 
     @property
     def sources(self) -> tuple[Source, ...]:

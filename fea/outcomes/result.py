@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from alula.fea.beam.theory import BeamCheck, CantileverCheck
 from alula.fea.common.band import Band
 from alula.fea.common.change import VerdictChange
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.frame.joint_forces import JointForces, WayToHold
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -110,12 +111,12 @@ class LinkResult:
         The hand calculation by beam theory.
     brittle : bool
         True where the largest principal stress decides, False where von Mises stress does.
-    notes : tuple of str
+    notes : tuple of Reason or str
         What the reader must know about these numbers.
     decided_by : {"beam", "solid", ""}
         Model that decided the link under all load cases; "" where a model was forced that may not decide.
-    why : str
-        Why that model, for people.
+    why : Reason or str
+        Why that model.
     layers : LayerStress or None
         Of a printed link whose layers are checked, by its solid.
     """
@@ -130,9 +131,9 @@ class LinkResult:
     location: NDArray[np.float64]
     beam: BeamCheck
     brittle: bool
-    notes: tuple[str, ...]
+    notes: tuple[Reason | str, ...]
     decided_by: str
-    why: str
+    why: Reason | str
     layers: LayerStress | None = None
 
     @property
@@ -162,12 +163,12 @@ class HandResult(LinkResult):
 
     Attributes
     ----------
-    next_cost : str
+    next_cost : Reason or None
         What a solid model would have cost; "" where it was not weighed.
     """
 
     fidelity = "beam"
-    next_cost: str
+    next_cost: Reason | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,7 +233,7 @@ class LinkageNumbers:
     case: Case
     moved: LargeDisplacement
     forces: JointForces
-    largest: Callable[[], tuple[Band, str]]
+    largest: Callable[[], tuple[Band, Reason | str]]
 
     @property
     def limit_load(self) -> Band:
@@ -240,7 +241,7 @@ class LinkageNumbers:
         return self.moved.limit_load
 
     @cached_property
-    def displacement_and_place(self) -> tuple[Band, str]:
+    def displacement_and_place(self) -> tuple[Band, Reason | str]:
         """The largest displacement [mm], and its place for people; "" where it is not known."""
         return self.largest()
 
@@ -250,8 +251,8 @@ class LinkageNumbers:
         return self.displacement_and_place[0]
 
     @property
-    def where(self) -> str:
-        """The place that moves most, for people; "" where it is not known."""
+    def where(self) -> Reason | str:
+        """The place that moves most; "" where it is not known."""
         return self.displacement_and_place[1]
 
     @property
@@ -337,7 +338,7 @@ class CheckResult:
         Over all checks.
     timings : mapping of str to float
         Stage -> seconds.
-    warnings : tuple of str
+    warnings : tuple of Reason or str
         One sentence each.
     second_opinions : tuple of SecondOpinion
         CalculiX beside our solid models, where it was asked for.
@@ -366,7 +367,7 @@ class CheckResult:
     audit: StaticsAudit | None
     verdict: Verdict
     timings: Mapping[str, float]
-    warnings: tuple[str, ...]
+    warnings: tuple[Reason | str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
     changes: tuple[VerdictChange, ...] = ()

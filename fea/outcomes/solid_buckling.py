@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 
 from alula.fea.buckling.buckling import NAME, factor_band, judgement
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
@@ -13,7 +14,7 @@ from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.buckling_factor import MOST
 from alula.loads.case.case import Case
 
-NO_BEAM = "no beam stands for its buckling, and its solid was not solved; run the solid model (--fidelity solid)"
+NO_BEAM = reason("no_beam_and_no_solid")
 
 
 def solid_buckling_outcomes(case: Case, load_case: str, loaded: Mapping[str, LinkResult]) -> Iterator[CheckOutcome]:
@@ -56,7 +57,7 @@ def solid_buckling(result: LinkResult) -> SolidBuckling | None:
     return result.buckling if isinstance(result, SolidResult) else None
 
 
-def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
+def undecided_buckling(load_case: str, link: str, why: Reason | str) -> CheckOutcome:
     """Return the outcome of a link whose factor is not known.
 
     Parameters
@@ -64,8 +65,8 @@ def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
     load_case : str
         Its name.
     link : str
-    why : str
-        For people.
+    why : Reason or str
+        A text is that of an error.
 
     Returns
     -------
@@ -76,15 +77,18 @@ def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
 
 
 def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> CheckOutcome:
-    times = f"at {found.value:.3g}" if math.isfinite(found.value) else f"at more than {MOST:g}"
-    said = f"its solid buckles {times} times the load, {found.words}"
-    if found.least < found.value:
-        said += f"; at {found.least:.3g} times where its joints move with it"
-    mesh = Source(kind=SourceKind.DISCRETISATION, detail=f"up to {found.error:.1%} of the factor")
+    said = reason(
+        "solid_buckles",
+        factor=found.value,
+        most=MOST,
+        held=found.holding,
+        least=found.least if found.least < found.value else None,
+    )
+    mesh = Source(kind=SourceKind.DISCRETISATION, detail=reason("up_to_share_of_factor", share=found.error))
     ends = found.least * max(1.0 - found.error, 0.0), found.most * (1.0 + found.error)
     band = factor_band(case, load_case, link, min(found.value, MOST), ends, mesh)
     outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, said)
-    return outcome.because(said + judgement(outcome, None))
+    return outcome.because(reason("buckling_judged", found=said, judgement=judgement(outcome, None)))
 
 
 def solid_growth(found: SolidBuckling | None) -> Scatter:
@@ -103,5 +107,5 @@ def solid_growth(found: SolidBuckling | None) -> Scatter:
     least = found.least * (1.0 - found.error) if found is not None and not found.without else math.inf
     if not 1.0 < least < math.inf:
         return Scatter()
-    detail = f"bending towards buckling at {least:.3g} times the load"
+    detail = reason("bending_towards_buckling", factor=least)
     return Scatter(high=1.0 / (1.0 - 1.0 / least), sources=(Source(kind=SourceKind.GROWTH, detail=detail),))

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from alula.fea.buckling.wall import wall_caveats
 from alula.fea.common.at_temperature import as_if_cold, temperature_caveats
 from alula.fea.common.lasting import creep_caveats, fatigue_caveats
+from alula.fea.common.reason import Reason
 from alula.fea.outcomes.limits import layer_caveats, limit_caveats
 from alula.fea.outcomes.pins import shaft_caveats
 from alula.geometry.materials.plausible import untold, unusual
@@ -120,7 +121,7 @@ def _pins(case: Case) -> Iterator[Caveat]:
         )
 
 
-def unusual_materials(case: Case) -> list[str]:
+def unusual_materials(case: Case) -> list[Reason | str]:
     """Return a sentence for what is unusual in materials of links and checked pins, lacks a source, or is not known.
 
     Parameters
@@ -129,7 +130,7 @@ def unusual_materials(case: Case) -> list[str]:
 
     Returns
     -------
-    list of str
+    list of Reason or str
     """
     used = [case.part_of(link).material for link in case.checked_links]
     for check in case.all_checks.values():

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
 from alula.fea.outcomes.limits import least_safety_factor
 from alula.loads.case.case import Case
@@ -119,7 +120,7 @@ def _spread(lines: Sequence[LineLoad]) -> float:
     return largest
 
 
-def nothing_acts(title: str, size: float) -> str:
+def nothing_acts(title: str, size: float) -> Reason:
     """Say why the checks of a load case decide nothing.
 
     Parameters
@@ -131,10 +132,9 @@ def nothing_acts(title: str, size: float) -> str:
 
     Returns
     -------
-    str
+    Reason
     """
-    why = "its loads cancel where they act, or pass by every link with a part" if size else "it states no load"
-    return f"nothing acts inside any link under load case '{title}' ({why}), so its checks cannot decide; add a load"
+    return reason("nothing_acts", load_case=title, why=reason("loads_cancel" if size else "states_no_load"))
 
 
 def undecided(

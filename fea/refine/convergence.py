@@ -20,6 +20,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.base.errors import CannotRunError
 
 FORMAL_ORDER = 2.0
@@ -76,11 +77,11 @@ class GridConvergence:
     high: float
 
     @property
-    def rule(self) -> str:
+    def rule(self) -> Reason:
         """What the width of the interval follows from."""
         if self.high - self.value > (1.0 + 1e-9) * self.factor * self.estimate:
-            return f"index with factor {SAFETY:g}"
-        return f"{self.factor:g} times the estimate at the place"
+            return reason("by_index", factor=SAFETY)
+        return reason("by_estimate", factor=self.factor)
 
     @property
     def step(self) -> float:

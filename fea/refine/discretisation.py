@@ -1,9 +1,10 @@
-"""What a link's result says about its meshes: the error that they leave, in numbers and in words."""
+"""What a link's result says about its meshes: the error that they leave, in numbers, and why no more is known."""
 
 import math
 from dataclasses import dataclass
 from typing import Literal
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.refine.convergence import SERIES, GridConvergence
 from alula.fea.refine.link_series import NOT_RESOLVED, Measure
@@ -35,8 +36,8 @@ class Discretisation:
         Of the link, coarse to fine.
     sharp : SharpPeak or None
         The singular peak.
-    stopped : str
-        Why refinement ended before its aim; "" where it did not.
+    stopped : Reason or None
+        Why refinement ended before its aim; None where it did not.
     """
 
     status: MeshStatus
@@ -45,7 +46,7 @@ class Discretisation:
     displacement: GridConvergence
     meshes: tuple[MeshRecord, ...]
     sharp: SharpPeak | None
-    stopped: str
+    stopped: Reason | None
 
     @property
     def known(self) -> bool:
@@ -53,57 +54,34 @@ class Discretisation:
         return self.status not in UNKNOWN
 
     @property
-    def sentence(self) -> str:
-        """The state of convergence, for people."""
-        series = self.stress
-        count = len(self.meshes)
+    def reason(self) -> Reason:
+        """The state of convergence."""
+        series, finest, count = self.stress, self.meshes[-1], len(self.meshes)
+        remedy = reason("refine_further") if self.stopped is None else reason("refinement_ended", why=self.stopped)
         if self.status == "unresolved":
-            return (
-                f"mesh too coarse: estimated error {_percent(self.meshes[-1].error)} in the energy norm, limit "
-                f"{_percent(NOT_RESOLVED)}. No stress is reported; {self._remedy}"
-            )
+            return reason("mesh_too_coarse", error=finest.error, limit=NOT_RESOLVED, remedy=remedy)
         if self.sharp is not None:
-            return self.sharp.sentence
+            return self.sharp.reason
         if self.status == "edge":
-            return (
-                f"a sharp inner edge bears at least {_percent(LOADED)} of the peak stress. Showing whether that "
-                f"stress has a limit takes {SERIES} meshes, this run made {count}. No safety factor is reported; state "
-                "the real fillet_radius (of a pocket: floor_radius; of a part from CAD: round it there); "
-                f"{self._remedy}"
-            )
+            return reason("sharp_edge_bears_much", least=LOADED, wanted=SERIES, made=count, remedy=remedy)
         if self.status == "growing":
-            return (
-                f"the peak stress still grows after {count} meshes ({self._values} MPa), by {_percent(series.step)} in "
-                f"the last step. No safety factor is reported; {self._remedy}"
-            )
+            return reason("peak_still_grows", made=count, values=series.values, step=series.step, remedy=remedy)
         if self.status == "far":
-            return (
-                f"one mesh of {self.meshes[-1].elements:,} elements was enough: its error ({_percent(series.index)}, "
-                "with a fourfold margin) keeps clear of every limit"
-            )
-        order = "" if series.order is None else f", observed order {series.order:.1f}"
-        meshes = "one mesh" if count == 1 else f"{count} meshes, the finest"
-        found = (
-            f"{meshes} of {self.meshes[-1].elements:,} elements: peak {self._values} MPa{order}, "
-            f"error at most {_percent(series.index)} ({series.rule})"
+            return reason("one_mesh_was_enough", elements=finest.elements, error=series.index)
+        found = reason(
+            "error_of_meshes",
+            made=count,
+            elements=finest.elements,
+            values=series.values,
+            order=series.order,
+            error=series.index,
+            rule=series.rule,
         )
         if self.status == "converged":
-            return f"{found}: converged"
+            return reason("meshes_converged", found=found)
         if self.status == "decided":
-            return f"{found}, more than the {_percent(self.accuracy)} aimed at, but no limit lies within it"
-        return f"{found}, more than the {_percent(self.accuracy)} asked for: {self.stopped}"
-
-    @property
-    def _remedy(self) -> str:
-        return f"refinement ended because {self.stopped}" if self.stopped else "refine further"
-
-    @property
-    def _values(self) -> str:
-        return ", ".join(f"{value:.3g}" for value in self.stress.values)
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %"
+            return reason("meshes_decided", found=found, aim=self.accuracy)
+        return reason("meshes_stopped", found=found, aim=self.accuracy, why=self.stopped)
 
 
 def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> Source:
@@ -119,18 +97,17 @@ def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> S
     Returns
     -------
     Source
-        With its words for people.
     """
     if series.kind == "one mesh":
-        text = "estimated on one mesh, fourfold"
+        detail = reason("estimated_on_one_mesh")
     elif series.kind == "two meshes":
-        text = f"two meshes, no observed order: {series.rule}"
+        detail = reason("two_meshes", rule=series.rule)
     else:
-        text = f"grid convergence over {len(series.values)} meshes, {series.rule}"
+        detail = reason("grid_convergence", meshes=len(series.values), rule=series.rule)
     if sharp_edges:
-        text += f"; without the stress at sharp edges ({sharp_edges}), below {LOADED:.0%} of the peak and without limit"
+        detail = reason("without_sharp_edges", found=detail, edges=sharp_edges, most=LOADED)
     width = series.high / series.low if series.low > 0.0 else math.inf
-    return Source(kind=SourceKind.DISCRETISATION, detail=text, width=width)
+    return Source(kind=SourceKind.DISCRETISATION, detail=detail, width=width)
 
 
 def judged(refined: RefinedSolid, number: int, measure: Measure) -> Discretisation:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.nonlinear.large_displacement import LEAST_LINEAR
 from alula.fea.refine.error_estimate import estimate_error
 from alula.fea.refine.link_series import CHORD
@@ -15,7 +16,7 @@ from alula.loads.records.bearing import WIDE
 
 LARGEST_ERROR = 0.5
 """Share of a factor that a mesh may miss before the factor counts as unknown."""
-TOO_COARSE = f"its mesh is too coarse for a buckling factor, which may be off by more than {LARGEST_ERROR:.0%}"
+TOO_COARSE = reason("mesh_too_coarse_for_buckling", error=LARGEST_ERROR)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,9 +33,9 @@ class SolidBuckling:
         Joints hold it as well as they can; infinite where the value is 3 or more, so that the link cannot fail.
     error : float
         Share of the factors by which the mesh may miss them.
-    words : str
-        How joints hold it for ``value``, for people.
-    without : str
+    holding : Reason or str
+        How joints hold it for ``value``; "" where they are not known.
+    without : Reason or str
         Why they are not known; "" where they are.
     """
 
@@ -42,16 +43,17 @@ class SolidBuckling:
     least: float
     most: float
     error: float
-    words: str = ""
-    without: str = ""
+    holding: Reason | str = ""
+    without: Reason | str = ""
 
     @classmethod
-    def unknown(cls, why: str) -> "SolidBuckling":
+    def unknown(cls, why: Reason | str) -> "SolidBuckling":
         """Return what stands for factors that were not found.
 
         Parameters
         ----------
-        why : str
+        why : Reason or str
+            A text is that of an error.
 
         Returns
         -------
@@ -121,5 +123,5 @@ def _factors(
         least=min(buckled.factor for buckled in found),
         most=max(most, found[0].factor),
         error=error,
-        words=task.holding.words,
+        holding=task.holding.words,
     )

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded
 from alula.fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
 from alula.fea.refine.level import Level, level_of
@@ -111,7 +112,7 @@ class RefinedSolid:
         Of every case, in the order of ``solution.cases``.
     meshes : tuple of MeshRecord
         Coarse to fine.
-    stopped : str
+    stopped : Reason or None
         Why refinement ended before its aim was reached; "" where it was reached.
     far : bool
         True where one mesh sufficed since every limit is far away.
@@ -130,7 +131,7 @@ class RefinedSolid:
     solution: SolidSolution
     precision: tuple[CasePrecision, ...]
     meshes: tuple[MeshRecord, ...]
-    stopped: str
+    stopped: Reason | None
     far: bool
     accuracy: float
     sharp_edges: int
@@ -217,7 +218,8 @@ class _Link:
         self.meshes: list[MeshRecord] = [*(earlier.meshes if earlier else ())]
         self.precision: tuple[CasePrecision, ...] = earlier.precision if earlier else ()
         self.solution: SolidSolution | None = earlier.solution if earlier else None
-        self.stopped, self.done = "", False
+        self.stopped: Reason | None = None
+        self.done = False
         self.far = earlier is not None and earlier.far
         self.buckling = earlier.buckling if earlier else {}
         self._mesh: Callable[[], TaggedMesh] | None = None
@@ -244,7 +246,7 @@ class _Link:
         except (AlulaError, MemoryError) as error:
             if not self.levels:
                 raise type(error)(f"{self.name}: {error}") from None
-            self._stop(f"a finer mesh could not be used: {error or 'memory ran out'}")
+            self._stop(reason("finer_mesh_unusable", why=str(error) or reason("memory_ran_out")))
             return
         if solution is None:
             return
@@ -269,11 +271,11 @@ class _Link:
         if self._settled():
             self.done = True
         elif self.task.body.part.is_fixed:
-            self._stop("the mesh is that of the part's file, which is not refined")
+            self._stop(reason("mesh_of_file"))
         elif len(self.levels) >= self.effort.max_meshes:
-            self._stop(f"the largest number of meshes, {len(self.levels)}, is reached")
+            self._stop(reason("most_meshes_reached", most=len(self.levels)))
         elif time.perf_counter() - start > self.effort.time_limit:
-            self._stop(f"the time limit of {self.effort.time_limit:g} s is used up")
+            self._stop(reason("time_limit_used_up", limit=self.effort.time_limit))
         else:
             self._refine(pool)
 
@@ -296,14 +298,14 @@ class _Link:
     def _solved(self, mesh: TaggedMesh, progress: Progress) -> SolidSolution | None:
         unknowns = 3 * len(mesh.points)
         if self.levels and unknowns > self.effort.max_unknowns:
-            self._stop(f"the next mesh has {unknowns:,} unknowns, more than the {self.effort.max_unknowns:,} allowed")
+            self._stop(reason("next_mesh_too_large", unknowns=unknowns, allowed=self.effort.max_unknowns))
             return None
         progress(f"Solving {self.name}, mesh {len(self.levels) + 1}: {len(mesh.cells)} elements ...")
         task = self.task
         return solve_solid(mesh, E=task.E, nu=task.nu, density=task.density, loads=task.loads, line=task.line)
 
-    def _stop(self, reason: str) -> None:
-        self.stopped, self.done = reason, True
+    def _stop(self, why: Reason) -> None:
+        self.stopped, self.done = why, True
 
     @property
     def edges(self) -> Sequence[ReentrantEdge]:

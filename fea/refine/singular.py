@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.refine.convergence import williams_exponent
 from alula.geometry.meshing.mesh import ReentrantEdge
 
@@ -55,15 +56,16 @@ class SharpPeak:
     resolved: bool
 
     @property
-    def sentence(self) -> str:
-        """What the reader must know."""
-        x, y, z = (0.0 if abs(v) < 5e-4 else v for v in self.place)
-        return (
-            f"the stress at the sharp inner edge at x = {x:.3g}, y = {y:.3g}, z = {z:.3g} mm "
-            f"({np.degrees(self.angle):.0f}° of material) is singular: it has no limit, but grows with every finer "
-            f"mesh, as element size to the power {-self.growth:.2f} (theory {-self.theory:.2f}). State the real "
-            f"fillet_radius (of a pocket: floor_radius; of a part from CAD: round it there). For screening only: "
-            f"{self.distance:.2g} mm or more from such edges, the von Mises stress is at most {self.screening:.3g} MPa"
+    def reason(self) -> Reason:
+        """Why no number stands for it, and what does for screening."""
+        return reason(
+            "singular_edge",
+            place=tuple(0.0 if abs(v) < 5e-4 else float(v) for v in self.place),
+            degrees=float(np.degrees(self.angle)),
+            power=-self.growth,
+            theory=-self.theory,
+            distance=self.distance,
+            screening=self.screening,
         )
 
 

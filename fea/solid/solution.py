@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
 from alula.fea.elements.block_matrix import SymmetricBlockMatrix
 from alula.fea.elements.elasticity import assemble_stiffness
 from alula.fea.elements.mouth import Mouth
@@ -98,11 +99,11 @@ class SolidSolution:
         Every load case under every variant.
     solver : str
         Name of the solver.
-    solver_reason : str
+    solver_reason : Reason
         Why it was chosen.
     solver_error : float
         Largest relative error that it left in a case, in the energy norm (``alula.fea.solvers.solved``).
-    notes : tuple of str
+    notes : tuple of Reason or str
         What the report has to say about this solution.
     """
 
@@ -112,9 +113,9 @@ class SolidSolution:
     density: float
     cases: tuple[SolidCase, ...]
     solver: str
-    solver_reason: str
+    solver_reason: Reason
     solver_error: float
-    notes: tuple[str, ...]
+    notes: tuple[Reason | str, ...]
 
 
 def require_compressible(nu: float) -> None:
@@ -259,7 +260,7 @@ def _imbalance(
     return np.asarray(relative)
 
 
-def _notes(reaction: NDArray[np.float64], variants: Sequence[Variant], nu: float) -> tuple[str, ...]:
+def _notes(reaction: NDArray[np.float64], variants: Sequence[Variant], nu: float) -> tuple[Reason, ...]:
     """What the reader must know; refuses supports that react."""
     worst = int(np.argmax(reaction))
     if not reaction[worst] <= REACTION_LIMIT:
@@ -268,15 +269,12 @@ def _notes(reaction: NDArray[np.float64], variants: Sequence[Variant], nu: float
             f"'{variants[worst].name}' (at most {REACTION_LIMIT:.0%}): load and stress do not balance"
         )
     notes = [
-        f"the supports react with {value:.2%} of the load in case '{variant.name}'"
+        reason("supports_react", share=float(value), case=variant.name)
         for value, variant in zip(reaction, variants, strict=True)
         if value > REACTION_NOTE
     ]
     if nu > NEARLY_INCOMPRESSIBLE:
-        notes.append(
-            f"Poisson's ratio {nu:g} is above {NEARLY_INCOMPRESSIBLE}: elements resist changes of volume, and "
-            "displacements come out too small, by 3 % at 0.4999 with four elements through a wall"
-        )
+        notes.append(reason("nearly_incompressible", ratio=nu, most=NEARLY_INCOMPRESSIBLE))
     return tuple(notes)
 
 
@@ -294,8 +292,10 @@ class FreeSolution:
         True where the displacements are their own image.
     error : float
         Largest relative error of a solution in the energy norm.
-    solver, reason : str
-        Name of the solver, and why it was chosen.
+    solver : str
+        Its name.
+    reason : Reason
+        Why it was chosen.
     """
 
     displacement: Real
@@ -303,7 +303,7 @@ class FreeSolution:
     symmetric: NDArray[np.bool_]
     error: float
     solver: str
-    reason: str
+    reason: Reason
 
 
 def solve_free(
@@ -339,7 +339,7 @@ def solve_free(
     half, count = upper_half(space), F.shape[1]
     body = space if half is None else half.space
     K = assemble_stiffness(body, E=E, nu=nu)
-    told: list[tuple[int, float, str, str]] = []
+    told: list[tuple[int, float, str, Reason]] = []
 
     def held(
         K: SymmetricBlockMatrix, load: Real, fixed: NDArray[np.int64], supports: NDArray[np.int64]
@@ -357,7 +357,7 @@ def solve_free(
     if half is None:
         supports = isostatic_supports(space.nodes, space.corners)
         displacement, reactions = held(K, F, supports, supports)
-        symmetric, what = np.zeros(count, dtype=np.bool_), ""
+        symmetric = np.zeros(count, dtype=np.bool_)
     else:
         parts = half.parts(F.reshape(-1, 3, count))
         loaded = _loaded(*parts)
@@ -376,15 +376,15 @@ def solve_free(
                 moved, borne = held(matrix, load, np.concatenate([flat, supports]), supports)
                 part[..., columns], reaction[:, columns] = moved.reshape(-1, 3, load.shape[1]), 2.0 * borne
             part[..., ~columns] = 0.0
-        displacement, symmetric, what = half.whole(*parts).reshape(F.shape), ~loaded[1], "half the body, "
-    _, _, solver, reason = max(told)
+        displacement, symmetric = half.whole(*parts).reshape(F.shape), ~loaded[1]
+    _, _, solver, why = max(told, key=lambda one: one[:3])
     return FreeSolution(
         displacement=displacement,
         reactions=reactions,
         symmetric=symmetric,
         error=max(error for _, error, _, _ in told),
         solver=solver,
-        reason=what + reason,
+        reason=why if half is None else reason("half_the_body", why=why),
     )
 
 

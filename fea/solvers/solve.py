@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common import memory, mkl
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded
 from alula.fea.elements.block_matrix import SymmetricBlockMatrix
 from alula.fea.solvers.direct import DirectFactor, PardisoFactor, SuperLUFactor
@@ -61,7 +62,7 @@ class Factor:
     ----------
     name : str
         What the report calls the solver.
-    reason : str
+    reason : Reason
         Why it was chosen.
     threads : int or None
         Upper bound on the threads of the libraries; their own choice where it is None.
@@ -70,7 +71,7 @@ class Factor:
     """
 
     name: str
-    reason: str
+    reason: Reason
     threads: int | None
     solver: DirectFactor | TwoLevelFactor
 
@@ -169,9 +170,9 @@ def factorise(
                 raise
             direct = ("superlu",)
     if method is None:
-        method, reason = _chosen(K, level, right_hand_sides, direct[0], memory_limit)
+        method, why = _chosen(K, level, right_hand_sides, direct[0], memory_limit)
     else:
-        reason = "chosen by the user"
+        why = reason("chosen_by_user")
         if method == "two-level" and level is None:
             raise CannotRunError("the two-level solver needs quadratic elements; choose a direct solver")
     with bounded(threads):
@@ -181,7 +182,7 @@ def factorise(
             solver: DirectFactor | TwoLevelFactor = _two_levels(K, level, direct[0], memory_limit)
         else:
             solver = _direct(K, "superlu" if method == "superlu" else "pardiso", memory_limit)
-    return Factor(name=solver.name, reason=reason, threads=threads, solver=solver)
+    return Factor(name=solver.name, reason=why, threads=threads, solver=solver)
 
 
 def _two_levels(
@@ -262,28 +263,28 @@ def _chosen(
     right_hand_sides: int,
     direct: DirectMethod,
     limit: float | None,
-) -> tuple[Method, str]:
+) -> tuple[Method, Reason]:
     """Return the method that takes less work, or fits into memory, and why it is that one."""
     room = memory.room(limit)
     needed = direct_memory(direct, K.size, right_hand_sides)
-    count = f"{K.size:,} unknowns, {right_hand_sides} right-hand side{'' if right_hand_sides == 1 else 's'}"
+    size = reason("size_of_system", unknowns=K.size, right_hand_sides=right_hand_sides)
     fits = needed <= room
     if level is None:
-        return direct, f"{count}: factorisation alone suits this system"
+        return direct, reason("factorisation_alone_suits", size=size)
     # MKL PARDISO refuses what does not fit by itself, by its own count: the estimate is far too large here.
     if level.slenderness > SLENDER and (fits or direct == "pardiso"):
-        return direct, f"{count}: the body is {level.slenderness:.0f} times as long as wide, where linear elements lock"
+        return direct, reason("too_slender_for_linear_elements", size=size, slenderness=level.slenderness)
     if level.nu > LOCKING_POISSON_RATIO:
         memory.require(needed, _task(direct, K.size), limit)
-        return direct, f"ν = {level.nu:g} is above {LOCKING_POISSON_RATIO}, where linear elements lock"
+        return direct, reason("linear_elements_lock", ratio=level.nu, most=LOCKING_POISSON_RATIO)
     if not fits:
         iterated = two_level_memory(K, level, right_hand_sides, direct)
         if iterated > room:
             least: Method = direct if needed < iterated else "two-level"
             memory.require(min(needed, iterated), _task(least, K.size), limit)
-        return "two-level", f"{count}: a factorisation needs about {needed / 1e9:.2g} GB of {room / 1e9:.2g} GB left"
+        return "two-level", reason("factor_does_not_fit", size=size, needed=needed / 1e9, left=room / 1e9)
     each, more = WORTH_FACTORISING[direct]
     most = int(each * (right_hand_sides + more))
     if K.size <= most:
-        return direct, f"{count}: small enough for a factorisation"
-    return "two-level", f"{count}: more than {most:,} unknowns, up to which {_NAMES[direct]} takes less work"
+        return direct, reason("small_enough_for_factorisation", size=size)
+    return "two-level", reason("iteration_takes_less_work", size=size, most=most, solver=_NAMES[direct])

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common import memory
+from alula.fea.common.reason import Reason
 from alula.fea.elements.elasticity import jacobians, lame_constants, reference_basis
 from alula.fea.elements.space import DisplacementSpace, upper_half
 from alula.fea.solid.solution import FreeSolution, solve_free
@@ -54,7 +55,8 @@ class UnitSolutions:
         Turns coefficients of the unit loads into a combination of the modes, of these loads and of any other.
     units : int
         Number of unit loads that the modes are made of.
-    solver, solver_reason : str
+    solver : str
+    solver_reason : Reason
         Its name, and why it was chosen.
     solver_error : float
         Largest relative error of a mode (energy norm).
@@ -70,7 +72,7 @@ class UnitSolutions:
     projection: Real
     units: int
     solver: str
-    solver_reason: str
+    solver_reason: Reason
     solver_error: float
 
     @cached_property

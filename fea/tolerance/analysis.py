@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from alula.fea.check.run import check_case
 from alula.fea.common.clock import Clock
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded_run
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
@@ -325,51 +326,41 @@ def _corner(
     return WorstCorner(number=worst, value=value, low=low, high=high, deviations=found)
 
 
-def _left_out(result: CheckResult) -> tuple[str, ...]:
+def _left_out(result: CheckResult) -> tuple[Reason, ...]:
     """Return the checks that the samples do not cover, with their nominal verdicts."""
     every = [
         one for load_case in result.load_cases.values() for one in load_case.checks if not covered(result.case, one)
     ]
     return tuple(
-        dict.fromkeys(f"{one.name} of {one.subject.long} (without deviations: {one.verdict})" for one in every)
+        dict.fromkeys(
+            reason("check_left_out", name=one.name, subject=one.subject.long, verdict=one.verdict.value)
+            for one in every
+        )
     )
 
 
-def _notes(result: CheckResult, found: Numbers, left_out: Sequence[str]) -> tuple[str, ...]:
+def _notes(result: CheckResult, found: Numbers, left_out: Sequence[Reason]) -> tuple[Reason, ...]:
     notes = []
     if left_out:
-        notes.append(f"the samples do not cover, and no probability counts: {', '.join(left_out)}")
+        notes.append(reason("samples_do_not_cover", checks=left_out))
     bent = [name for name, r in result.load_cases.items() if r.large_displacement.followed]
     if bent:
-        notes.append(
-            f"load case{'s' if len(bent) > 1 else ''} {', '.join(bent)}: joint forces of the samples are those of the "
-            "undeformed pose, in proportion to the nominal ones on the deformed shape; how deviations change the "
-            "deformed shape is not covered"
-        )
+        notes.append(reason("samples_in_undeformed_pose", load_cases=bent))
     if result.case.layered:
-        notes.append(
-            "links lie in layers: the couples between these are those of the nominal case, in proportion to what the "
-            "links and pins bear in one plane; how deviations change their shares is not covered"
-        )
+        notes.append(reason("nominal_couples_of_layers"))
     if found.pressed:
-        notes.append(
-            f"some samples compress {', '.join(sorted(found.pressed))}, which the nominal loads pull; their "
-            "buckling is not covered"
-        )
+        notes.append(reason("some_samples_compress", links=sorted(found.pressed)))
     return (*notes, *_fallen(result, found))
 
 
-def _fallen(result: CheckResult, found: Numbers) -> Iterator[str]:
-    """Say how many samples have no equilibrium, and why."""
+def _fallen(result: CheckResult, found: Numbers) -> Iterator[Reason]:
+    """Tell how many samples have no equilibrium, and why."""
     ended, unit = np.isfinite(found.short), "mm" if result.pose.slides else "deg"
     by = np.max(found.short[ended], initial=0.0) * (1.0 if result.pose.slides else math.degrees(1.0))
     for which, what in (
-        (
-            ended,
-            f"cannot stand in the pose: {result.pose.coordinate} comes to a dead point up to {by:.2g} {unit} before it",
-        ),
-        (found.apart & ~ended, "do not assemble on the branch of the nominal pose, even when led there in steps"),
-        (found.dead, "are at a dead point of the drive, where joint forces grow without limit"),
+        (ended, reason("cannot_stand_in_pose", coordinate=result.pose.coordinate, by=by, unit=unit)),
+        (found.apart & ~ended, reason("do_not_assemble")),
+        (found.dead, reason("at_dead_point_of_drive")),
     ):
         if which.any():
-            yield f"{which.sum()} of {len(which)} samples {what}; they count as failed"
+            yield reason("samples_fail", count=int(which.sum()), samples=len(which), why=what)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.outcomes.unchecked import caveats
 from alula.loads.text.caveat import Caveat, Topic
@@ -166,9 +167,9 @@ class ToleranceResult:
         That every check that is covered passes, and that none fails.
     corner : WorstCorner or None
         None where no check is covered.
-    left_out : tuple of str
+    left_out : tuple of Reason
         Checks that the samples do not cover; they are in no probability.
-    notes : tuple of str
+    notes : tuple of Reason
         What the numbers do not cover.
     timings : mapping of str to float
         Stage -> seconds.
@@ -185,8 +186,8 @@ class ToleranceResult:
     certain: Probability
     possible: Probability
     corner: WorstCorner | None
-    left_out: tuple[str, ...]
-    notes: tuple[str, ...]
+    left_out: tuple[Reason, ...]
+    notes: tuple[Reason, ...]
     timings: Mapping[str, float]
 
     @property

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.deflection import flexibility
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.displacement_band import STIFFEST, Zone, give_of_links
@@ -163,7 +164,7 @@ class FlexibilityDoubt:
         links = list(dict.fromkeys(beam.link for beam in self.frame.beams.values()))
         blind = blind_link(self.case, links)
         if blind:
-            why = f"the frame takes link {blind} for a beam along its axis, which does not tell how far it gives"
+            why = reason("frame_is_blind", link=blind, rigid=False)
             return [Band(value=value, low=0.0, high=math.inf, without=why) for value in values]
         modulus, eyes, both = self._changes(model, shapes)
         ends = [_ends(found, change) for change in (modulus, eyes, both)]

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
-from alula.fea.vibration.harmonics import HIGHEST, Meeting, banded, hertz, in_words, meetings, ordinal, stated
+from alula.fea.vibration.harmonics import HIGHEST, Meeting, meetings
 from alula.fea.vibration.link_modes import LinkModes, link_modes
 from alula.fea.vibration.linkage_modes import LinkageModes
 from alula.fea.vibration.modes import Mode
@@ -126,8 +127,13 @@ def least_at(history: FrequencyHistory) -> float:
 
 def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:
     ratio = least_frequency(history).times(1.0 / history.driving)
-    reason = f"{lowest_sentence(case, history)}; {harmonic_sentence(case, history)}{running_clause(case, None)}"
-    return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
+    why = reason(
+        "frequency_of_linkage",
+        lowest=lowest_frequency(case, history),
+        harmonic=nearest_or_met(case, history),
+        hinged=_hinged(case, None),
+    )
+    return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, why)
 
 
 def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkModes]]:
@@ -142,41 +148,28 @@ def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkMod
             yield fastest, link_modes(case, link, count=1, solid=own.model == "solid", carried=False) if bare else own
 
 
-def running_clause(case: Case, link: str | None) -> str:
-    """Say in which joints the low end of a frequency has hinges, since nothing states that their pins are tight.
-
-    Parameters
-    ----------
-    case : Case
-    link : str or None
-        By itself; None for the linkage.
-
-    Returns
-    -------
-    str
-        After a semicolon; "" where all pins between layers are stated to be tight.
-    """
-    joints = dict.fromkeys(name for name, _ in running_holes(case) if link in (None, *case.joints[name].links))
-    if not joints:
-        return ""
-    return (
-        f"; the low end has hinges in holes at {', '.join(joints)}, where pins may run: nothing states that they are "
-        "tight in both links (tight_in, or bonded)"
-    )
+def _hinged(case: Case, link: str | None) -> tuple[str, ...]:
+    """Joints in which the low end of a frequency of the linkage, or of a link by itself, has hinges."""
+    return tuple(dict.fromkeys(name for name, _ in running_holes(case) if link in (None, *case.joints[name].links)))
 
 
 def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
     link, mode = own.link, own.modes[0]
-    reason = (
-        f"by itself, {own.held}, {link} vibrates at {hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
-        f"the drive turns at {stated(driving)} Hz{running_clause(case, link)}"
+    why = reason(
+        "frequency_of_link",
+        link=link,
+        held=own.held,
+        frequency=mode.frequency,
+        in_plane=mode.in_plane,
+        driving=driving,
+        hinged=_hinged(case, link),
     )
     ratio = mode.frequency.times(1.0 / driving)
-    return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
+    return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, why)
 
 
-def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
-    """Say where the lowest natural frequency is least, how large it is, and in which shape.
+def lowest_frequency(case: Case, history: FrequencyHistory) -> Reason:
+    """Tell where the lowest natural frequency is least, how large it is, and in which shape.
 
     Parameters
     ----------
@@ -185,19 +178,18 @@ def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
 
     Returns
     -------
-    str
+    Reason
     """
     mode = history.lowest.modes[0]
     frequency = least_frequency(history)
-    text = f"the lowest natural frequency is {hertz(frequency)}{where(case, history)}, {in_words(mode.in_plane)}"
-    if frequency.value == 0.0:
-        return f"{text}: under its loads the linkage does not swing but departs"
-    if moved := most_moved(history.lowest, mode):
-        text += f", where {moved} moves most"
-    if history.driving > 0.0:
-        ratio = frequency.times(1.0 / history.driving)
-        text += f"; over the driving frequency of {stated(history.driving)} Hz that is {banded(ratio)}"
-    return text
+    return reason(
+        "lowest_frequency_departs" if frequency.value == 0.0 else "lowest_frequency",
+        frequency=frequency,
+        at=_at_value(case, least_at(history)),
+        in_plane=mode.in_plane,
+        link=most_moved(history.lowest, mode),
+        driving=history.driving,
+    )
 
 
 def most_moved(found: LinkageModes, mode: Mode) -> str:
@@ -237,8 +229,8 @@ def _links_of_nodes(found: LinkageModes) -> dict[int, str]:
     return own
 
 
-def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
-    """Say which harmonic of the drive meets a natural frequency first and where, or comes nearest to one.
+def nearest_or_met(case: Case, history: FrequencyHistory) -> Reason:
+    """Tell which harmonic of the drive meets a natural frequency first and where, or comes nearest to one.
 
     Parameters
     ----------
@@ -248,77 +240,57 @@ def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
 
     Returns
     -------
-    str
+    Reason
     """
     met = meetings(history)
     if met:
         first = met[0]
         if (history.low[:, first.mode - 1] <= 0.0).all():
             last = max(one.harmonic for one in met if one.mode == first.mode)
-            up_to = f"harmonics up to the {ordinal(last)}, {stated(last * history.driving)} Hz, may meet"
-            return f"{up_to} the {ordinal(first.mode)} natural frequency, since its band goes down to 0"
-        return f"the {ordinal(first.harmonic)} harmonic, {stated(first.frequency)} Hz, {_meets(case, history, first)}"
+            return reason("harmonics_may_meet", last=last, frequency=last * history.driving, mode=first.mode)
+        return reason(
+            "harmonic_meets",
+            harmonic=first.harmonic,
+            frequency=first.frequency,
+            mode=first.mode,
+            at=_meets_at(case, history, first),
+            elsewhere=len(first.ranges) > 1,
+        )
     if not np.isfinite(history.high[:, 0]).all():
-        return "which harmonics meet a natural frequency is not known, since the lowest one has no band"
+        return reason("harmonics_not_known")
     known = np.isfinite(history.high).all(axis=0)
     driving, low, high = history.driving, history.low[:, known], history.high[:, known]
     if float(low.min()) > HIGHEST * driving:
-        return f"all harmonics up to the {ordinal(HIGHEST)}, {stated(HIGHEST * driving)} Hz, stay below it"
+        return reason("all_harmonics_below", highest=HIGHEST, frequency=HIGHEST * driving)
     apart = {n: np.maximum(low / (n * driving), n * driving / np.maximum(high, 1e-12)) for n in range(1, HIGHEST + 1)}
     nearest = first_least([float(ratio.min()) for ratio in apart.values()]) + 1
     i, k = np.unravel_index(first_least(np.ravel(apart[nearest])), low.shape)
-    return (
-        f"no harmonic up to the {ordinal(HIGHEST)} meets a natural frequency; the {ordinal(nearest)}, "
-        f"{stated(nearest * driving)} Hz, comes nearest to the {ordinal(int(np.flatnonzero(known)[k]) + 1)} one"
-        f"{at_value(case, float(history.at[i]))}"
+    return reason(
+        "nearest_harmonic",
+        highest=HIGHEST,
+        harmonic=nearest,
+        frequency=nearest * driving,
+        mode=int(np.flatnonzero(known)[k]) + 1,
+        at=_at_value(case, float(history.at[i])),
     )
 
 
-def _meets(case: Case, history: FrequencyHistory, met: Meeting) -> str:
+def _meets_at(case: Case, history: FrequencyHistory, met: Meeting) -> Reason:
     first, last = sorted(told(case, end) for end in met.ranges[0])
     if case.motion is None:
-        place = " in the stated pose"
-    elif met.ranges[0] == (history.at[0], history.at[-1]):
-        place = " in every pose"
-    elif last - first < 0.5:
-        place = f" at {case.motion_coordinate} = {(first + last) / 2.0:.1f} {unit(case)}"
-    else:
-        place = f" from {case.motion_coordinate} = {first:.0f} to {last:.0f} {unit(case)}"
-    more = " and elsewhere" if len(met.ranges) > 1 else ""
-    return f"meets the {ordinal(met.mode)} natural frequency{place}{more}"
+        return reason("in_stated_pose")
+    if met.ranges[0] == (history.at[0], history.at[-1]):
+        return reason("in_every_pose")
+    if last - first < 0.5:
+        return reason("at_value", coordinate=case.motion_coordinate, value=(first + last) / 2.0, unit=unit(case))
+    return reason("from_value_to_value", coordinate=case.motion_coordinate, first=first, last=last, unit=unit(case))
 
 
-def where(case: Case, history: FrequencyHistory) -> str:
-    """Say in which pose the lowest natural frequency is least, with a blank before it.
-
-    Parameters
-    ----------
-    case : Case
-    history : FrequencyHistory
-
-    Returns
-    -------
-    str
-    """
-    return at_value(case, least_at(history))
-
-
-def at_value(case: Case, value: float) -> str:
-    """Return `` at crank = 85.0 deg``.
-
-    Parameters
-    ----------
-    case : Case
-    value : float
-        Of the coordinate [rad, mm].
-
-    Returns
-    -------
-    str
-    """
+def _at_value(case: Case, value: float) -> Reason:
+    """Where a value of the coordinate is [rad, mm]."""
     if case.motion is None:
-        return " in the stated pose"
-    return f" at {case.motion_coordinate} = {told(case, value):.1f} {unit(case)}"
+        return reason("in_stated_pose")
+    return reason("at_value", coordinate=case.motion_coordinate, value=told(case, value), unit=unit(case))
 
 
 def told(case: Case, value: float) -> float:

@@ -21,7 +21,6 @@ from alula.loads.records.check_spec import FrequencyCheck
 Real = NDArray[np.float64]
 HIGHEST = 10
 """The highest harmonic that is looked at: those of a linkage die away fast, and in a band some high one always lies."""
-_ENDINGS = {1: "st", 2: "nd", 3: "rd"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,25 +98,6 @@ def _below(first: float, last: float, level: float) -> tuple[float, float]:
     return (0.0, crossing) if first <= level else (crossing, 1.0)
 
 
-def in_words(in_plane: float) -> str:
-    """Say in which directions a shape moves.
-
-    Parameters
-    ----------
-    in_plane : float
-        Share of its kinetic energy in the plane of the linkage.
-
-    Returns
-    -------
-    str
-    """
-    if in_plane > 0.9:
-        return "in the plane"
-    if in_plane < 0.1:
-        return "out of the plane"
-    return "mostly in the plane" if in_plane >= 0.5 else "mostly out of the plane"
-
-
 def nearest_harmonic(case: Case) -> str:
     """Say which harmonic comes nearest to the lowest natural frequency in the stated pose, where no check asks.
 
@@ -171,7 +151,7 @@ def ordinal(n: int) -> str:
     -------
     str
     """
-    return f"{n}{_ENDINGS.get(n, 'th')}"
+    return f"{n}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(n, 'th') }"
 
 
 def hertz(frequency: Band) -> str:
@@ -209,17 +189,3 @@ def banded(value: Band) -> str:
 def _three(value: float) -> str:
     """Return a number with three digits, and without a power of ten."""
     return f"{value:#.3g}".rstrip(".") if value < 999.5 else f"{float(f'{value:.3g}'):.0f}"
-
-
-def stated(value: float) -> str:
-    """Return a stated number with three digits, without padding zeros.
-
-    Parameters
-    ----------
-    value : float
-
-    Returns
-    -------
-    str
-    """
-    return f"{float(f'{value:.3g}'):g}"

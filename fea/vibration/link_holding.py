@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 
@@ -76,13 +77,13 @@ class LinkHolding:
         The link's own points once each, and every pin in its slots and guides.
     free : int
         Number of motions of the rigid link that are left.
-    words : str
+    how : Reason
         For people.
     """
 
     places: tuple[HeldPlace, ...]
     free: int
-    words: str
+    how: Reason
 
 
 def link_holding(case: Case, link: str, pose: Pose, *, running: Container[str] = ()) -> LinkHolding:
@@ -130,7 +131,7 @@ def link_holding(case: Case, link: str, pose: Pose, *, running: Container[str] =
         for (point, joint), (moves, turns) in found.items()
     )
     free = 6 - _rank(places, case.linkage.longest)
-    return LinkHolding(places=places, free=free, words=_words(case, link, places, free))
+    return LinkHolding(places=places, free=free, how=_how(case, link, places, free))
 
 
 def _held(case: Case, link: str, joint: str, pose: Pose) -> tuple[list[Real], list[Real]]:
@@ -175,28 +176,23 @@ def _rank(places: Sequence[HeldPlace], size: float) -> int:
     return int(np.linalg.matrix_rank(rows, tol=_SAME))
 
 
-def _words(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> str:
-    groups: dict[str, list[str]] = {}
+def _how(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> Reason:
+    drive = case.pinned_drive
+    driven = drive is not None and not drive.idle and link in case.joints[drive.joint].links
+    drive_point = case.linkage.point_of(drive.joint, link) if drive is not None and driven else None
+    groups: dict[str, dict[str | Reason, None]] = {}
     for place in places:
         sizes = len(place.moves), len(place.turns)
         if sizes == (3, 3):
-            kind = "built in at {}"
+            kind = "built_in"
         elif sizes == (3, 2):
-            kind = "on rigid pins at {}"
+            kind = "on_rigid_pins"
         elif sizes == (2, 3):
-            kind = "in the guide at {}"
+            kind = "in_guide"
         elif sizes[0] == 3:
-            kind = "on pins that tilt at {}"
+            kind = "on_tilting_pins"
         else:
-            kind = "held across the slot at {}"
-        groups.setdefault(kind, []).append(place.joint or place.point)
-    drive = case.pinned_drive
-    if drive is not None and not drive.idle and link in case.joints[drive.joint].links and places:
-        point = case.linkage.point_of(drive.joint, link)
-        groups = {k: ["the drive's joint " + p if p == point else p for p in names] for k, names in groups.items()}
-    told = " and ".join(kind.format(" and ".join(dict.fromkeys(names))) for kind, names in groups.items())
-    if free:
-        told = (
-            f"{told}, {'a rigid motion' if free == 1 else f'{free} rigid motions'} of it left free" if told else "free"
-        )
-    return told
+            kind = "across_slot"
+        name = place.joint or place.point
+        groups.setdefault(kind, {})[reason("drive_joint", joint=name) if name == drive_point else name] = None
+    return reason("held", ways=tuple(reason(kind, at=tuple(names)) for kind, names in groups.items()), free=free)

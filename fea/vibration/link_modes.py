@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.common.threads import bounded_run
@@ -35,7 +36,7 @@ from alula.loads.states.masses import all_carried, part_mass, part_masses
 from alula.loads.states.standing import stand
 
 Real = NDArray[np.float64]
-NO_BEAM = "the frame takes the ground for rigid, so that beams do not tell its frequencies; its solid does"
+NO_BEAM = reason("frame_takes_ground_for_rigid")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,7 +48,7 @@ class LinkModes:
     link : str
     model : str
         "beam" or "solid".
-    held : str
+    held : Reason
         How its joints hold it, for people.
     modes : tuple of Mode
         The lowest frequency first; shapes at ``nodes``, of beams (n, 6) and of solids (n, 3), in the link's axes.
@@ -59,7 +60,7 @@ class LinkModes:
 
     link: str
     model: str
-    held: str
+    held: Reason
     modes: tuple[Mode, ...]
     nodes: Real
     pieces: NDArray[np.int64]
@@ -139,7 +140,7 @@ def _by_solid(case: Case, link: str, holding: LinkHolding, count: int, carried: 
     return LinkModes(
         link=link,
         model="solid",
-        held=holding.words,
+        held=holding.how,
         modes=modes,
         nodes=found.space.nodes,
         pieces=found.space.boundary[:, :3],
@@ -159,7 +160,7 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
         return LinkModes(
             link=link,
             model="beam",
-            held=holding.words,
+            held=holding.how,
             modes=(unknown,),
             nodes=np.zeros((0, 3)),
             pieces=np.zeros((0, 2), dtype=np.int64),
@@ -189,7 +190,7 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
     return LinkModes(
         link=link,
         model="beam",
-        held=holding.words,
+        held=holding.how,
         modes=tuple(modes),
         nodes=(model.nodes - origin) @ turn,
         pieces=np.array([element.nodes for element in model.elements]),
@@ -201,7 +202,7 @@ def _weighed(band: Band, other: float) -> Band:
     low, high = sorted((1.0, other / band.value))
     if low == high or not math.isfinite(band.high):
         return band
-    source = Source(kind=SourceKind.MASS, detail="at the rims of eyes or along the beams", width=high / low)
+    source = Source(kind=SourceKind.MASS, detail=reason("at_rims_or_along_beams"), width=high / low)
     return replace(band, low=band.low * low, high=band.high * high, sources=distinct(band.sources, (source,)))
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.elements.mass import consistent_mass
 from alula.fea.elements.quadrature import Quadrature, surface_quadrature, volume_quadrature
@@ -166,11 +167,11 @@ def refined_modes(solid: LinkSolid, start: MeshSettings, count: int, threads: in
     values = [np.sqrt(modes.squares) / (2.0 * np.pi) for modes in found]
     if len(found) == 1:
         missed = values[0] * np.array([_estimated(solid, spaces[0], shape) for shape in found[0].shapes])
-        detail = "estimated on the mesh of the file, fourfold"
+        detail = reason("estimated_on_mesh_of_file")
     else:
         ratio = (len(spaces[1].cells) / len(spaces[0].cells)) ** (1.0 / 3.0)
         missed = SAFETY * np.abs(values[1] - values[0]) / (ratio**ORDER - 1.0)
-        detail = f"meshes of {len(spaces[0].cells):,} and {len(spaces[1].cells):,} elements"
+        detail = reason("on_two_meshes", elements=[len(space.cells) for space in spaces])
     volume = mass_properties(solid.body).volume
     chord = 0.5 * CHORD * abs(float(meshes[-1].volume) / volume - 1.0)
     frequencies = []

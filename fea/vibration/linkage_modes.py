@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.build import ALONG_PINS, build_frame
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame, slot_normal
@@ -41,10 +42,7 @@ SUBDIVISIONS = 4
 """Elements along the longest beam; shorter ones have fewer in proportion."""
 BASIS = 12
 """Modes beyond those asked for in which the doubt about flexibilities is resolved."""
-TIGHT_PINS = (
-    "pins between layers are taken to be tight in both of their links; low ends of bands have hinges in the holes in "
-    "which pins may run"
-)
+TIGHT_PINS = reason("pins_taken_to_be_tight")
 _ROUNDING = 1e-12
 """Negative eigenvalue over the largest that was found, above which it may be rounding."""
 
@@ -64,7 +62,7 @@ class LinkageModes:
         Its model with divided beams, to whose nodes the shapes belong.
     modes : tuple of Mode
         The lowest frequency first.
-    notes : tuple of str
+    notes : tuple of Reason or str
         What the reader must know.
     """
 
@@ -73,7 +71,7 @@ class LinkageModes:
     frame: LinkageFrame
     model: FrameModel
     modes: tuple[Mode, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Reason | str, ...] = ()
 
 
 def linkage_modes(
@@ -211,15 +209,13 @@ def _modes(
     return tuple(modes)
 
 
-def _notes(frame: LinkageFrame, rate: float) -> tuple[str, ...]:
+def _notes(frame: LinkageFrame, rate: float) -> tuple[Reason | str, ...]:
     """What the reader must know; ``rate`` by which an unstable pose departs [1/s]."""
-    notes = list(frame.notes)
+    notes: list[Reason | str] = list(frame.notes)
     if any(not frame.model.elements[i].rigid for i in frame.pin_beams.values()):
         notes.append(TIGHT_PINS)
     if rate > 0.0:
-        notes.append(
-            f"the pose is unstable under its loads: what moves it off grows by the factor e every {1.0 / rate:.3g} s"
-        )
+        notes.append(reason("pose_is_unstable", time=1.0 / rate))
     return tuple(notes)
 
 

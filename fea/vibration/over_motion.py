@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import reason
 from alula.fea.common.threads import bounded
 from alula.fea.frame.build import build_frame
 from alula.fea.vibration.link_modes import LinkModes, link_modes
@@ -259,8 +260,7 @@ def _history(
     number = lowest_pose(np.array([band.low for band in first]), np.array([band.value for band in first]))
     lowest = list(found.values())[number]
     if left_out:
-        told = f"{len(left_out)} poses were left out, in which there is no equilibrium"
-        lowest = replace(lowest, notes=(*lowest.notes, told))
+        lowest = replace(lowest, notes=(*lowest.notes, reason("poses_left_out", count=len(left_out))))
     return FrequencyHistory(
         driving=driving,
         at=np.array(list(found)),

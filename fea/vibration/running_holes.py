@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import reason
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import ALL_DOFS, Dof, FrameModel, Tie
@@ -21,7 +22,7 @@ from alula.loads.case.case import Case
 ACROSS: tuple[Dof, Dof] = ("rx", "ry")
 _NOTHING = 1e-4
 """Share of the frequency with tight pins below which that with hinges is rounding."""
-RUNNING = Source(kind=SourceKind.COUPLES, detail="pins tight in both links, or hinges in holes in which they may run")
+RUNNING = Source(kind=SourceKind.COUPLES, detail=reason("tight_or_hinged"))
 Hole = tuple[str, str]
 """Joint, and the one of its links in which the pin may run."""
 

@@ -3,6 +3,7 @@
 import math
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
 from alula.loads.case.case import Case
@@ -10,8 +11,8 @@ from alula.loads.records.check_spec import ClearanceCheck
 from alula.loads.states.clearance import Clearance
 
 SOURCES = (
-    Source(kind=SourceKind.POSES, detail="bounded by the speed of the outlines"),
-    Source(kind=SourceKind.CHORDS, detail="of the outlines"),
+    Source(kind=SourceKind.POSES, detail=reason("bounded_by_speed_of_outlines")),
+    Source(kind=SourceKind.CHORDS, detail=reason("of_outlines")),
 )
 
 
@@ -55,14 +56,14 @@ def clearance_outcomes(case: Case, found: Clearance | None) -> tuple[CheckOutcom
         return ()
     value, load_case = clearance_band(found), next(iter(case.load_cases))
     return tuple(
-        CheckOutcome.of(name, LINKAGE, load_case, Quantity.CLEARANCE, value, check.minimum, clearance_sentence(found))
+        CheckOutcome.of(name, LINKAGE, load_case, Quantity.CLEARANCE, value, check.minimum, gap_reason(found))
         for name, check in case.all_checks.items()
         if isinstance(check, ClearanceCheck)
     )
 
 
-def clearance_sentence(found: Clearance) -> str:
-    """Say where the links of an assembly touch first, or come nearest.
+def gap_reason(found: Clearance) -> Reason:
+    """Tell where the links of an assembly touch first, or come nearest.
 
     Parameters
     ----------
@@ -71,12 +72,10 @@ def clearance_sentence(found: Clearance) -> str:
 
     Returns
     -------
-    str
+    Reason
     """
     shown = found.shown
     if shown is None:
-        return "no two links, and no link and pin that passes it, lie at one height"
-    names = " and ".join(shown.names)
-    if found.contact is not None:
-        return f"{names} touch first {found.where(shown)}"
-    return f"{names} come nearest {found.where(shown)}"
+        return reason("none_at_one_height")
+    kind = "come_nearest" if found.contact is None else "touch_first"
+    return reason(kind, names=shown.names, where=found.where(shown))

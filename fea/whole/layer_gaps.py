@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.source import distinct, play_source
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
 from alula.fea.frame.displacement_band import compliance_range
@@ -280,9 +281,6 @@ def layer_gap_outcomes(
     if found is None:
         return
     x, y = (0.0 if abs(end) < 1e-6 * case.linkage.longest else end for end in found.place)
-    reason = (
-        f"links {found.names[0]} and {found.names[1]}, {found.gap:.3g} mm apart along the pins without load, come "
-        f"nearest at x = {x:.4g}, y = {y:.4g} mm"
-    ).replace("= -", "= −")
+    why = reason("layers_come_nearest", links=tuple(found.names), gap=found.gap, x=x, y=y)
     for name in checks:
-        yield CheckOutcome.of(name, LINKAGE, load_case, Quantity.LAYER_GAP, found.left, 0.0, reason)
+        yield CheckOutcome.of(name, LINKAGE, load_case, Quantity.LAYER_GAP, found.left, 0.0, why)

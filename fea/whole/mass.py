@@ -1,6 +1,7 @@
 """Whether a linkage weighs no more than it may."""
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import MassCheck
@@ -32,15 +33,15 @@ def mass_outcomes(case: Case, found: Weighed | None) -> tuple[CheckOutcome, ...]
             Quantity.MASS,
             Band.exact(GRAMS * (found.total.total + (check.others or 0.0))),
             GRAMS * check.maximum,
-            mass_sentence(found, check.others),
+            mass_reason(found, check.others),
         )
         for name, check in case.checks.items()
         if isinstance(check, MassCheck) and found is not None
     )
 
 
-def mass_sentence(found: Weighed, others: float | None = None) -> str:
-    """Say what a linkage's mass is made up of, and what is not counted.
+def mass_reason(found: Weighed, others: float | None = None) -> Reason:
+    """Tell what a linkage's mass is made up of, and what is not counted.
 
     Parameters
     ----------
@@ -50,11 +51,14 @@ def mass_sentence(found: Weighed, others: float | None = None) -> str:
 
     Returns
     -------
-    str
+    Reason
+        Masses in grams.
     """
-    total, left = found.total, ", ".join(found.not_counted)
+    total = found.total
     kinds = (("parts", total.part), ("pins", total.pins), ("carried", total.carried))
-    told = ", ".join(f"{kind} {GRAMS * mass:.4g} g" for kind, mass in kinds if mass > 0.0) or "no part weighs anything"
-    if others is not None:
-        return f"{told}, others as stated {GRAMS * others:.4g} g{f', which stand for {left}' if left else ''}"
-    return f"{told}{f'; not counted: {left}' if left else ''}"
+    return reason(
+        "made_up_of",
+        masses=tuple((kind, GRAMS * mass) for kind, mass in kinds if mass > 0.0),
+        others=None if others is None else GRAMS * others,
+        not_counted=tuple(found.not_counted),
+    )

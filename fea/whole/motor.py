@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.convex import least_of_convex
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind, air_source, friction_source, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.whole.air_range import air_range
@@ -30,7 +31,7 @@ from alula.loads.states.kinetostatics import relative_motion
 from alula.loads.states.loose_motion import loose_motion
 
 Real = NDArray[np.float64]
-SOURCES = (Source(kind=SourceKind.FLYWHEEL, detail="from the mean over the motion to the peak"),)
+SOURCES = (Source(kind=SourceKind.FLYWHEEL, detail=reason("from_mean_to_peak")),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -191,20 +192,17 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
     solved, times, link = moved.forces[title], _times(moved, title), moved.drive.link
     torque, speed = solved.drive_torque, solved.motion.angular_speed(link)
 
-    def outcome(quantity: Quantity, value: Band, limit: float, reason: str) -> CheckOutcome:
-        return CheckOutcome.of(name, Subject.link(link), title, quantity, value, limit, reason)
+    def outcome(quantity: Quantity, value: Band, limit: float, why: Reason) -> CheckOutcome:
+        return CheckOutcome.of(name, Subject.link(link), title, quantity, value, limit, why)
 
     if check.no_load_speed is not None:
         rpm = 30.0 / math.pi
         fastest, free = rpm * float(np.abs(speed).max()), rpm * check.no_load_speed
-        reason = f"the drive turns at up to {fastest:.4g} rpm, the motor without load at {free:.4g} rpm"
-        yield outcome(Quantity.DRIVE_SPEED, Band.exact(fastest), free, reason)
+        why = reason("speed_of_drive", fastest=fastest, without_load=free)
+        yield outcome(Quantity.DRIVE_SPEED, Band.exact(fastest), free, why)
         if check.stall_torque is not None:
             mean, most = line_share(torque, speed, times, check.stall_torque, check.no_load_speed)
-            reason = (
-                f"the drive needs at most {most:.3g} of the motor's torque at that speed, on average {mean:.3g} of its "
-                f"power; stall torque {check.stall_torque:.3g} N·mm, falling linearly to zero at {free:.4g} rpm"
-            )
+            why = reason("share_of_torque", most=most, mean=mean, stall=check.stall_torque, without_load=free)
             line = (check.stall_torque, check.no_load_speed)
 
             def share(torque: Real) -> tuple[float, float, float]:
@@ -212,15 +210,12 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
                 return most, least, most
 
             value = _band(moved, title, share)
-            yield outcome(Quantity.TORQUE_SHARE, value, 1.0, reason)
+            yield outcome(Quantity.TORQUE_SHARE, value, 1.0, why)
     if check.rated_torque is not None:
         effective, mean, _ = _effective(torque, times)
-        reason = (
-            f"the drive torque is {effective:.3g} N·mm (root mean square), with an ideal flywheel {mean:.3g} N·mm; the "
-            f"rated torque is {check.rated_torque:.3g} N·mm"
-        )
+        why = reason("torque_of_drive", effective=effective, mean=mean, rated=check.rated_torque)
         value = _band(moved, title, lambda torque: _effective(torque, times))
-        yield outcome(Quantity.DRIVE_TORQUE, value, check.rated_torque, reason)
+        yield outcome(Quantity.DRIVE_TORQUE, value, check.rated_torque, why)
 
 
 def _effective(torque: Real, times: Real) -> tuple[float, float, float]:
@@ -249,56 +244,51 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
     value = _band(laden, title, power)
     outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)
     side = {
-        Verdict.PASS: "the motor's output covers the peak",
-        Verdict.FAIL: "the motor's output is below the mean",
-        Verdict.UNDECIDED: "the motor's output covers the mean but not the peak, so a flywheel decides",
+        Verdict.PASS: "covers_peak",
+        Verdict.FAIL: "below_mean",
+        Verdict.UNDECIDED: "covers_mean",
     }[outcome.verdict]
-    told = (
-        f"the drive needs at most {found.peak_torque:.3g} N·mm and {found.peak_power:.3g} W, "
-        f"on average {found.mean_power:.3g} W"
-    )
+    asked: tuple[Reason, ...] = (reason("asked_of_drive", **_facts(found)),)
     air = case.load_cases[title].flapping
     if air is not None and (airs := air_range(laden)) is not None:
         also, side = _of_air(air, airs, title, times, outcome.verdict, limit)
-        told += also
-    reason = f"{told}; {side}, {check.voltage:g} V × {check.current * 1e3:g} mA × {check.efficiency:g} = {limit:.3g} W"
+        asked = (*asked, *also)
+    drives = None
     if case.load_cases[title].carried and case.carried:
         bare = empty.forces[title].drive_power
         factor = largest_factor(bare, solved.drive_power - bare, 1000.0 * limit)
         carried = 1e6 * sum(mass.mass for mass in case.carried)
         if 0.0 < factor < math.inf:
-            reason += f"; it can drive {factor * carried:.3g} g of carried mass (now {carried:.3g} g)"
-    return outcome.because(reason)
+            drives = reason("can_drive", mass=factor * carried, now=carried)
+    output = reason(
+        "output_of_motor", volt=check.voltage, milliampere=check.current * 1e3, efficiency=check.efficiency, watt=limit
+    )
+    return outcome.because(reason("power_of_drive", asked=asked, side=reason(side), output=output, drives=drives))
 
 
-def _of_air(air: Flapping, airs: AirRange, title: str, times: Real, verdict: Verdict, limit: float) -> tuple[str, str]:
-    """Return what air on wings makes of the drive, and whether the motor carries it."""
+def _facts(asked: MotorDemand) -> dict[str, float]:
+    return {"torque": asked.peak_torque, "power": asked.peak_power, "mean": asked.mean_power}
+
+
+def _of_air(
+    air: Flapping, airs: AirRange, title: str, times: Real, verdict: Verdict, limit: float
+) -> tuple[tuple[Reason, ...], str]:
+    """Return what air on wings makes of the drive, and the kind of reason that says whether the motor carries it."""
     bare, *ends = (
         demand(moved.forces[title].drive_power, moved.forces[title].drive_torque, times)
         for moved in (airs.without, airs.least, airs.largest)
     )
-    also = ""
+    also: tuple[Reason, ...] = (reason("asked_without_air", **_facts(bare)),)
     if airs.at(title):
-        also = (
-            f" (C_N from {air.ends[0]:g} to {air.ends[1]:g}: at most {_span(e.peak_torque for e in ends)} N·mm and "
-            f"{_span(e.peak_power for e in ends)} W, on average {_span(e.mean_power for e in ends)} W)"
-        )
-    also += (
-        f"; without air at most {bare.peak_torque:.3g} N·mm and {bare.peak_power:.3g} W, "
-        f"on average {bare.mean_power:.3g} W"
-    )
+        spans = {name: tuple(_facts(end)[name] for end in ends) for name in _facts(bare)}
+        also = (reason("asked_over_range_of_air", coefficients=air.ends, **spans), *also)
     if verdict is Verdict.PASS:
-        return also, "the motor carries the air as well, for its output covers the peak"
+        return also, "carries_air"
     if verdict is Verdict.FAIL:
-        alone = "even without air" if bare.mean_power > limit else "with the air, which it does not carry"
-        return also, f"the motor's output is below the mean {alone}"
+        return also, "below_mean_without_air" if bare.mean_power > limit else "below_mean_with_air"
     if max(end.mean_power for end in ends) <= limit:
-        return also, "the motor's output covers the mean with the air but not the peak, so a flywheel decides"
-    return also, "whether the motor carries the air depends on C_N, for its output covers the mean with the least alone"
-
-
-def _span(ends: Iterator[float]) -> str:
-    return " to ".join(f"{end:.3g}" for end in ends)
+        return also, "covers_mean_with_air"
+    return also, "depends_on_air"
 
 
 def largest_factor(bare: Real, load: Real, limit: float) -> float:

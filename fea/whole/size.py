@@ -1,6 +1,7 @@
 """Whether a linkage fits into a box along the global axes."""
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, SIZES, CheckOutcome
 from alula.geometry.clearance.reach import Outermost
@@ -8,8 +9,8 @@ from alula.loads.case.case import Case
 from alula.loads.records.check_spec import SizeCheck
 from alula.loads.states.extent import Extent, unmeasured
 
-POSES = Source(kind=SourceKind.POSES, detail="bounded by the acceleration of the outlines")
-CHORDS = Source(kind=SourceKind.CHORDS, detail="of the outlines")
+POSES = Source(kind=SourceKind.POSES, detail=reason("bounded_by_acceleration_of_outlines"))
+CHORDS = Source(kind=SourceKind.CHORDS, detail=reason("of_outlines"))
 _ROUNDING = 1e-9
 
 
@@ -52,7 +53,7 @@ def size_outcomes(case: Case, found: Extent | None) -> tuple[CheckOutcome, ...]:
     load_case = next(iter(case.load_cases))
     return tuple(
         CheckOutcome.of(
-            name, LINKAGE, load_case, quantity, size_band(found, axis), check.maximum[axis], size_sentence(found, axis)
+            name, LINKAGE, load_case, quantity, size_band(found, axis), check.maximum[axis], size_reason(found, axis)
         )
         for name, check in case.checks.items()
         if isinstance(check, SizeCheck) and found is not None
@@ -76,8 +77,8 @@ def size_limits(case: Case) -> tuple[float, ...]:
     return tuple(min(lengths) for lengths in zip(*stated, strict=True))
 
 
-def size_sentence(found: Extent, axis: int) -> str:
-    """Say between which outlines a linkage is longest along an axis, and what is not counted.
+def size_reason(found: Extent, axis: int) -> Reason:
+    """Tell between which outlines a linkage is longest along an axis, and what is not counted.
 
     Parameters
     ----------
@@ -87,15 +88,15 @@ def size_sentence(found: Extent, axis: int) -> str:
 
     Returns
     -------
-    str
+    Reason
     """
     first, last = (_side(found, side, "xyz"[axis]) for side in found.reaches[axis])
-    left = ", ".join(unmeasured(found.assembly.case))
-    return f"from {first} to {last}{f'; not counted: {left}' if left else ''}"
+    return reason("from_side_to_side", first=first, last=last, not_counted=tuple(unmeasured(found.assembly.case)))
 
 
-def _side(found: Extent, side: Outermost, axis: str) -> str:
-    when = ""
-    if side.at is not None and found.motion is not None:
-        when = f" ({found.motion.coordinate} = {float(found.motion.told(side.at)):.2f} {found.motion.unit})"
-    return f"{side.name} at {axis} = {side.value:.5g} mm{when}".replace("= -", "= −")
+def _side(found: Extent, side: Outermost, axis: str) -> Reason:
+    facts = {"name": side.name, "axis": axis, "value": side.value}
+    if side.at is None or found.motion is None:
+        return reason("side", **facts)
+    value = float(found.motion.told(side.at))
+    return reason("side_in_pose", **facts, coordinate=found.motion.coordinate, at=value, unit=found.motion.unit)

@@ -10,7 +10,7 @@ from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity
 from alula.fea.outcomes.result import CheckResult, HandResult
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Command, Items, Part, Section
-from alula.reports.sentences import told as told_reason
+from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, number, plain, sentence
 from alula.reports.words.wording import named
 
@@ -118,22 +118,22 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     list of str
     """
     check = change.check
-    told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
-    if change.refuted and not told:
-        told.append("Other loads and materials were tried by hand calculation; with none within reach does it pass.")
-    elif check.verdict is Verdict.UNDECIDED and not told:
+    found = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
+    if change.refuted and not found:
+        found.append("Other loads and materials were tried by hand calculation; with none within reach does it pass.")
+    elif check.verdict is Verdict.UNDECIDED and not found:
         known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
-        told.append(_of_itself(check) if known else sentence(told_reason(check.reason)))
+        found.append(_of_itself(check) if known else sentence(told(check.reason)))
     if change.widest:
-        told.append(_of_sources(change, result))
-    if not told:
-        told.append(
+        found.append(_of_sources(change, result))
+    if not found:
+        found.append(
             _of_itself(check)
             if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
             else "No factor on the loads is told: the number is not in proportion to them, since "
             + ("springs act." if result.case.sprung else "the shape of the deformed linkage counts.")
         )
-    return told
+    return found
 
 
 def size_command(change: VerdictChange, result: CheckResult) -> str:

@@ -15,6 +15,7 @@ from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
 from alula.reports.sections.play import play_parts, play_record
 from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
+from alula.reports.sentences import told as told_of
 from alula.reports.words.numbers import joined
 
 _LOST = ("no equilibrium", "unstable")
@@ -50,7 +51,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     moved, forces = case.large_displacement, case.forces
     article = "the" if forces.by_equilibrium else "a"
     yield say("Joint forces by {article} {model}: {why}", article=article, model=forces.model, why=forces.reason)
-    told = say("{why}", "apart" if moved.state in _LOST else "", why=moved.sentence)
+    told = say("{why}", "apart" if moved.state in _LOST else "", why=moved.reason)
     if moved.state in _LOST:
         below = "Forces, stresses and displacements of the links in this report belong to the"
         told = Text(f"{told.text} {below} {bold('undeformed pose')}.", "apart")
@@ -84,7 +85,7 @@ def linkage_text(case: LoadCaseResult) -> Text:
     else:
         told, facts = ["limit-load factor at least {factor}"], {"factor": Number(factor.low, "", 3)}
     if not found.displacement.unknowable:
-        told.append(f"largest displacement {{displacement}} ({found.where})")
+        told.append(f"largest displacement {{displacement}} ({told_of(found.where)})")
         facts["displacement"] = Number(found.displacement, "mm")
     if found.dead_point_distance is not None and drive is not None:
         told.append(f"distance to a dead point of {drive.link} (a ratio) {{distance}}")
@@ -170,7 +171,8 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
     deformed = moved.reactions
     return {
         "joint_forces": entries(case.forces, "model reason"),
-        "large_displacement": entries(moved, "state span linear where held sentence")
+        "large_displacement": entries(moved, "state span linear where held")
+        | {"sentence": data(moved.reason)}
         | {
             "buckling": None if moved.buckling is None or math.isinf(moved.buckling) else moved.buckling,
             "points": [
@@ -183,7 +185,7 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "linkage": {
             "limit_load": data(case.linkage.limit_load),
             "displacement": data(case.linkage.displacement),
-            "where": case.linkage.where or None,
+            "where": data(case.linkage.where) or None,
             "dead_point_distance": case.linkage.dead_point_distance,
         },
         "play": play_record(case.forces.play),

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.whole.mass import GRAMS, mass_sentence
+from alula.fea.whole.mass import GRAMS, mass_reason
 from alula.fea.whole.size import size_band, size_limits
 from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.extent import Extent, unmeasured
@@ -40,7 +40,7 @@ def _parts(result: CheckResult) -> Iterator[Part]:
     checks = [check for check in result.case.checks.values() if isinstance(check, MassCheck | SizeCheck)]
     asked = next((check for check in checks if isinstance(check, MassCheck)), None)
     if asked is not None and result.mass is not None:
-        yield say("{why}", why=mass_sentence(result.mass, asked.others))
+        yield say("{why}", why=mass_reason(result.mass, asked.others))
         yield _masses(result.mass, asked.others)
     if checks and result.size is not None and (limits := size_limits(result.case)):
         size, motion = result.size, result.size.motion

@@ -19,9 +19,12 @@ from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record
 from alula.reports.page.motion_pages import envelope_headline
 from alula.reports.page.output import MARK, write_folder
+from alula.reports.renderers.record import finite
+from alula.reports.sections.checks import check_records
+from alula.reports.sections.data import data, entries
 from alula.reports.sections.friction import motion_friction_lines, motion_friction_record
+from alula.reports.sentences import told
 from alula.reports.tables.console import say_checks, verdict_line
-from alula.reports.tables.data import check_records, data, entries, finite
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
 from alula.reports.words.numbers import band, fixed, number, sentence
 from alula.reports.words.terminal import say, say_table
@@ -186,7 +189,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         "not_checked": list(unchecked(result.case, over_motion=True)),
         "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, over_motion=True)],
         "checks": check_records(result.checks),
-        "warnings": list(result.warnings),
+        "warnings": data(result.warnings),
         "timings_s": dict(result.timings),
     }
     return dict(finite(envelope, {}))
@@ -199,7 +202,7 @@ def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
         "load_cases": {
             name: _load_case_record(result, envelope, material) for name, envelope in link.load_cases.items()
         },
-        "no_fatigue": link.no_fatigue or None,
+        "no_fatigue": data(link.no_fatigue),
         "unit_loads": link.units,
         "solutions": link.modes,
         **solver_record(link),
@@ -307,7 +310,7 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     missing: dict[str, list[str]] = {}
     for name, link in result.links.items():
         if link.no_fatigue:
-            missing.setdefault(link.no_fatigue, []).append(name)
+            missing.setdefault(told(link.no_fatigue), []).append(name)
     for why, names in missing.items():
         say(console, f"No fatigue of {', '.join(names)}: {why}.")
     for name, over in result.linkage.items():
@@ -320,11 +323,11 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     say_checks(result.checks, console)
     for check in result.checks:
         if check.quantity in UNLOADED_QUANTITIES:
-            say(console, sentence(f"{check.quantity}: {check.reason}"))
+            say(console, sentence(f"{check.quantity}: {told(check.reason)}"))
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")
     for warning in result.warnings:
-        say(console, f"Warning: {warning}.", style="yellow")
+        say(console, f"Warning: {told(warning)}.", style="yellow")
 
 
 def _links(result: EnvelopeResult, console: "Console") -> None:

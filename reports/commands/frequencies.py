@@ -72,7 +72,7 @@ def as_json(found: "CaseFrequencies", name: str) -> str:
     str
     """
     from alula.geometry.base.version import result_stamp
-    from alula.reports.tables.data import finite
+    from alula.reports.renderers.record import finite
     from alula.reports.tables.frequencies import frequencies_record
 
     record: dict[str, Any] = {**result_stamp(), "case": name, "title": found.case.title, "units": UNITS}
@@ -88,6 +88,7 @@ def print_frequencies(found: "CaseFrequencies", console: "Console") -> None:
     found : CaseFrequencies
     console : rich.console.Console
     """
+    from alula.reports.sentences import told as in_words
     from alula.reports.tables.frequencies import history_sentence, mode_rows
     from alula.reports.words.numbers import band
     from alula.reports.words.terminal import say, say_table
@@ -117,7 +118,7 @@ def print_frequencies(found: "CaseFrequencies", console: "Console") -> None:
             ],
         )
         for note in history.lowest.notes:
-            say(console, f"Note: {note}.")
+            say(console, f"Note: {in_words(note)}.")
     links = [row for row in rows if not row["load_case"]]
     if links:
         say(console, "\nLinks by themselves")

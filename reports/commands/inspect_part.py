@@ -16,7 +16,7 @@ from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.mesh_part import UNITS
 from alula.loads.exchange.part import FoundPart, part_entries
 from alula.loads.text.explain import printable
-from alula.reports.tables.data import entries
+from alula.reports.sections.data import entries
 from alula.reports.words.numbers import fixed, joined, number, plain
 from alula.reports.words.terminal import KEPT, say, say_table
 

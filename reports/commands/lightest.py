@@ -39,7 +39,7 @@ def record_of(found: "Lightest") -> Mapping[str, Any]:
     """
     from alula.fea.study.margin import nearest
     from alula.geometry.base.version import result_stamp
-    from alula.reports.tables.data import finite
+    from alula.reports.renderers.record import finite
 
     solved = []
     for place, result in found.solved.items():

@@ -233,7 +233,7 @@ def print_found(found: "Sized | Lightest", console: "Console") -> None:
 def _record(found: "Sized | Lightest") -> Mapping[str, Any]:
     from alula.fea.sizing.least import Sized
     from alula.reports.commands.lightest import record_of
-    from alula.reports.tables.data import entries
+    from alula.reports.sections.data import entries
 
     told = record(found) if isinstance(found, Sized) else record_of(found)
     return {**told, "caveats": [entries(one, "heading topic what why") for one in found.caveats]}
@@ -306,7 +306,7 @@ def record(found: "Sized") -> Mapping[str, Any]:
     mapping
     """
     from alula.geometry.base.version import result_stamp
-    from alula.reports.tables.data import finite
+    from alula.reports.renderers.record import finite
 
     def value(step: int | None) -> object:
         return None if step is None else found.values[step]

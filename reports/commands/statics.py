@@ -11,9 +11,9 @@ from alula.loads.statics.friction import friction_wrenches
 from alula.loads.statics.rounding import rounded, size_of, without_rounding
 from alula.loads.statics.statics import Reactions
 from alula.loads.statics.system import System
+from alula.reports.renderers.record import finite
 from alula.reports.sections.friction import friction_record, friction_sentence
 from alula.reports.sections.springs import holding_sentence, spring_sentences, standing_record
-from alula.reports.tables.data import finite
 from alula.reports.tables.frames import (
     AXES,
     play_line,

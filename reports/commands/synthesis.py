@@ -16,7 +16,7 @@ from alula.geometry.base.units import POSITIVE, Angle, Length
 from alula.geometry.base.version import result_stamp
 from alula.geometry.mechanisms.synthesis import DRIVES, PrecisionPoint, Synthesis, synthesise
 from alula.loads.text.explain import printable, sentence
-from alula.reports.tables.data import entries
+from alula.reports.sections.data import entries
 
 PUBLISHED_POINTS = ("0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg")
 """Precision points (theta, psi) of Arango and Hurtado."""

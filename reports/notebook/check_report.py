@@ -17,6 +17,7 @@ from alula.reports.check.whole_check import check_sections
 from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary, table_of
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
+from alula.reports.sentences import told
 from alula.reports.words.wording import checks_of, headline, inapplicable
 
 RENAMED = {
@@ -63,7 +64,7 @@ class CheckReport(Tabled):
     @property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each."""
-        return self.result.warnings
+        return tuple(map(told, self.result.warnings))
 
     @property
     def load_cases(self) -> tuple[str, ...]:
@@ -295,7 +296,9 @@ class CheckReport(Tabled):
         pick({name: name for name in self._links}, link, "link")
         found = self._case(link, load_case).links[link]
         if not isinstance(found, SolidResult):
-            raise CaseError(f'link {link} has no stress field, since {found.why}; check the case with fidelity="solid"')
+            raise CaseError(
+                f'link {link} has no stress field, since {told(found.why)}; check the case with fidelity="solid"'
+            )
         plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))

@@ -14,6 +14,7 @@ from alula.geometry.base.errors import CannotRunError
 from alula.reports.commands.envelope import drive_angle
 from alula.reports.notebook.check_report import check_rows
 from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
+from alula.reports.sentences import told
 
 Real = NDArray[np.float64]
 
@@ -45,7 +46,7 @@ class EnvelopeReport(Tabled):
     @property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each."""
-        return self.result.warnings
+        return tuple(map(told, self.result.warnings))
 
     @property
     def coordinates(self) -> Real:

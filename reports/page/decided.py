@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, reason_for
+from alula.reports.sentences import told
 
 _MEANING = {
     Verdict.PASS: "{where} and under these loads every check keeps its limit, even at the unfavourable end of its "
@@ -50,7 +51,7 @@ def held(checks: Sequence[CheckOutcome]) -> dict[str, tuple[str, ...]]:
         band = check.value
         texts = [str(source.kind) for source in band.sources] if check.name in wide else []
         if band.without:
-            texts.append(f"{'no error of the model' if texts else 'nothing'} ({band.without})")
+            texts.append(f"{'no error of the model' if texts else 'nothing'} ({told(band.without)})")
         for text in texts:
             found.setdefault(check.name, {})[text] = None
     return {name: tuple(texts) for name, texts in found.items()}
@@ -72,6 +73,6 @@ def reasons(checks: Sequence[CheckOutcome]) -> list[str]:
         if check.quantity not in _TELLING
         and not check.value.unknowable
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
-        else check.reason
+        else told(check.reason)
         for check in checks
     ]

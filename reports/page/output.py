@@ -322,7 +322,7 @@ def _remove_empty(target: Path, names: Iterable[str]) -> None:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder: of the output while names in it are changed, of a working folder while its run lives."""
+    """Hold the lock of a folder: of the output while names change, of a working folder while its run lives."""
     held = locked(folder)
     try:
         yield

@@ -1,12 +1,16 @@
 """The templates of pages, and how they write numbers."""
 
 import math
+from collections.abc import Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from alula.fea.common.reason import Reason
+from alula.fea.common.verdict import CheckOutcome
 from alula.geometry.base.version import alula_version
 from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.page.policy import sealed
+from alula.reports.sentences import told
 from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, sentence
 
 if TYPE_CHECKING:
@@ -26,7 +30,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
     script : str, optional
         What it runs.
     **entries
-        What it shows; its text is escaped.
+        What it shows; a reason is told, and text is escaped.
 
     Returns
     -------
@@ -47,6 +51,7 @@ def _environment() -> "Environment":
         loader=PackageLoader("alula.reports"),
         autoescape=True,
         undefined=StrictUndefined,
+        finalize=_told,
         trim_blocks=True,
         lstrip_blocks=True,
         bytecode_cache=CompiledTemplates(),
@@ -57,14 +62,29 @@ def _environment() -> "Environment":
         "fixed": fixed,
         "band": band,
         "percent": percent,
-        "joined": joined,
-        "sentence": sentence,
-        "capitalize_first": lambda text: text[:1].upper() + text[1:],
+        "joined": lambda texts: joined([told(text) for text in texts]),
+        "told": told,
+        "sentence": lambda text: sentence(told(text)),
+        "capitalize_first": lambda text: told(text)[:1].upper() + told(text)[1:],
         "complex": complex,
+        "by_reason": _by_reason,
         "breakable": lambda path: path.replace(".", ".\u200b"),
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
     return environment
+
+
+def _by_reason(checks: Iterable[CheckOutcome]) -> list[tuple[str, list[CheckOutcome]]]:
+    """Return checks with one reason together, in the order of what it says."""
+    found: dict[str, list[CheckOutcome]] = {}
+    for check in checks:
+        found.setdefault(told(check.reason), []).append(check)
+    return sorted(found.items())
+
+
+def _told(value: Any) -> Any:
+    """Return a reason in words, and anything else as it is."""
+    return told(value) if isinstance(value, Reason) else value
 
 
 def embed(drawn: Drawing, alt: str) -> "Markup":

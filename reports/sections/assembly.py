@@ -4,7 +4,7 @@ from typing import Any
 
 from alula.fea.common.band import Band
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.whole.clearance import SOURCES, clearance_band, clearance_sentence
+from alula.fea.whole.clearance import SOURCES, clearance_band, gap_reason
 from alula.geometry.clearance.least import Gap
 from alula.loads.case.joint_rules import clearances
 from alula.loads.states.clearance import Clearance
@@ -143,7 +143,7 @@ def clearance_text(found: Clearance) -> Text:
     -------
     Text
     """
-    where = sentence(told(clearance_sentence(found)))
+    where = sentence(told(gap_reason(found)))
     if found.least is None:
         return Text(where)
     gap = Number(clearance_band(found), "mm")

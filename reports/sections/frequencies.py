@@ -5,15 +5,15 @@ from typing import Any
 
 from alula.fea.vibration.frequency_outcomes import (
     deciding_load_case,
-    harmonic_sentence,
     least_at,
     least_frequency,
-    lowest_sentence,
+    lowest_frequency,
     most_moved,
+    nearest_or_met,
     told,
     unit,
 )
-from alula.fea.vibration.harmonics import HIGHEST, in_words, meetings
+from alula.fea.vibration.harmonics import HIGHEST, meetings
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
 from alula.loads.case.case import Case
 from alula.reports.sections.data import data, entries
@@ -32,6 +32,8 @@ from alula.reports.sections.section import (
     say,
     words,
 )
+from alula.reports.sentences import told as in_words
+from alula.reports.sentences.motion import directions
 from alula.reports.words.numbers import joined, sentence
 
 LEFT_OUT = (
@@ -84,8 +86,8 @@ def history_sentence(case: Case, history: FrequencyHistory) -> str:
     -------
     str
     """
-    told_of = lowest_sentence(case, history)
-    return sentence(f"{told_of}; {harmonic_sentence(case, history)}" if history.driving else told_of)
+    lowest = in_words(lowest_frequency(case, history))
+    return sentence(f"{lowest}; {in_words(nearest_or_met(case, history))}" if history.driving else lowest)
 
 
 def _parts(found: CaseFrequencies, *, alone: bool) -> Iterator[Part]:
@@ -164,12 +166,12 @@ def _table(found: CaseFrequencies) -> Table:
     for name, history in found.histories.items():
         for k, mode in enumerate(history.lowest.modes):
             ratio = Number(mode.frequency.times(1.0 / history.driving) if history.driving else None, derived=k > 0)
-            moves = (in_words(mode.in_plane), most_moved(history.lowest, mode))
+            moves = (directions(mode.in_plane), most_moved(history.lowest, mode))
             rows.append(row(k, name, "the linkage", Number(mode.frequency), ratio, *moves))
     for link, own in found.links.items():
         modes = enumerate(own.modes)
         rows += [
-            row(k, "", link, Number(mode.frequency), Number(None), in_words(mode.in_plane), "") for k, mode in modes
+            row(k, "", link, Number(mode.frequency), Number(None), directions(mode.in_plane), "") for k, mode in modes
         ]
         below[len(rows) - 1] = f"By itself, {link} is {own.held}."
     several, driven = len(found.histories) > 1, any(history.driving for history in found.histories.values())

@@ -1,8 +1,10 @@
 """How a reason becomes a sentence.
 
 A sentence is a text with places such as ``{share:percent}``, or a function of the facts where words depend on them.
-What follows the colon is how a fact is written: a whole number for significant digits, ``percent``, ``plain``,
-``fixed2`` for two decimals, ``and`` for a list of names as ``a, b and c``. A band and a reason are told in their place.
+What follows the colon is how a fact is written: a whole number for significant digits, ``short3`` for three at most,
+``share2`` for a share in percent with two at most, ``percent``, ``plain``, ``fixed2`` for two decimals, ``and`` for a
+list of names as ``a, b and c``; each of another list is written by itself, ``a, b, c``. A band and a reason are told in
+their place.
 """
 
 import string
@@ -13,10 +15,10 @@ from typing import Any
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
-from alula.reports.words.numbers import band, fixed, joined, number, percent, plain
+from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, short
 
 Sentence = str | Callable[..., str]
-FILES = ("links", "linkage", "motion", "runs")
+FILES = ("bands", "envelopes", "frames", "hand", "links", "linkage", "motion", "runs")
 """Of the sentences, each with a table ``SENTENCES``."""
 
 
@@ -71,10 +73,16 @@ class _Places(string.Formatter):
             return told(value)
         if format_spec == "and":
             return joined([told(one) for one in value])
+        if isinstance(value, tuple):
+            return ", ".join(self.format_field(one, format_spec) for one in value)
         if isinstance(value, Band):
             return band(value, int(format_spec) if format_spec.isdigit() else 3)
         if format_spec.isdigit():
             return number(value, int(format_spec))
+        if format_spec.startswith("short"):
+            return short(value, int(format_spec.removeprefix("short")))
+        if format_spec.startswith("share"):
+            return f"{short(100.0 * value, int(format_spec.removeprefix('share')))} %"
         if format_spec.startswith("fixed"):
             return fixed(value, int(format_spec.removeprefix("fixed")))
         if format_spec in ("percent", "plain"):

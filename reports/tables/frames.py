@@ -13,7 +13,8 @@ from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
 from alula.loads.statics.rounding import without_rounding
 from alula.loads.statics.statics import Reactions
-from alula.reports.tables.data import data, entries
+from alula.reports.sections.data import data, entries
+from alula.reports.sentences import told
 from alula.reports.words.numbers import band, fixed, limit_load, number
 
 if TYPE_CHECKING:
@@ -85,7 +86,8 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
     deformed = moved.reactions
     return {
         "joint_forces": entries(case.forces, "model reason"),
-        "large_displacement": entries(moved, "state span linear where held sentence")
+        "large_displacement": entries(moved, "state span linear where held")
+        | {"sentence": data(moved.reason)}
         | {
             "buckling": None if moved.buckling is None or math.isinf(moved.buckling) else moved.buckling,
             "points": [
@@ -98,7 +100,7 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
         "linkage": {
             "limit_load": data(case.linkage.limit_load),
             "displacement": data(case.linkage.displacement),
-            "where": case.linkage.where or None,
+            "where": data(case.linkage.where) or None,
             "dead_point_distance": case.linkage.dead_point_distance,
         },
         "play": play_record(case.forces.play),
@@ -131,7 +133,7 @@ def motion_linkage_record(moved: "CaseMotion", over: "LinkageOverMotion") -> dic
         "limit_load_at": told(over.limit_pose),
         "displacement": data(over.displacement),
         "displacement_at": told(over.displacement_pose),
-        "where": over.where or None,
+        "where": data(over.where) or None,
     }
 
 
@@ -156,7 +158,7 @@ def motion_linkage_line(moved: "CaseMotion", over: "LinkageOverMotion") -> str:
     told = f"{len(over.poses)} of {len(moved.motion.angles)} poses: least {limit_load(over.limit_load)}"
     told += at(found["limit_load_at"])
     if not over.displacement.unknowable:
-        told += f", largest displacement {band(over.displacement)} mm ({over.where}){at(found['displacement_at'])}"
+        told += f", largest displacement {band(over.displacement)} mm ({found['where']}){at(found['displacement_at'])}"
     return f"Linkage in {told}."
 
 
@@ -174,7 +176,7 @@ def linkage_line(case: "LoadCaseResult") -> str:
     found, drive = case.linkage, case.reactions.drive
     told = [limit_load(found.limit_load)]
     if not found.displacement.unknowable:
-        told.append(f"largest displacement {band(found.displacement)} mm ({found.where})")
+        told.append(f"largest displacement {band(found.displacement)} mm ({data(found.where)})")
     if found.dead_point_distance is not None and drive is not None:
         told.append(f"distance to a dead point of {drive.link} (a ratio) {number(found.dead_point_distance, 3)}")
     return f"Linkage: {', '.join(told)}."
@@ -195,7 +197,7 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     """
     lines = []
     if not case.forces.by_equilibrium:
-        lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
+        lines.append(f"Joint forces by a {case.forces.model}: {told(case.forces.reason)}.")
     lines.append(linkage_line(case))
     lines += filter(None, [thrust_line(case.forces, case.large_displacement.reactions)])
     if case.forces.play is not None:

@@ -3,19 +3,21 @@
 from typing import Any
 
 from alula.fea.vibration.frequency_outcomes import (
-    harmonic_sentence,
     least_at,
     least_frequency,
-    lowest_sentence,
+    lowest_frequency,
     most_moved,
+    nearest_or_met,
     told,
     unit,
 )
-from alula.fea.vibration.harmonics import HIGHEST, in_words, meetings
+from alula.fea.vibration.harmonics import HIGHEST, meetings
 from alula.fea.vibration.link_modes import LinkModes
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
 from alula.loads.case.case import Case
-from alula.reports.tables.data import data, entries
+from alula.reports.sections.data import data, entries
+from alula.reports.sentences import told as in_words
+from alula.reports.sentences.motion import directions
 from alula.reports.words.numbers import sentence
 
 LEFT_OUT = (
@@ -78,7 +80,7 @@ def _history(case: Case, history: FrequencyHistory) -> dict[str, Any]:
             for met in meetings(history)
         ],
         "poses_left_out": [told(case, value) for value in history.left_out],
-        "notes": list(lowest.notes),
+        "notes": data(lowest.notes),
         "sentence": history_sentence(case, history),
     }
 
@@ -99,8 +101,8 @@ def history_sentence(case: Case, history: FrequencyHistory) -> str:
     -------
     str
     """
-    told_of = lowest_sentence(case, history)
-    return sentence(f"{told_of}; {harmonic_sentence(case, history)}" if history.driving else told_of)
+    told_of = in_words(lowest_frequency(case, history))
+    return sentence(f"{told_of}; {in_words(nearest_or_met(case, history))}" if history.driving else told_of)
 
 
 def mode_rows(found: CaseFrequencies) -> list[dict[str, Any]]:
@@ -126,7 +128,7 @@ def mode_rows(found: CaseFrequencies) -> list[dict[str, Any]]:
                     "number": k + 1,
                     "frequency": mode.frequency,
                     "ratio": mode.frequency.times(1.0 / history.driving) if history.driving else None,
-                    "moves": in_words(mode.in_plane),
+                    "moves": directions(mode.in_plane),
                     "most": most_moved(history.lowest, mode),
                 }
             )
@@ -139,8 +141,8 @@ def mode_rows(found: CaseFrequencies) -> list[dict[str, Any]]:
                     "number": k + 1,
                     "frequency": own.frequency,
                     "ratio": None,
-                    "moves": in_words(own.in_plane),
-                    "most": modes.held,
+                    "moves": directions(own.in_plane),
+                    "most": in_words(modes.held),
                 }
             )
     return rows

@@ -68,6 +68,22 @@ def plain(value: float) -> str:
     return f"{value:g}".replace("-", "−")
 
 
+def short(value: float, digits: int) -> str:
+    """Return a number with some significant digits at most, without padding zeros.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+
+    Returns
+    -------
+    str
+    """
+    text = f"{value:.{digits}g}"
+    return text.replace("-", "−") if math.isfinite(value) and "e" not in text else number(value, digits)
+
+
 def band(value: Band, digits: int = 3) -> str:
     """Return ``3.21 (2.44 to 3.21)``, the value alone where the band has no visible width, or ``3.21 (no band)``.
 
@@ -169,6 +185,21 @@ def joined(words: tuple[str, ...] | list[str]) -> str:
     str
     """
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+
+
+def ordinal(n: int) -> str:
+    """Return ``1st``, ``2nd``, ``3rd``, ``4th``.
+
+    Parameters
+    ----------
+    n : int
+        From 1 to 20.
+
+    Returns
+    -------
+    str
+    """
+    return f"{n}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(n, 'th') }"
 
 
 def turning(torque: float) -> str:

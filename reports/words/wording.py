@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from alula.loads.text.caveat import Caveat, Heading
+from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, measured, number, plain, sentence
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool,
     share = f"{len(found)} of {count} checks"
     if verdict is Verdict.UNDECIDED:
         verb = "is" if len(found) == 1 else "are"
-        return f"Undecided: {share} {verb} open{named_all}. {sentence(f'{named(first)}: {first.reason}')}"
+        return f"Undecided: {share} {verb} open{named_all}. {sentence(f'{named(first)}: {told(first.reason)}')}"
     missed = f"{share} {'misses its limit' if len(found) == 1 else 'miss their limits'} over the whole error band"
     if first.quantity is Quantity.LOAD_SHARE:
         return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}{named_all}."
@@ -177,7 +178,7 @@ def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:
     several, groups = len({check.load_case for check in checks}) > 1, dict[str, list[CheckOutcome]]()
     for check in checks:
         if not check.applies:
-            groups.setdefault(check.reason, []).append(check)
+            groups.setdefault(told(check.reason), []).append(check)
     return [
         f"Not applicable, {len(group)} check{'s' if len(group) > 1 else ''}: {reason}. "
         + sentence("; ".join(_gathered(group, several=several)))

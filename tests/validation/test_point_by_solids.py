@@ -26,6 +26,7 @@ from alula.fea.elements.quadrature import surface_quadrature
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.solid.bore_motion import mean_motion
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told as in_words
 
 CLAMPED = 3.2264
 """Of the tube [mm]."""
@@ -151,8 +152,8 @@ def test_a_flat_bar_stretches_as_its_solid_does():
         assert found.value.low < 0.01912 < found.value.high
     assert by_solid.value.low > 0.9 * 0.01912
     assert by_solid.value.high < 1.15 * 0.01912
-    assert by_solid.reason.startswith("by the solid model of bar, by linear theory: ")
-    assert by_beam.reason.startswith("by the frame of the linkage, by linear theory: ")
+    assert in_words(by_solid.reason).startswith("by the solid model of bar, by linear theory: ")
+    assert in_words(by_beam.reason).startswith("by the frame of the linkage, by linear theory: ")
     kinds = [{source.kind for source in found.value.sources} for found in (by_solid, by_beam)]
     assert SourceKind.EYES in kinds[1] - kinds[0]
     assert {SourceKind.DISCRETISATION, SourceKind.PIN_PRESSURE} <= kinds[0] - kinds[1]
@@ -178,7 +179,7 @@ def test_a_limit_inside_the_band_of_meshes_is_decided_by_finer_ones():
 def test_no_mesh_is_made_for_a_limit_between_the_pressures_of_the_pin():
     found, meshes = flat_bar("0.0195 mm", "solid")
     assert (found.verdict, meshes) == ("undecided", 1)
-    assert found.reason.endswith("; finer meshes would not decide it")
+    assert in_words(found.reason).endswith("; finer meshes would not decide it")
 
 
 def test_what_pins_sink_is_told_beside_the_band():
@@ -199,7 +200,7 @@ def test_what_pins_sink_is_told_beside_the_band():
 def test_a_limit_inside_the_band_of_beams_is_left_to_solids():
     by_beam, _ = flat_bar("0.04 mm", "beam")
     assert (by_beam.verdict, flat_bar("0.04 mm", "auto")[0].verdict) == ("undecided", "pass")
-    assert by_beam.reason.endswith("; solid models of all links (--fidelity solid) have a narrower band")
+    assert in_words(by_beam.reason).endswith("; solid models of all links (--fidelity solid) have a narrower band")
 
 
 def bent_tube(force: str, fidelity: str) -> CheckOutcome:
@@ -226,7 +227,7 @@ def test_a_plate_gives_as_its_solid_does():
     assert found.value.low < 0.03725 < found.value.high
     by_hand = displacement(checked(text, "beam"))
     assert by_hand.value.unknowable
-    assert by_hand.reason.endswith("its solid model does: run --fidelity solid")
+    assert in_words(by_hand.reason).endswith("its solid model does: run --fidelity solid")
 
 
 def test_on_the_deformed_shape_the_frame_is_as_soft_as_the_solids():
@@ -234,7 +235,7 @@ def test_on_the_deformed_shape_the_frame_is_as_soft_as_the_solids():
     (solid, beam), (far_solid, far_beam) = (
         [bent_tube(force, fidelity) for fidelity in ("solid", "beam")] for force in ("1", "2")
     )
-    assert far_solid.reason.startswith("by the solid model of tube, on its deformed shape: ")
+    assert in_words(far_solid.reason).startswith("by the solid model of tube, on its deformed shape: ")
     assert far_beam.value.value < 1.999 * beam.value.value
     ratios = [one.value.value / other.value.value for one, other in ((solid, beam), (far_solid, far_beam))]
     assert ratios[1] == pytest.approx(ratios[0], rel=3e-3)
@@ -284,8 +285,8 @@ def test_virtual_work_is_how_the_links_fit_together_at_their_bores():
 
 def test_links_decided_by_hand_add_what_their_beams_do():
     mixed, solids = displacement(checked(ROCKER, "auto")), displacement(checked(ROCKER))
-    assert "by the solid models of crank, rocker and of the frame's beams of coupler" in mixed.reason
-    assert solids.reason.startswith("by the solid models of crank, coupler, rocker, by linear theory")
+    assert "by the solid models of crank, rocker and of the frame's beams of coupler" in in_words(mixed.reason)
+    assert in_words(solids.reason).startswith("by the solid models of crank, coupler, rocker, by linear theory")
     assert mixed.value.value == pytest.approx(solids.value.value, rel=0.02)
     assert mixed.value.low < solids.value.value < mixed.value.high
     eyes = [any(s.kind is SourceKind.EYES for s in found.value.sources) for found in (mixed, solids)]
@@ -293,4 +294,4 @@ def test_links_decided_by_hand_add_what_their_beams_do():
     limit = (solids.value.high + mixed.value.high) / 2.0
     closer = displacement(checked(ROCKER.replace('"1 mm" }', f'"{limit} mm" }}'), "auto"))
     assert closer.verdict == "pass"
-    assert "by the solid models of crank, coupler, rocker, by linear theory" in closer.reason
+    assert "by the solid models of crank, coupler, rocker, by linear theory" in in_words(closer.reason)

@@ -20,6 +20,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told
 
 STATED = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
 
@@ -125,7 +126,7 @@ def test_short_plates_share_the_load_as_their_plane_solution_has_it():
     assert tensions(found)[1] > 1.15 * 850.0 * slender / (2.0 * lines + slender)
     assert moved.value.value == pytest.approx(rise, rel=0.01)
     assert moved.value.low <= rise <= moved.value.high
-    assert "sinking into the sides that they press could add up to" in moved.reason
+    assert "sinking into the sides that they press could add up to" in told(moved.reason)
     shared = {source.text for source in moved.value.sources if source.kind is SourceKind.DISCRETISATION}
     assert shared <= {source.text for source in found.links["bar0"].von_mises_max.sources}
 
@@ -226,9 +227,9 @@ def test_solids_tell_how_far_a_point_moves_where_centre_lines_leave_it_open():
     for at, load, span in (("end", "tip", 60.0), ("half", "middle", 30.0)):
         hand, found = beams[load, at], solids[load, at]
         assert hand.verdict is Verdict.UNDECIDED
-        assert "--fidelity solid" in hand.reason
+        assert "--fidelity solid" in told(hand.reason)
         assert found.verdict is Verdict.PASS
-        assert found.reason.startswith("by the frame of the links' solids")
+        assert told(found.reason).startswith("by the frame of the links' solids")
         force = {"tip": 5.0, "middle": 14.0}[load]
         short, long = (force * reach**3 / (3.0 * 68900.0 * 64.0) for reach in (span - 10.0, span))
         assert short < found.value.value < long

@@ -27,6 +27,7 @@ from alula.fea.vibration.link_modes import link_modes
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.actions import acting_loads
+from alula.reports.sentences import told
 from docs.extensions.examples import FOLDER
 
 FORCE, FREE, HELD = 100.0, 180.0, 20.0
@@ -372,7 +373,7 @@ def test_a_clamped_plate_is_built_in_where_it_is_held():
     parts = {"tube": {"shape": "plate", "material": "aluminium-6061-t6", "thickness": "6 mm", "eye_diameter": "40 mm"}}
     held = solid_holding(case(parts=parts), "beam")
     assert list(held.places) == ["end:O"]
-    assert held.words == "built in at O"
+    assert told(held.how) == "built in at O"
     assert held.value == pytest.approx(np.eye(6))
     assert len(held.alone) == 1
 
@@ -499,7 +500,7 @@ def test_by_hand_alone_a_clamp_decides_nothing():
     result = check_case(case(checks=checks), name="cantilever", fidelity="beam")
     found = outcome(result, Quantity.SAFETY_FACTOR)
     assert found.verdict is Verdict.UNDECIDED
-    assert "it is clamped" in found.reason
+    assert "it is clamped" in told(found.reason)
 
 
 def test_the_mouth_of_a_field_that_bends_is_found():

@@ -10,6 +10,7 @@ from alula.fea.check.run import effort_of
 from alula.fea.common.verdict import Verdict
 from alula.fea.refine.refinement import Effort
 from alula.geometry.base.errors import CaseError
+from alula.reports.sentences import told
 
 
 @pytest.mark.parametrize(
@@ -32,7 +33,7 @@ def test_sharp_edge_gets_no_safety_factor(part, force):
     assert min(abs(math.hypot(sharp.place[0] - x, sharp.place[1]) - 4.0) for x in (0.0, 15.0)) < 0.05
     assert 0.0 < sharp.screening < link.discretisation.stress.value
     for word in ("singular", "fillet_radius", "screening"):
-        assert word in check.reason
+        assert word in told(check.reason)
     assert check.reason in link.notes
 
 
@@ -52,7 +53,7 @@ def test_link_far_from_its_limit_takes_one_mesh_and_says_so():
     assert link.discretisation.status == "far"
     assert len(link.discretisation.meshes) == 1
     assert link.safety_factor.low > 2.0 * 3.0
-    assert any("one mesh" in held for held in link.safety_factor.texts)
+    assert any("one mesh" in told(held) for held in link.safety_factor.texts)
     assert check.verdict is Verdict.PASS
 
 
@@ -63,7 +64,7 @@ def test_stated_accuracy_refines_what_is_clear_already():
     stress = link.discretisation.stress
     assert stress.index <= 0.1
     assert stress.kind != "growing"
-    assert any("grid convergence" in held for held in link.safety_factor.texts)
+    assert any("grid convergence" in told(held) for held in link.safety_factor.texts)
     assert link.von_mises_max.low <= stress.value <= link.von_mises_max.high
 
 
@@ -78,9 +79,9 @@ def test_stated_accuracy_refines_what_is_clear_already():
 def test_what_is_not_reached_is_said(limit, words):
     link, _ = checked(Effort(accuracy=0.01, stated=True, **limit), part=arm_case.BAR, fillet=1.0, force=-1.0)
     assert link.discretisation.status == "not reached"
-    assert words in link.discretisation.stopped
+    assert words in told(link.discretisation.stopped)
     assert link.discretisation.stress.index > 0.01
-    assert any(words in note for note in link.notes)
+    assert any(words in told(note) for note in link.notes)
 
 
 def test_open_verdict_names_the_limit_that_ended_the_refinement():
@@ -88,8 +89,8 @@ def test_open_verdict_names_the_limit_that_ended_the_refinement():
     minimum = link.safety_factor.value
     _, check = checked(Effort(max_meshes=1), part=arm_case.BAR, fillet=1.0, force=-1.0, minimum=minimum)
     assert check.verdict is Verdict.UNDECIDED
-    assert "so it may pass or fail" in check.reason
-    assert "number of meshes, 1, is reached" in check.reason
+    assert "so it may pass or fail" in told(check.reason)
+    assert "number of meshes, 1, is reached" in told(check.reason)
 
 
 def test_accuracy_of_the_case_and_of_the_command():

@@ -17,6 +17,7 @@ from alula.fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, 
 from alula.fea.nonlinear.stability import buckling_factor
 from alula.geometry.parts.part import Section
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told
 
 STRUT = """
 schema_version = 1
@@ -93,7 +94,7 @@ def test_strut_weak_in_its_plane_fails_beyond_euler_whatever_its_stress(share, v
     assert found["strut"].value.value == pytest.approx(1.0 / share, rel=1e-4)
     strength = next(c for c in result.checks if c.name == "strength" and c.link == "strut")
     assert strength.value.value > 3.0 * strength.limit
-    assert "free to turn on pins at 0 and 100 mm" in found["strut"].reason
+    assert "free to turn on pins at 0 and 100 mm" in told(found["strut"].reason)
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(1.5, "undecided"), (3.99, "undecided"), (4.01, "fail")])
@@ -283,7 +284,7 @@ def test_column_whose_force_steps_or_pulls_or_is_not_known():
 
 def test_a_link_beyond_its_strength_is_told_beside_its_elastic_answer():
     result, found = buckling(strut(-0.5, at="H", tip=120.0))
-    assert "elastic and void" not in found["strut"].reason
+    assert "elastic and void" not in told(found["strut"].reason)
     strong = {link: r.beam for link, r in result.links.items()}
     weak = strong | {"strut": replace(strong["strut"], strength=0.99 * strong["strut"].worst.equivalent)}
     assert beyond_strength(strong) == ""

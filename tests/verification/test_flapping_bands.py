@@ -19,6 +19,7 @@ from alula.fea.motion.loosened import column_growth, joint_growth, otherwise
 from alula.fea.whole.motor import motor_outcomes
 from alula.loads.case.case import Case
 from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.sentences import told as in_words
 
 WINGS = [
     f'{{ link = "lever-{side}", at = "W", span = ["6 mm", "66 mm"], chord = "30 mm" }}' for side in ("right", "left")
@@ -101,12 +102,14 @@ def test_the_motors_bands_hold_what_every_coefficient_of_the_range_asks():
 def test_the_motor_says_whether_it_carries_the_air(current, verdict, told):
     outcome = motor(ornithopter(current=current))["drive power"]
     assert outcome.verdict is verdict
-    assert told in outcome.reason
+    assert told in in_words(outcome.reason)
     bare, least = (solve_case_motion(case).forces["wings-12"] for case in (ornithopter(None), direct(1.2)))
     torque = float(np.abs(bare.drive_torque).max())
-    assert f"without air at most {torque:.3g} N·mm and {bare.drive_power.max() / 1e3:.3g} W, " in outcome.reason
-    assert "(C_N from 1.2 to 5: at most " in outcome.reason
-    assert f" N·mm and {least.drive_power.max() / 1e3:.3g} to " in outcome.reason
+    assert f"without air at most {torque:.3g} N·mm and {bare.drive_power.max() / 1e3:.3g} W, " in in_words(
+        outcome.reason
+    )
+    assert "(C_N from 1.2 to 5: at most " in in_words(outcome.reason)
+    assert f" N·mm and {least.drive_power.max() / 1e3:.3g} to " in in_words(outcome.reason)
 
 
 def swept(coefficient: float = 3.5, least: float = 1.2, largest: float = 5.0) -> Case:

@@ -19,6 +19,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.masses import part_mass
+from alula.reports.sentences import told
 
 ALONG, ACROSS = 1.2, 1.6
 """Of the force on the bar, which the strut pushes [N]."""
@@ -69,7 +70,7 @@ def test_it_buckles_as_a_column_clamped_at_one_end_and_free_at_the_other():
     euler = math.pi**2 * E * I_Y / (4.0 * L**2)
     outcome = buckling(1.0)
     assert outcome.value.value == pytest.approx(euler / ALONG, rel=1e-3)
-    assert "built in at 80 mm" in outcome.reason
+    assert "built in at 80 mm" in told(outcome.reason)
 
 
 def test_its_joints_hold_it_at_the_most():
@@ -110,7 +111,7 @@ def test_a_point_of_the_linkage_moves_with_the_ground_where_solids_tell():
         for fidelity in ("beam", "solid")
     )
     assert by_frame.value.unknowable
-    assert "the frame takes link bracket for rigid" in by_frame.reason
+    assert "the frame takes link bracket for rigid" in told(by_frame.reason)
     # Unit loads at B, which the struts carry to A and O, do work on the bar's bending and shear; all else is steel.
     struts = np.array([[-0.6, -0.8], [-70.0, -40.0] / np.hypot(70.0, 40.0)]).T
     stiff = 5.0 / 6.0 * E / (2.0 * (1.0 + POISSON)) * WIDTH * THICKNESS
@@ -142,15 +143,15 @@ def test_a_plate_across_the_x_axis_is_judged_by_its_solid_and_has_no_beam():
     assert across.displacement_max.value == pytest.approx(along.displacement_max.value, rel=0.02)
     assert along.beam.worst.equivalent > 0.0
     assert (along.beam.without, across.beam.worst.equivalent) == ("", 0.0)
-    assert any("80 mm apart across that axis and 0 mm along it" in note for note in across.notes)
+    assert any("80 mm apart across that axis and 0 mm along it" in told(note) for note in across.notes)
     for result in results:
         [outcome] = [
             o
             for o in result.load_cases["push"].checks
             if o.quantity is Quantity.BUCKLING_FACTOR and o.subject == Subject.link("bracket")
         ]
-        assert "its solid buckles" in outcome.reason
-        assert "built in at base" in outcome.reason
+        assert "its solid buckles" in told(outcome.reason)
+        assert "built in at base" in told(outcome.reason)
         # Within a force of 1.6 N across, which bends the plate in its plane, as a column of its width alone.
         assert 3.0 * outcome.value.low < math.pi**2 * E * 12.0 * 4.0**3 / 12.0 / (4.0 * L**2) / ALONG
     by_hand = check_case(bracket(**coarse, **TURNED), fidelity="beam")

@@ -17,6 +17,7 @@ from alula.geometry.meshing.mesh import MeshSettings, mesh_bodies
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.sentences import told
 
 BAR = {
     "shape": "bar",
@@ -159,7 +160,7 @@ def test_what_solids_of_links_give_takes_the_place_of_the_doubt_about_their_eyes
         assert hand.unknowable if right is FLAT else hand.low < 0.85 * found.low
     held = [check for check in solids.load_cases["most"].checks if check.subject == LINKAGE]
     assert {check.verdict for check in held} == {Verdict.PASS}
-    assert "times as soft as" in held[0].reason
+    assert "times as soft as" in told(held[0].reason)
     open_by_eyes = [check.verdict for check in beams.load_cases["most"].checks if check.subject == LINKAGE]
     assert set(open_by_eyes) == {Verdict.UNDECIDED}
 
@@ -183,7 +184,7 @@ def test_a_displacement_whose_band_has_no_end_says_why(case, why):
     [one] = [c for c in check_case(found, fidelity="beam").load_cases["push"].checks if c.name == "far"]
     assert one.value.high == math.inf
     assert one.value.value < one.limit
-    assert f"the band has no upper end, since {why}" in one.reason
+    assert f"the band has no upper end, since {why}" in told(one.reason)
 
 
 @pytest.mark.parametrize(

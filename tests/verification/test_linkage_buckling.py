@@ -18,6 +18,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.records.applied import PointLoad
 from alula.loads.states.actions import stated_loads
+from alula.reports.sentences import told
 
 HEIGHT, WIDTH = 120.0, 90.0
 
@@ -113,8 +114,8 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
     assert moved.share < 1e-3
     assert (moved.state, found.verdict) == (state, verdict)
     assert moved.buckling == pytest.approx(1.0 / share, rel=3e-3)
-    assert "by linear theory the linkage buckles at" in moved.sentence
-    assert f"buckling factor by linear theory is {moved.buckling:.3g}" in found.reason
+    assert "by linear theory the linkage buckles at" in told(moved.reason)
+    assert f"buckling factor by linear theory is {moved.buckling:.3g}" in told(found.reason)
     assert found.value.value == pytest.approx(min(1.0, 1.0 / share), rel=3e-3)
     assert found.value.low == pytest.approx(min(1.0, 1.0 / share / 3.0 / moved.eyes.high), rel=3e-3)
     assert found.value.value <= found.value.high < 1.02 * found.value.value / moved.eyes.low

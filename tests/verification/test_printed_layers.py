@@ -8,6 +8,7 @@ from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.refine.refinement import Effort
 from alula.fea.solid.stress import stress_field
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told
 
 FORCE, WIDTH, THICKNESS = 60.0, 8.0, 5.0
 ANGLE = np.radians(30.0)
@@ -114,4 +115,4 @@ def test_without_a_shear_strength_the_band_reaches_down_to_nothing():
     assert layers.safety_factor.high > layers.safety_factor.value > 2.0
     [line] = [check for check in found.checks if check.quantity is Quantity.LAYERS]
     assert line.verdict is Verdict.UNDECIDED
-    assert "states no shear_strength_between_layers; add it" in line.reason
+    assert "states no shear_strength_between_layers; add it" in told(line.reason)

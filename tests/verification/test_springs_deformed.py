@@ -227,7 +227,7 @@ def test_a_link_balances_on_the_deformed_shape():
     case = validate(soft)
     statics = solve_case_statics(case)
     moved = examine(case, "tip", statics.forces["tip"], statics.loads["tip"])
-    assert moved.state == "deformed", moved.sentence
+    assert moved.state == "deformed", moved.reason
     assert moved.reactions is not None
     at = {(link, p): statics.pose.position(link, p) + moved.points.get((link, p), np.zeros(3))[:2]
           for link, points in case.link_points.items() for p in points}  # fmt: skip

@@ -13,6 +13,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
 from alula.geometry.parts.part import Body, Pin, Tube
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told
 
 OUTER, INNER, WIDTH, THICK, PIN, UP = 10.0, 7.0, 6.0, 4.0, 3.0, 18.0
 CASE = f"""
@@ -136,7 +137,7 @@ def test_the_arm_bends_as_a_cantilever_at_the_wall() -> None:
     """By hand: 50 mN at 20 mm less the tube's radius on the lug's own section."""
     found = check_case(validate(tomllib.loads(CASE)), fidelity="beam").load_cases["tip"]
     moment = 0.05 * (20.0 - OUTER / 2.0)
-    (said,) = re.findall(r"by hand the arm to Q bears (\S+) MPa", " ".join(found.links["lever"].notes))
+    (said,) = re.findall(r"by hand the arm to Q bears (\S+) MPa", " ".join(map(told, found.links["lever"].notes)))
     assert float(said) == pytest.approx(moment * 6.0 / (THICK * 8.0**2), rel=5e-3)
     assert found.checks[0].verdict is Verdict.UNDECIDED
-    assert "has arms" in found.checks[0].reason
+    assert "has arms" in told(found.checks[0].reason)

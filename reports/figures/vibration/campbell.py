@@ -10,11 +10,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.vibration.harmonics import HIGHEST, Meeting, meetings, ordinal
+from alula.fea.vibration.harmonics import HIGHEST, Meeting, meetings
 from alula.fea.vibration.over_motion import FrequencyHistory
 from alula.reports.figures.sheet.canvas import Canvas, faint
 from alula.reports.figures.sheet.plot import Axes, ticks, widest
 from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, WIDTH
+from alula.reports.words.numbers import ordinal
 
 Real = NDArray[np.float64]
 COLOURS = ("#0067a8", "#00795a", "#7a4fa3", "#8a5200")

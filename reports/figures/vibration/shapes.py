@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.frame.model import FrameModel
-from alula.fea.vibration.harmonics import in_words
 from alula.fea.vibration.linkage_modes import LinkageModes
 from alula.fea.vibration.modes import Mode
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.plot import ticks
 from alula.reports.figures.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
+from alula.reports.sentences.motion import directions
 from alula.reports.words.numbers import band, plain
 
 Real = NDArray[np.float64]
@@ -133,7 +133,7 @@ def _panel(
     def at(places: Real) -> Real:
         return np.asarray(centre + (places - middle) * per_mm * np.array([1.0, -1.0]))
 
-    sheet.write(f"{k + 1}: {band(mode.frequency)} Hz, {in_words(mode.in_plane)}", (left, top - 17.0),
+    sheet.write(f"{k + 1}: {band(mode.frequency)} Hz, {directions(mode.in_plane)}", (left, top - 17.0),
                 anchor="left bottom", bold=True)  # fmt: skip
     for line in still:
         sheet.line(at(line @ view.T), LINK, 2.4)

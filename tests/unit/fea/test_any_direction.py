@@ -14,6 +14,7 @@ from alula.fea.outcomes.limits import layer_limit
 from alula.fea.solid.layers import in_worst_direction, on_plane
 from alula.geometry.materials.material import library
 from alula.geometry.materials.printable import is_printed, is_solid_stock
+from alula.reports.sentences import told as in_words
 
 PLA = library()["pla-fdm-xy"]
 
@@ -44,7 +45,7 @@ def test_a_pass_needs_the_weakest_direction_and_a_fail_the_strongest():
     assert along.verdict is Verdict.PASS
     found = crank(1.5)
     assert (found.verdict, found.value.high) == (Verdict.UNDECIDED, along.value.high)
-    assert "states no build_direction" in found.reason
+    assert "states no build_direction" in in_words(found.reason)
     ratio = found.value.low / along.value.low
     assert 12.0 / 23.0 / 1.5 < ratio < 12.0 / 23.0 / 1.1, "tension across layers and shear along them, least strengths"
     assert crank(0.5).verdict is Verdict.PASS, "in all directions"
@@ -66,7 +67,7 @@ def test_by_hand_layers_of_a_stated_direction_have_the_least_of_all_directions()
     found = layers(5.0, "beam")
     assert (found.verdict, found.value.high) == (Verdict.UNDECIDED, np.inf)
     assert found.value.value < layers(5.0, "auto").value.value, "its solid tells more"
-    assert "--fidelity solid" in found.reason
+    assert "--fidelity solid" in in_words(found.reason)
     assert layers(0.5, "beam").verdict is Verdict.PASS
     lost = {"shear_strength_between_layers": None, "shear_strength_between_layers_range": None}
     assert layers(0.1, "beam", **lost).verdict is Verdict.UNDECIDED
@@ -76,7 +77,7 @@ def test_without_a_shear_strength_no_direction_is_sure():
     lost = {"shear_strength_between_layers": None, "shear_strength_between_layers_range": None}
     found = crank(0.1, **lost)
     assert (found.verdict, found.value.low) == (Verdict.UNDECIDED, 0.0)
-    assert "states no shear_strength_between_layers" in found.reason
+    assert "states no shear_strength_between_layers" in in_words(found.reason)
 
 
 def test_a_stated_direction_and_a_card_without_layers_leave_the_factor_as_it_is():

@@ -13,6 +13,7 @@ from alula.fea.frame.build import build_frame
 from alula.fea.outcomes.unchecked import Topic, caveats
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.material import library
+from alula.reports.sentences import told
 
 FOUR_BAR = "four-bar"
 IN_PVC = ('parts.bar.material="pvc-u"',)
@@ -49,9 +50,9 @@ def test_outside_the_table_no_strength_is_known(temperature, side):
     assert found.verdict is Verdict.UNDECIDED
     for outcome in of(found, Quantity.SAFETY_FACTOR):
         assert (outcome.verdict, outcome.value.unknowable) == (Verdict.UNDECIDED, True)
-        assert side in outcome.reason
-        assert "temperature_factors" in outcome.reason
-    assert any(side in said and "numbers are those of room temperature" in said for said in found.warnings)
+        assert side in told(outcome.reason)
+        assert "temperature_factors" in told(outcome.reason)
+    assert any(side in told(said) and "numbers are those of room temperature" in told(said) for said in found.warnings)
 
 
 def test_what_needs_a_modulus_that_no_card_tells_is_undecided():
@@ -63,7 +64,9 @@ def test_what_needs_a_modulus_that_no_card_tells_is_undecided():
         assert of(found, quantity)
         for outcome in of(found, quantity):
             assert (outcome.verdict, outcome.value.unknowable) == (Verdict.UNDECIDED, True)
-            assert "states no modulus_temperature_factors, so its modulus at 40 degC is not known" in outcome.reason
+            assert "states no modulus_temperature_factors, so its modulus at 40 degC is not known" in told(
+                outcome.reason
+            )
     warm, cold = of(found, Quantity.SAFETY_FACTOR), of(checked(light), Quantity.SAFETY_FACTOR)
     assert [c.verdict for c in warm] == [c.verdict for c in cold]
     assert [c.verdict for c in warm][:2] == [Verdict.PASS] * 2
@@ -76,7 +79,7 @@ def test_no_strength_of_any_kind_is_known_without_a_table():
     found = checked('conditions.temperature="40 degC"', 'checks.bearing={type="bearing"}', strength=False)
     for outcome in of(found, Quantity.SAFETY_FACTOR):
         assert outcome.verdict is Verdict.UNDECIDED
-        assert "states no temperature_factors" in outcome.reason
+        assert "states no temperature_factors" in told(outcome.reason)
     assert {str(c.subject)[:3] for c in of(found, Quantity.SAFETY_FACTOR)} == {"cra", "cou", "roc", "pin"}
     moved = [[c.verdict for c in of(one, Quantity.DEFLECTION)] for one in (found, checked())]
     assert moved[0] == moved[1]

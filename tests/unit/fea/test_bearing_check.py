@@ -12,6 +12,7 @@ from alula.fea.common.verdict import Verdict
 from alula.fea.outcomes.bearing import weakest_eye
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told
 
 
 def bearing(lines, force=-2.0):
@@ -30,7 +31,7 @@ def test_arm_by_hand():
     assert found["pin O"].value.value == pytest.approx(52.0 / (2.0 / 6.0))
     assert found["pin B"].limit == 3.33
     assert found["pin B"].verdict is Verdict.PASS
-    assert "eye of arm" in found["pin B"].reason
+    assert "eye of arm" in told(found["pin B"].reason)
 
 
 def test_limits_and_verdict():
@@ -53,7 +54,7 @@ def test_a_pin_bears_on_the_flank_of_its_slot():
     force = result.reactions.joints["slot-right"].magnitude
     strength = case.material_of("lever-right").ultimate_strength
     assert found["pin slot-right"].value.value == pytest.approx(strength / (force / (2.0 * 3.5)))
-    assert "eye of lever-right" in found["pin slot-right"].reason
+    assert "eye of lever-right" in told(found["pin slot-right"].reason)
 
 
 BAR_OF = """
@@ -78,7 +79,7 @@ def test_the_weaker_of_two_eyes_decides(arm, strut, weaker):
     checks = check_case(validate(tomllib.loads(text + '[checks.eyes]\ntype = "bearing"\n')), fidelity="beam")
     (found,) = (c for c in checks.load_cases["tip"].checks if (c.name, c.link) == ("eyes", "pin B"))
     assert found.value.value == pytest.approx(52.0 / (4.0 / 3.0))
-    assert f"eye of {weaker}" in found.reason
+    assert f"eye of {weaker}" in told(found.reason)
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2), (1, 2, 0), (2, 0, 1)])

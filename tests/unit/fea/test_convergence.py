@@ -5,6 +5,7 @@ import pytest
 from alula.fea.refine.convergence import grid_convergence, observed_order, williams_exponent
 from alula.fea.refine.discretisation import discretisation_source
 from alula.geometry.base.errors import CannotRunError
+from alula.reports.sentences import told
 
 SIZES = (1.0, 0.6, 0.4)
 SAFETY = 1.25  # Roache (1998), section 5.6
@@ -41,7 +42,7 @@ def test_band_of_a_clean_series_is_its_error_times_the_factor(share):
     assert found.kind == "monotone"
     assert around(found) == pytest.approx((reach, reach))
     assert found.index == pytest.approx(reach / found.value)
-    assert found.rule == "index with factor 1.25"
+    assert told(found.rule) == "index with factor 1.25"
 
 
 @pytest.mark.parametrize("last", [10.9 + 1e-9, 10.8])
@@ -60,7 +61,7 @@ def test_the_last_step_counts_where_it_is_large():
 def test_estimate_bounds_the_index_from_below():
     found = grid_convergence(SIZES, power(2.0, share=1e-6), estimate=0.1)
     assert found.index == pytest.approx(SEVERAL * 0.1 / found.value)
-    assert found.rule == "2.25 times the estimate at the place"
+    assert told(found.rule) == "2.25 times the estimate at the place"
 
 
 def test_only_the_three_finest_count():
@@ -140,7 +141,7 @@ def test_band_names_the_sharp_edges_that_it_leaves_out():
     found = grid_convergence([1.0], [10.0], estimate=0.4)
     assert discretisation_source(found).text == "discretisation (estimated on one mesh, fourfold)"
     sharp = discretisation_source(found, sharp_edges=3)
-    assert "without the stress at sharp edges (3), below 50% of the peak" in sharp.text
+    assert "without the stress at sharp edges (3), below 50% of the peak" in told(sharp.text)
 
 
 def test_a_constant_is_known_to_its_estimate():

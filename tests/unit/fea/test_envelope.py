@@ -44,6 +44,7 @@ from alula.geometry.meshing.mesh import mesh_body
 from alula.loads.case.case_file import read_case
 from alula.loads.records.check_spec import BearingCheck
 from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.sentences import told as in_words
 
 TOML = """
 schema_version = 1
@@ -330,7 +331,7 @@ def test_buckling_is_that_of_the_pose_with_the_least_factor(path, moved, result)
     assert found.value.value == pytest.approx(value, rel=2e-3)  # the beam is sampled at stations
     assert found.value.low == pytest.approx(low, rel=2e-3)
     assert found.verdict is Verdict.PASS
-    assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in found.reason
+    assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in in_words(found.reason)
 
 
 def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, moved):
@@ -357,7 +358,7 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
         pose = int(np.argmin([band.value for band in bands]))
         value = found[key].value
         assert (value.value, value.low) == pytest.approx((bands[pose].value, bands[pose].low), rel=1e-6)
-        assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in found[key].reason
+        assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in in_words(found[key].reason)
 
 
 def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(path):
@@ -419,9 +420,9 @@ def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
     found = envelope_case(case, threads=1, effort=Effort(max_meshes=1))
     assert found.verdict is Verdict.UNDECIDED
     assert 0 < found.evaluated.sum() < 25
-    assert any("has a dead point at" in warning for warning in found.warnings)
+    assert any("has a dead point at" in in_words(warning) for warning in found.warnings)
     strength = {check.load_case: check for check in found.checks if check.name == "strength"}
-    assert "dead point" in strength["push"].reason
+    assert "dead point" in in_words(strength["push"].reason)
     # At one of the poses next to it the soft linkage does not hold its own inertia.
     assert strength["spin"].value.low == 0.0
     assert found.links["rocker"].no_fatigue

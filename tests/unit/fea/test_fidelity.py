@@ -14,6 +14,7 @@ from alula.fea.refine.refinement import START, Effort
 from alula.geometry.parts.part import HoleRow
 from alula.loads.case.case_file import read_case
 from alula.loads.records.bearing import CONTACT_SHORTFALL
+from alula.reports.sentences import told
 
 
 def decided(limit):
@@ -25,8 +26,8 @@ def decided(limit):
 def test_a_limit_far_off_is_decided_by_hand_without_a_mesh():
     found = decided(40.0)
     assert (found.decision.model, found.solid) == ("beam", None)
-    assert "clear of the limit 40 MPa" in found.decision.why
-    assert "at most at the eye at B" in found.decision.why
+    assert "clear of the limit 40 MPa" in told(found.decision.why)
+    assert "at most at the eye at B" in told(found.decision.why)
     assert "elements" in found.decision.next_cost
     assert found.hands["mixed"].von_mises.high < 40.0
 
@@ -39,7 +40,7 @@ def test_a_limit_far_below_fails_by_hand():
 def test_what_hand_calculation_leaves_open_a_solid_decides():
     found = decided(18.0)
     assert found.decision.model == "solid"
-    assert "the limit, 18 MPa, lies inside, so finite elements decided" in found.decision.why
+    assert "the limit, 18 MPa, lies inside, so finite elements decided" in told(found.decision.why)
     precision = found.solid.precision[0]
     # 7.464 MPa: on 169,000 elements, ten times finer at the peak than the first mesh; 7.466 MPa on 62,000.
     assert precision.low("von_mises") < 7.464 < precision.high("von_mises") < 18.0

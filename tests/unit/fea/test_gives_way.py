@@ -19,6 +19,7 @@ from alula.fea.outcomes.result import SolidResult
 from alula.fea.outcomes.solid_buckling import _outcome, solid_growth
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.loads.case.case_file import read_case
+from alula.reports.sentences import told
 
 AB = ("a", "b")
 
@@ -46,7 +47,7 @@ def test_the_band_of_a_solids_factor_has_its_own_least_and_most_with_the_error_o
     assert soft < 1.0 < stiff
     found = _outcome(case, "weight", "AE", buckling(8.0, 4.0, error=0.2)).value
     assert (found.value, found.low, found.high) == pytest.approx((8.0, 3.2 / 3.0 * soft, 36.0 * stiff))
-    assert "at 4 times where its joints move with it" in _outcome(case, "weight", "AE", buckling(8.0, 4.0)).reason
+    assert "at 4 times where its joints move with it" in told(_outcome(case, "weight", "AE", buckling(8.0, 4.0)).reason)
 
 
 def passing(subject, quantity, load_case, value=5.0):
@@ -74,7 +75,7 @@ def test_under_a_load_case_that_is_lost_links_and_pins_are_left_open_and_under_a
     found = unless_it_gives_way(both, {lost})
     for name, verdicts in (("a", LOST if lost == "a" else HELD), ("b", LOST if lost == "b" else HELD)):
         assert [one.verdict for one in found if one.load_case == name] == verdicts
-        reasons = [NO_EQUILIBRIUM in one.reason for one in found if one.load_case == name]
+        reasons = [NO_EQUILIBRIUM in told(one.reason) for one in found if one.load_case == name]
         assert reasons == [name == lost, name == lost, False, name == lost]
     whole = passing(LINKAGE, Quantity.LOAD_SHARE, lost, 0.4)
     assert unless_it_gives_way([*both, whole]) == [*found, whole]
@@ -159,7 +160,7 @@ def test_the_linkage_holds_no_more_than_its_weakest_solid(order):
     factors = {"thick": (4.0, 5.0), "thin": (2.0, 6.0)}
     light = SimpleNamespace(worst=SimpleNamespace(equivalent=1.0), strength=10.0)
     [found] = linkage_outcomes("a", linear(20.0), {"thick": light}, {link: factors[link] for link in order})
-    assert "link thin by itself buckles at 2 times its load" in found.reason
+    assert "link thin by itself buckles at 2 times its load" in told(found.reason)
     assert (found.value.value, found.value.low, found.value.high) == pytest.approx((2.0, 2.0 / SNAP, 6.0))
 
 
@@ -172,4 +173,4 @@ def test_a_load_that_the_frame_holds_is_left_open_by_a_solid_that_small_faults_m
     held = linear(100.0, state="deformed")
     [found] = linkage_outcomes("a", held, {"thin": light}, {link: factors[link] for link in order})
     assert (found.quantity, found.verdict) == (Quantity.LOAD_SHARE, verdict)
-    assert ("link thin by itself buckles at 2.9 times its load" in found.reason) == (verdict is Verdict.UNDECIDED)
+    assert ("link thin by itself buckles at 2.9 times its load" in told(found.reason)) == (verdict is Verdict.UNDECIDED)

@@ -14,6 +14,7 @@ from alula.fea.motion.layer_envelope import _lacking
 from alula.fea.motion.layer_fatigue import LayerCycle, critical_layer, smallest_circle
 from alula.fea.solid.layers import Layers
 from alula.geometry.materials.material import Fatigue, library
+from alula.reports.sentences import told
 
 RNG = np.random.default_rng(11)
 TURN = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
@@ -133,7 +134,7 @@ def test_the_band_over_the_strength_decides(ends, verdict):
     card = CARD.model_copy(update={"fatigue_across_layers": data(exponent=None)})
     [found] = outcome(fatigued(*ends), card)
     assert (found.name, found.verdict, found.limit) == ("fatigue of layers", verdict, 2.0)
-    assert "1 ± 2 MPa across the layers, 0 ± 0.5 MPa of shear along them, at x = 1.0, y = 2.0" in found.reason
+    assert "1 ± 2 MPa across the layers, 0 ± 0.5 MPa of shear along them, at x = 1.0, y = 2.0" in told(found.reason)
     bare = card.model_copy(update={"shear_strength_between_layers": None})
     [found] = outcome(fatigued(*ends), bare)
     assert found.verdict is (Verdict.FAIL if verdict is Verdict.FAIL else Verdict.UNDECIDED)

@@ -22,6 +22,7 @@ from alula.fea.superposition.peaks import ModeMeasures, largest_stress
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.material import library
 from alula.loads.case.case_file import read_case
+from alula.reports.sentences import told
 
 RNG = np.random.default_rng(7)
 PULL = np.array([10.0, 0.0, 0.0, 0.0, 0.0, 0.0])
@@ -141,7 +142,9 @@ def band(low, high):
 def test_the_band_decides(ends, verdict):
     found = outcome_of(printed(), band(*ends))
     assert found.verdict is verdict
-    assert "x = 1.0, y = 2.0, z = 0.0 mm: 3 MPa of tension across the layers, 4 MPa of shear along them" in found.reason
+    assert "x = 1.0, y = 2.0, z = 0.0 mm: 3 MPa of tension across the layers, 4 MPa of shear along them" in told(
+        found.reason
+    )
 
 
 @pytest.mark.parametrize(
@@ -150,16 +153,16 @@ def test_the_band_decides(ends, verdict):
 def test_without_a_shear_strength_nothing_passes(ends, verdict):
     found = outcome_of(printed(shear_strength_between_layers=None), band(*ends))
     assert found.verdict is verdict
-    assert ("states no shear_strength_between_layers; add it" in found.reason) == (verdict is Verdict.UNDECIDED)
+    assert ("states no shear_strength_between_layers; add it" in told(found.reason)) == (verdict is Verdict.UNDECIDED)
 
 
 def test_what_is_not_known_is_undecided():
     bare = outcome_of(printed(strength_across_layers=None, shear_strength_between_layers=None), band(7.0, 8.0))
     assert bare.verdict is Verdict.UNDECIDED
-    assert "states no strength_across_layers; add it" in bare.reason
+    assert "states no strength_across_layers; add it" in told(bare.reason)
     by_hand = outcome_of(printed(), band(7.0, 8.0), decided=False)
     assert (by_hand.verdict, by_hand.value.unknowable) == (Verdict.UNDECIDED, True)
-    assert "run the solid model" in by_hand.reason
+    assert "run the solid model" in told(by_hand.reason)
     assert outcome_of(printed(), Band.unknown()).verdict is Verdict.UNDECIDED
     idle = outcome_of(printed(), band(7.0, 8.0), decided=False, loaded=False)
     assert (idle.verdict, idle.value.low) == (Verdict.PASS, np.inf)
@@ -224,14 +227,14 @@ def over_motion(case, factor):
 def test_layers_over_a_motion():
     held = over_motion(printed(), band(4.0, 5.0))
     assert (held.name, held.verdict, held.limit) == ("layers", Verdict.PASS, 3.0)
-    assert "at GF = 45 deg" in held.reason
+    assert "at GF = 45 deg" in told(held.reason)
     unknown = over_motion(printed(), None)
-    assert (unknown.verdict, unknown.reason) == (Verdict.UNDECIDED, state("singular").sentence)
+    assert (unknown.verdict, unknown.reason) == (Verdict.UNDECIDED, state("singular").reason)
     sheared = printed(shear_strength_between_layers=None)
     assert over_motion(sheared, band(4.0, 5.0)).verdict is Verdict.UNDECIDED
     assert over_motion(sheared, band(1.0, 2.0)).verdict is Verdict.FAIL
     bare = over_motion(printed(strength_across_layers=None, shear_strength_between_layers=None), None)
-    assert "states no strength_across_layers; add it" in bare.reason
+    assert "states no strength_across_layers; add it" in told(bare.reason)
 
 
 def test_scatter_of_both_strengths_bounds_the_factor():

@@ -9,6 +9,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.motion import linkage_history
 from alula.fea.nonlinear.stability import SNAP
+from alula.reports.sentences import told
 
 
 def test_value_and_ends_of_a_limit_load_are_each_the_least_of_all_poses_and_of_a_displacement_the_largest():
@@ -58,5 +59,5 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         drive=None,
     )
     [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
-    assert "at crank = 20 deg" in found.reason
+    assert "at crank = 20 deg" in told(found.reason)
     assert (found.value.value, found.value.low) == pytest.approx((24.0, 24.0 / SNAP / 6.0))

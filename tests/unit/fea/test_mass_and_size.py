@@ -29,6 +29,7 @@ from alula.loads.states.extent import Extent
 from alula.loads.states.weighed import Weighed
 from alula.reports.check.changes import change_records
 from alula.reports.figures.sheet.canvas import Canvas
+from alula.reports.sentences import told as in_words
 
 PLA, STEEL = 1.24e-3, 7.8e-3
 """Densities of the cards that the bars and their pins name [g/mm³]."""
@@ -101,7 +102,7 @@ def test_a_mass_keeps_or_misses_its_limit_with_what_is_stated_besides():
         assert [(one.name, one.link, one.verdict.value) for one in outcomes] == [("mass", "the linkage", verdict)]
         assert outcomes[0].value.value == pytest.approx(total + (others or 0.0), rel=1e-9)
         told = "others as stated 0.2 g, which stand for base" if others else "; not counted: base (no part)"
-        assert told in outcomes[0].reason
+        assert told in in_words(outcomes[0].reason)
 
 
 def bars(layers: tuple[int, int, int, int], edits: dict[str, str], more: str) -> Case:
@@ -215,7 +216,7 @@ def test_wings_count_as_plates_and_links_without_part_by_their_points():
         (Quantity.SIZE_X, Verdict.FAIL), (Quantity.SIZE_Y, Verdict.PASS), (Quantity.SIZE_Z, Verdict.PASS),
     ]  # fmt: skip
     assert outcomes[0].value.value == pytest.approx(160.0, abs=1e-3)
-    assert "from link base at x = −90 mm" in outcomes[0].reason
+    assert "from link base at x = −90 mm" in in_words(outcomes[0].reason)
     bare = extent(winged(SIZE.format(150, 150, 30)))
     assert np.ravel(box(bare)[1:]) == pytest.approx([-math.hypot(30, 5), math.hypot(30, 5), -1.5, 1.5], abs=1e-3)
 

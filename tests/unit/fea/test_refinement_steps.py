@@ -21,6 +21,7 @@ from alula.geometry.base.errors import CannotRunError
 from alula.geometry.meshing.mesh import ReentrantEdge
 from alula.geometry.meshing.mirror import mirrored
 from alula.geometry.parts.part import Bar, Body, Pin
+from alula.reports.sentences import told
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
 
@@ -109,7 +110,7 @@ def test_links_are_solved_side_by_side_with_the_same_result(coarse, monkeypatch)
     assert list(beside) == list(tasks)
     for name, found in beside.items():
         assert [m.elements for m in found.meshes] == [m.elements for m in alone[name].meshes]
-        assert found.stopped == "the largest number of meshes, 2, is reached"
+        assert told(found.stopped) == "the largest number of meshes, 2, is reached"
         assert found.precision[0].von_mises.values == pytest.approx(alone[name].precision[0].von_mises.values, rel=1e-9)
 
 

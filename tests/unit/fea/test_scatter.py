@@ -28,6 +28,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.material import library
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.text.shares import parse_scatter
+from alula.reports.sentences import told
 
 STARTER = files("alula.loads") / "cases" / "four-bar.toml"
 PLA = library()["pla-fdm-xy"]
@@ -137,7 +138,7 @@ def test_hand_calculation_without_calibration_neither_passes_nor_fails(path):
     asked = [c for c in found.checks if c.name in ("strength", "stiffness")]
     assert len(asked) == 6
     assert {c.verdict for c in asked} == {Verdict.UNDECIDED}
-    assert "not calibrated" in asked[0].reason
+    assert "not calibrated" in told(asked[0].reason)
 
 
 def test_hand_calculation_decides_in_its_calibrated_bands(path):
@@ -170,7 +171,7 @@ def test_more_repetitions_than_the_card_knows_are_not_passed(coupler):
     assert known.value.value > 0.0
     [outcome] = [c for c in beyond.checks if c.name == "fatigue"]
     assert outcome.verdict is Verdict.UNDECIDED
-    assert "ends at 2e+06 cycles" in outcome.reason
+    assert "ends at 2e+06 cycles" in told(outcome.reason)
     assert beyond.verdict is Verdict.UNDECIDED
     wide = edited(coupler, [*MOTION, "solid.mesh_size=3.0", 'load_cases.lift.scatter="20 %"'])
     scattered = envelope_case(wide, threads=1, effort=effort)

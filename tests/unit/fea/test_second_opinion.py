@@ -15,6 +15,7 @@ from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field, von_mises
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.records.bearing import WIDE
+from alula.reports.sentences import told
 
 E, NU = 2900.0, 0.38
 needs_ccx = pytest.mark.skipif(calculix.installed() is None, reason="CalculiX (ccx) is not on PATH")
@@ -222,7 +223,7 @@ def opinion(**gaps):
 
 
 def test_what_is_told():
-    assert opinion(stress_gap=0.009, displacement_gap=0.0009).sentence == ""
-    assert "differs by 0.20% in displacement" in opinion(stress_gap=0.0, displacement_gap=0.002).sentence
-    assert "1.10% in von Mises" in opinion(stress_gap=0.011, displacement_gap=0.0).sentence
-    assert opinion().sentence == "AE: no second opinion: CalculiX (ccx) is not on PATH; its deck is AE.inp"
+    assert opinion(stress_gap=0.009, displacement_gap=0.0009).warning is None
+    assert "differs by 0.20% in displacement" in told(opinion(stress_gap=0.0, displacement_gap=0.002).warning)
+    assert "1.10% in von Mises" in told(opinion(stress_gap=0.011, displacement_gap=0.0).warning)
+    assert told(opinion().warning) == "AE: no second opinion: CalculiX (ccx) is not on PATH; its deck is AE.inp"

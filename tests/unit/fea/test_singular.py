@@ -6,6 +6,7 @@ import pytest
 from alula.fea.refine.convergence import williams_exponent
 from alula.fea.refine.singular import NEARLY, edge_distance, element_exponents, loaded_edge, sharp_peak
 from alula.geometry.meshing.mesh import ReentrantEdge
+from alula.reports.sentences import told
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
 OTHER = ReentrantEdge(points=np.array([[5.0, 0.0, -1.0], [5.0, 0.0, 1.0]]), angle=1.2 * math.pi)
@@ -49,7 +50,7 @@ def test_growth_of_williams_is_singular_and_screened_away_from_every_edge():
     assert found.distance == pytest.approx(0.6)
     assert found.screening == 12.0  # not 20, too near; not 25, by the other edge
     assert found.resolved
-    assert "270°" in found.sentence
+    assert "270°" in told(found.reason)
 
 
 def test_coarse_elements_move_the_screening_distance_out():

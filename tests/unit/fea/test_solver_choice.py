@@ -14,6 +14,7 @@ from alula.fea.solvers import solve
 from alula.fea.solvers.solve import available_methods, direct_memory, factorise, two_level_memory
 from alula.fea.solvers.two_level import LinearLevel
 from alula.geometry.base.errors import CannotRunError
+from alula.reports.sentences import told
 
 
 @pytest.fixture(scope="module")
@@ -94,11 +95,11 @@ def test_factor_tells_its_name_and_reason(small):
     K, level = small
     factor = factorise(K, level=level, right_hand_sides=2)
     assert factor.name == "MKL PARDISO"
-    assert factor.reason == f"{K.size} unknowns, 2 right-hand sides: small enough for a factorisation"
+    assert told(factor.reason) == f"{K.size} unknowns, 2 right-hand sides: small enough for a factorisation"
     forced = factorise(K, level=level, method="two-level")
     assert forced.name == "conjugate gradients over linear elements by MKL PARDISO"
-    assert forced.reason == "chosen by the user"
-    assert factorise(K).reason.endswith("factorisation alone suits this system")
+    assert told(forced.reason) == "chosen by the user"
+    assert told(factorise(K).reason).endswith("factorisation alone suits this system")
 
 
 def test_two_levels_that_do_not_fit_are_refused_before_they_are_made(small):

@@ -18,6 +18,7 @@ from alula.fea.vibration.over_motion import pose_frequencies
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import SustainedCheck
 from alula.loads.text.caveat import Topic
+from alula.reports.sentences import told as in_words
 from alula.reports.words.wording import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
@@ -127,7 +128,9 @@ def test_an_unusual_material_is_warned_of_where_it_is_used(checks, warned):
     case = starter(checks)
     card = case.all_materials["steel-wire"].model_copy(update={"youngs_modulus": 200.0})
     result = check_case(with_material(case, "steel-wire", card), fidelity="beam")
-    said = [text for text in result.warnings if text.startswith("materials.steel-wire.youngs_modulus is 0.2 GPa")]
+    said = [
+        text for text in result.warnings if in_words(text).startswith("materials.steel-wire.youngs_modulus is 0.2 GPa")
+    ]
     assert len(said) == warned
 
 

@@ -19,6 +19,7 @@ from alula.geometry.meshing.mesh import export_step, mass_properties, mesh_body,
 from alula.loads.case.case_file import read_case
 from alula.loads.exchange.part import part_entries
 from alula.reports.commands.inspect_part import inspect_file
+from alula.reports.sentences import told
 
 FORMATS = {"msh": "gmsh", "vtu": "vtu", "inp": "abaqus"}
 STAND = Rotation.from_rotvec(np.radians(50.0) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))
@@ -153,8 +154,8 @@ def test_it_bears_what_the_same_mesh_bears_and_is_not_refined(tmp_path, step, me
     stress, same = (link.von_mises_max for link in links)
     assert stress.value == pytest.approx(same.value, rel=1e-6)
     assert len(links[0].discretisation.meshes) == 1
-    assert "the mesh is that of the part's file, which is not refined" in links[0].discretisation.sentence
-    assert any("four times the estimated error" in note for note in links[0].notes)
+    assert "the mesh is that of the part's file, which is not refined" in told(links[0].discretisation.reason)
+    assert any("four times the estimated error" in told(note) for note in links[0].notes)
 
 
 def test_there_is_no_step_file_of_a_mesh_and_no_load_beside_its_bores(tmp_path, mesh):

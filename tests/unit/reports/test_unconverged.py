@@ -13,8 +13,9 @@ from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.refine.discretisation import MeshStatus
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.case.case_file import read_case
+from alula.reports.check.opinion import opinion_records, say_opinions
 from alula.reports.figures import figures
-from alula.reports.tables.second_opinion import opinion_records, say_opinions
+from alula.reports.sentences import told
 
 
 @pytest.fixture
@@ -55,7 +56,7 @@ def test_a_peak_with_a_band_has_its_number(link, meshes):
 @pytest.mark.parametrize("status", get_args(MeshStatus))
 def test_what_meshes_leave_open_says_nothing_of_a_verdict(status):
     """A check covers more than the mesh: one was undecided beside meshes with a verdict that was said to be clear."""
-    assert "verdict" not in state(status, 0.5 if status == "singular" else None).sentence
+    assert "verdict" not in told(state(status, 0.5 if status == "singular" else None).reason)
 
 
 def test_a_second_opinion_on_one_mesh_says_that_its_peak_is_no_result():
