@@ -74,12 +74,15 @@ def as_page(
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
+    from alula.reports.renderers.compiled import CompiledTemplates
+
     environment = Environment(
         loader=PackageLoader("alula.reports"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
     )
     environment.filters |= {
         "marked": lambda text: Markup(as_html(text)),
@@ -150,7 +153,7 @@ def drawn(picture: Any, alt: str) -> str:
     Parameters
     ----------
     picture : object
-        A drawing, or the bytes of a PNG or WebP file.
+        A drawing, which knows its element of a page, or the bytes of a PNG or WebP file.
     alt : str
         What it shows.
 

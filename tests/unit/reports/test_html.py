@@ -11,10 +11,9 @@ from alula.fea.common.verdict import Quantity, Verdict, worst_of_each
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.page import claims_page
 from alula.reports.page.claims_page import CLAIMS
-from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
 from alula.reports.words.wording import checks_of
 
-NAMES = (linkage_name("weight"), diagram_name("AE"), stress_name("GF"))
+NAMES = ("linkage-weight", "diagram-AE", "stress-GF")
 PICTURES = {name: Canvas(90.0 - 10.0 * k, 60.0) for k, name in enumerate(NAMES)}
 
 
