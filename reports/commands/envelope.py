@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from alula.fea.common.verdict import UNLOADED_QUANTITIES
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from alula.fea.outcomes.unchecked import caveats, unchecked
+from alula.fea.outcomes.unchecked import caveats
 from alula.geometry.base.version import result_stamp
 from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record
@@ -24,6 +24,7 @@ from alula.reports.sections.checks import check_records
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.friction import motion_friction_lines, motion_friction_record
 from alula.reports.sentences import told
+from alula.reports.sentences.caveats import not_checked
 from alula.reports.tables.console import say_checks, verdict_line
 from alula.reports.tables.frames import motion_linkage_line, motion_linkage_record
 from alula.reports.words.numbers import band, fixed, number, sentence
@@ -164,7 +165,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
     dict
         Angles in degrees; infinite and unknown numbers are None.
     """
-    motion = result.moved.motion
+    motion, left = result.moved.motion, caveats(result.case, over_motion=True)
     friction = {name: motion_friction_record(result.moved, work, name) for name, work in result.work.items()}
     envelope = {
         **result_stamp(),
@@ -186,8 +187,8 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         "linkage": {name: motion_linkage_record(result.moved, over) for name, over in result.linkage.items()},
         **({"friction": friction} if friction else {}),
         "idle_links": list(result.idle),
-        "not_checked": list(unchecked(result.case, over_motion=True)),
-        "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, over_motion=True)],
+        "not_checked": not_checked(left),
+        "caveats": [entries(one, "heading topic what why") for one in left],
         "checks": check_records(result.checks),
         "warnings": data(result.warnings),
         "timings_s": dict(result.timings),
