@@ -9,7 +9,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.reports.sections.data import data, entries
+from alula.reports.sections.data import entries
 from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, say, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import sentence
