@@ -10,9 +10,9 @@ from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
 from alula.reports.check.links import worst_load_case
+from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
 from alula.reports.figures.sheet.drawing import Drawing
-from alula.reports.page.claims_page import CLAIMS, write_claims
 from alula.reports.page.output import MARK, write_folder
 from alula.reports.renderers.page import as_page
 
@@ -82,7 +82,9 @@ def write_report(
     from alula.reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
-        told, published = result, write_claims(result, claims, folder, REPORT)
+        told, (beside_it, published) = result, published_page(result, claims, REPORT)
+        if beside_it:
+            (folder / CLAIMS).write_text(beside_it, encoding="utf-8")
         page = check_page(told, check_sections(told, published))
         with ThreadPoolExecutor(1) as beside:
             drawn = beside.submit(check_pictures, result, page, progress)

@@ -35,7 +35,7 @@ from alula.reports.sections.section import (
     words,
 )
 from alula.reports.sentences import told
-from alula.reports.sentences.caveats import not_checked
+from alula.reports.sentences.caveats import caveat, not_checked
 from alula.reports.turnable.moving import ENVELOPE_CAPTION
 from alula.reports.words.numbers import fixed, sentence
 from alula.reports.words.wording import besides, decision
@@ -328,7 +328,7 @@ def _limits(result: EnvelopeResult) -> Section:
     found = caveats(result.case, over_motion=True)
     headings: Mapping[str, list[str]] = {one.heading: [] for one in found}
     for one in found:
-        headings[one.heading].append(str(one))
+        headings[one.heading].append(caveat(one))
     items = tuple((heading.capitalize(), f"{'; '.join(texts)}.") for heading, texts in headings.items())
     return Section(
         key="limits",
