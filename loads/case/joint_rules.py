@@ -219,13 +219,13 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             heading=Heading.ASSUMED,
             topic=Topic.FRICTION,
             what=f"no couple on {', '.join(short)}",
-            why="no guide_length stated",
+            why=f'no guide_length; under [joints.{short[0]}]: guide_length = "20 mm"',
         )
     asked = any(isinstance(check, MotorCheck) for check in case.checks.values())
     if asked and not rubbing_joints(case):
-        yield Caveat(
-            heading=Heading.ASSUMED, topic=Topic.FRICTION, what="joints without friction", why="none states any"
-        )
+        line = f"under [joints.{next(iter(case.pinned_joints), next(iter(case.joints)))}]: friction = 0.15"
+        why = f"none states any; {line}"
+        yield Caveat(heading=Heading.ASSUMED, topic=Topic.FRICTION, what="joints without friction", why=why)
     for name, play in clearances(case).items():
         diameter = case.joints[name].pin_diameter or math.inf
         if play > LOOSE * diameter:

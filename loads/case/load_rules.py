@@ -241,7 +241,9 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
     """
     light = [name for name, one in case.load_cases.items() if case.carried and one.carried and not one.own_weight]
     if light:
-        yield Caveat(topic=Topic.WEIGHT, what="weight of what links carry", why=f"no own_weight in {', '.join(light)}")
+        line = f"under [load_cases.{light[0]}]: own_weight = true"
+        why = f"no own_weight in {', '.join(light)}; {line}"
+        yield Caveat(topic=Topic.WEIGHT, what="weight of what links carry", why=why)
     if case.carried and not any(one.carried for one in case.load_cases.values()):
         yield Caveat(topic=Topic.WEIGHT, what="what links carry", why="carried is false in every load case")
     pinned = {(link, case.linkage.point_of(name, link)) for name, joint in case.joints.items() for link in joint.links}

@@ -420,6 +420,10 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
             why="its stiffness counts for natural frequencies alone",
         )
     elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+        usual = "20 N/mm" if case.joints[case.drive.joint].type == "slider" else "2 N*m/rad"
         yield Caveat(
-            heading=Heading.ASSUMED, topic=Topic.DRIVE, what="a drive that does not give", why="no drive.stiffness"
+            heading=Heading.ASSUMED,
+            topic=Topic.DRIVE,
+            what="a drive that does not give",
+            why=f'no drive.stiffness; under [drive]: stiffness = "{usual}"',
         )

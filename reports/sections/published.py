@@ -71,7 +71,7 @@ def claims_section(results: Sequence[ClaimResult], title: str = "Published figur
         for result in results
     ]
     # A console ends with the number, which a long list would carry away.
-    parts = (Text(count(results), "note"), told, *_lists(results))
+    parts: tuple[Part, ...] = (Text(count(results), "note"), told, *_lists(results))
     return Section(key="claims", title=title, parts=parts, data={"claims": claims})
 
 

@@ -133,7 +133,7 @@ def _table(
         verdict = Mark(str(result.verdict or result.state), "" if result.verdict is None else result.verdict.value)
         told = ("", result.sentence) if limit is None else (f"{limit.quantity} of {limit.subject}", number_text(limit))
         cost = costs[i] if costs else None
-        rows.append((*map(str, point.values()), cost, verdict, Number(limit and margin(limit)), *told))
+        rows.append((*map(str, point.values()), cost, verdict, Number(None if limit is None else margin(limit)), *told))
     columns = (
         *(words(path) for path in (solved[0][0] if solved else ())),
         Column(quantity) if quantity else None,
