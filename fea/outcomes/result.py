@@ -380,6 +380,20 @@ class CheckResult:
         """What a reader of the verdict must know besides."""
         return caveats(self.case, harmonic=self.harmonic)
 
+    def governing(self, link: str) -> LoadCaseResult:
+        """Return the load case with the lowest end of a link's safety factor, or with an unknown one.
+
+        Parameters
+        ----------
+        link : str
+            Its name.
+
+        Returns
+        -------
+        LoadCaseResult
+        """
+        return min(self.load_cases.values(), key=lambda case: case.links[link].severity)
+
     @property
     def frames(self) -> Mapping[str, LargeDisplacement]:
         """Load case -> what became of its frame in large displacement."""

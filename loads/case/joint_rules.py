@@ -220,15 +220,16 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             heading=Heading.ASSUMED,
             topic=Topic.FRICTION,
             what=reason("no_couple_on", joints=short),
-            why=reason("no_guide_length"),
+            why=reason("no_guide_length", joint=short[0]),
         )
     asked = any(isinstance(check, MotorCheck) for check in case.checks.values())
     if asked and not rubbing_joints(case):
+        first = next(iter(case.pinned_joints), next(iter(case.joints)))
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.FRICTION,
             what=reason("joints_without_friction"),
-            why=reason("none_states_friction"),
+            why=reason("none_states_friction", joint=first),
         )
     for name, play in clearances(case).items():
         diameter = case.joints[name].pin_diameter or math.inf

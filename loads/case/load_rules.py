@@ -242,7 +242,7 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
     """
     light = [name for name, one in case.load_cases.items() if case.carried and one.carried and not one.own_weight]
     if light:
-        why = reason("no_own_weight", load_cases=light)
+        why = reason("no_own_weight", load_cases=light, first=light[0])
         yield Caveat(topic=Topic.WEIGHT, what=reason("weight_of_carried"), why=why)
     if case.carried and not any(one.carried for one in case.load_cases.values()):
         yield Caveat(topic=Topic.WEIGHT, what=reason("what_links_carry"), why=reason("carried_is_false"))

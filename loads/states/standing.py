@@ -421,6 +421,10 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
             why=reason("stiffness_for_frequencies"),
         )
     elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+        usual = "20 N/mm" if case.joints[case.drive.joint].type == "slider" else "2 N*m/rad"
         yield Caveat(
-            heading=Heading.ASSUMED, topic=Topic.DRIVE, what=reason("rigid_drive"), why=reason("no_drive_stiffness")
+            heading=Heading.ASSUMED,
+            topic=Topic.DRIVE,
+            what=reason("rigid_drive"),
+            why=reason("no_drive_stiffness", usual=usual),
         )

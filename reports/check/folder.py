@@ -9,7 +9,6 @@ from pathlib import Path
 from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
-from alula.reports.check.links import worst_load_case
 from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
 from alula.reports.figures.sheet.drawing import Drawing
@@ -114,7 +113,7 @@ def _write_pictures(pictures: Mapping[str, Drawing], folder: Path) -> None:
 
 def _write_fields(result: CheckResult, folder: Path) -> None:
     """Write the VTU file of every link that was solved as a solid."""
-    links = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
+    links = {link: result.governing(link).links[link] for link in next(iter(result.load_cases.values())).links}
     solids = {link: found for link, found in links.items() if isinstance(found, SolidResult)}
     if not solids:
         return

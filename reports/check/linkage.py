@@ -7,12 +7,11 @@ from typing import Any
 from alula.fea.common.verdict import by_nearness
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
-from alula.reports.check.links import worst_load_case
 from alula.reports.sections.pose import pose_tables
 from alula.reports.sections.reactions import shown_components
 from alula.reports.sections.section import Beside, Folded, Number, Part, Picture, Section, say
+from alula.reports.sentences.verdicts import checks_of
 from alula.reports.words.numbers import plain
-from alula.reports.words.wording import checks_of
 
 
 def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
@@ -28,7 +27,7 @@ def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
         That of the check nearest to its limit first.
     """
     first, checks = next(iter(result.load_cases.values())), by_nearness(checks_of(result))
-    names = dict.fromkeys([first.name, *(worst_load_case(result, link).name for link in first.links)])
+    names = dict.fromkeys([first.name, *(result.governing(link).name for link in first.links)])
     return tuple(sorted(names, key=lambda name: not checks or name != checks[0].load_case))
 
 

@@ -351,7 +351,7 @@ def inspect(
     json: JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from alula.reports.commands.inspect_part import as_json, inspect_file, print_inspection, write_inspection
+    from alula.reports.commands.inspect_part import inspect_file, print_inspection, write_inspection
     from alula.reports.figures.figures import start_renderer
     from alula.reports.page.output import refuse_unusable, write_folder
 
@@ -359,7 +359,7 @@ def inspect(
     if output is not None:
         start_renderer()
     found = inspect_file(file, material, unit)
-    _show(found, as_json if json else None, print_inspection)
+    print_inspection(found, json=json)
     if output is not None:
         progress("Drawing the part ...")
         write_folder(output, "inspect", lambda folder: write_inspection(found, folder, progress))

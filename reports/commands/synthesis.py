@@ -144,8 +144,8 @@ def draw_linkage(synthesis: Synthesis, path: Path | BinaryIO) -> None:
         angles = (
             f"θ {math.degrees(point.theta):.4g}°, ψ {math.degrees(point.psi):.4g}°, φ {math.degrees(point.phi):.4g}°"
         )
-        seen = ", ".join(f"{drive} {seen(point, drive)}" for drive in DRIVES)
-        axes.set_title(f"Point {number}: {angles}; branch seen from {seen}", fontsize=10, loc="left")
+        branches = ", ".join(f"{drive} {seen(point, drive)}" for drive in DRIVES)
+        axes.set_title(f"Point {number}: {angles}; branch seen from {branches}", fontsize=10, loc="left")
         axes.set_ylabel(f"y [{unit}]")
         if number == 3:
             axes.set_xlabel(f"x [{unit}]")

@@ -36,9 +36,9 @@ from alula.reports.sections.section import (
 )
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import caveat, not_checked
+from alula.reports.sentences.verdicts import besides, decision
 from alula.reports.turnable.moving import ENVELOPE_CAPTION
 from alula.reports.words.numbers import fixed, sentence
-from alula.reports.words.wording import besides, decision
 
 UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
 

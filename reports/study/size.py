@@ -11,9 +11,9 @@ from alula.fea.study.margin import margin, nearest, sense_of
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Column, Folded, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sentences.verdicts import besides
 from alula.reports.study.rows import checked, number_text
 from alula.reports.words.numbers import percent
-from alula.reports.words.wording import besides
 
 SOLVED = "solved"
 """Name of the table of all that the model that decides solved."""

@@ -1,9 +1,9 @@
 """What a synthesis of a four-bar found: lengths, precision points, lock-up poses and defects."""
 
 import math
-from typing import Any, Literal
+from typing import Any
 
-from alula.geometry.mechanisms.synthesis import DRIVES, LockUp, PrecisionPoint, Synthesis
+from alula.geometry.mechanisms.synthesis import DRIVES, Drive, LockUp, PrecisionPoint, Synthesis
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Column, Group, Items, Number, Part, Section, Table, Text, say, words
 
@@ -78,7 +78,7 @@ def _degrees(angle: float) -> Number:
     return Number(math.degrees(angle), decimals=4)
 
 
-def seen(point: PrecisionPoint, drive: Literal["a", "b", "c"]) -> str:
+def seen(point: PrecisionPoint, drive: Drive) -> str:
     """Return on which branch a precision point lies, as seen from a driven link."""
     return point.branches[drive] or "dead point"
 

@@ -20,7 +20,7 @@ from alula.loads.records.check_spec import SustainedCheck
 from alula.loads.text.caveat import Topic
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.caveats import caveat, not_checked
-from alula.reports.words.wording import headline
+from alula.reports.sentences.verdicts import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}
@@ -179,7 +179,8 @@ def test_weight_that_is_left_out_is_told_with_its_load_cases():
     mass = {"link": "rocker", "at": "P", "mass": "50 kg"}
     light = {"light": {"own_weight": False}, "bare": {"own_weight": False, "carried": False}}
     assert told(carried=[mass], load_cases=light) == {
-        ("not checked", "weight"): "weight of what links carry (no own_weight in light)"
+        ("not checked", "weight"): "weight of what links carry (no own_weight in light; "
+        "under [load_cases.light]: own_weight = true)"
     }
     assert told(load_cases=light) == {}
     bare = {name: {"own_weight": True, "carried": False} for name in ("lift", "held")}
@@ -272,7 +273,11 @@ def test_what_a_case_states_and_no_check_looks_at_is_told(tables, key, text):
 
 def test_a_guide_that_rubs_without_a_length_is_told():
     data = tomllib.loads((files("alula.loads") / "cases" / "slider-crank.toml").read_text(encoding="utf-8"))
-    guide = ("assumed", "friction", "no couple on guide (no guide_length stated)")
+    guide = (
+        "assumed",
+        "friction",
+        'no couple on guide (no guide_length; under [joints.guide]: guide_length = "20 mm")',
+    )
     for length, is_told in (({}, True), ({"guide_length": "30 mm"}, False)):
         joints = data["joints"] | {"guide": data["joints"]["guide"] | length}
         found = [(x.heading.value, x.topic.value, caveat(x)) for x in caveats(validate(data | {"joints": joints}))]
@@ -401,6 +406,10 @@ def test_a_drive_and_joints_without_what_their_checks_need_are_told():
     motor = {"type": "motor", "voltage": "6 V", "current": "1 A", "efficiency": 0.5}
     tables = {"motion": {"turn": True, "speed": "60 rpm"}, "checks": {"m": motor, "f": SPRING}}
     case = of_material("pvc-u", **tables)
-    assert of_topic(case, Topic.DRIVE) == ["a drive that does not give (no drive.stiffness)"]
-    assert of_topic(case, Topic.FRICTION) == ["joints without friction (none states any)"]
+    assert of_topic(case, Topic.DRIVE) == [
+        'a drive that does not give (no drive.stiffness; under [drive]: stiffness = "2 N*m/rad")'
+    ]
+    assert of_topic(case, Topic.FRICTION) == [
+        f"joints without friction (none states any; under [joints.{case.pinned_joints[0]}]: friction = 0.15)"
+    ]
     assert of_topic(of_material("pvc-u"), Topic.DRIVE) == of_topic(of_material("pvc-u"), Topic.FRICTION) == []

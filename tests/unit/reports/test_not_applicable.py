@@ -22,8 +22,8 @@ from alula.reports.notebook.check_report import CheckReport
 from alula.reports.page.template import fill
 from alula.reports.sections.checks import check_records
 from alula.reports.sentences import told as in_words
+from alula.reports.sentences.verdicts import checks_of, decision, inapplicable
 from alula.reports.tables.console import say_checks
-from alula.reports.words.wording import checks_of, decision, inapplicable
 
 ENTRIES = (
     PLANAR,

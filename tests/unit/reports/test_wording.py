@@ -6,7 +6,8 @@ import pytest
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
 from alula.reports.sentences import told
-from alula.reports.words import numbers, wording
+from alula.reports.sentences import verdicts as wording
+from alula.reports.words import numbers
 
 
 @pytest.mark.parametrize(
