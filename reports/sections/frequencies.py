@@ -173,7 +173,7 @@ def _table(found: CaseFrequencies) -> Table:
         rows += [
             row(k, "", link, Number(mode.frequency), Number(None), directions(mode.in_plane), "") for k, mode in modes
         ]
-        below[len(rows) - 1] = f"By itself, {link} is {own.held}."
+        below[len(rows) - 1] = f"By itself, {link} is {in_words(own.held)}."
     several, driven = len(found.histories) > 1, any(history.driving for history in found.histories.values())
     pose = " in the pose where the lowest is least" if found.case.motion is not None else ""
     return Table.of(
