@@ -1,5 +1,7 @@
 """A second opinion: CalculiX on the same meshes."""
 
+from dataclasses import replace
+
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
 from alula.reports.sections.data import data, entries
@@ -69,3 +71,27 @@ def _record(opinion: SecondOpinion) -> dict[str, object]:
         "reason": data(opinion.reason),
         "calculix": calculix,
     }
+
+
+def with_second_opinions(result: CheckResult, found: tuple[SecondOpinion, ...]) -> CheckResult:
+    """Return the result with CalculiX's opinion on every link; differences and failures become warnings.
+
+    Parameters
+    ----------
+    result : CheckResult
+    found : tuple of SecondOpinion
+        CalculiX's opinions.
+
+    Returns
+    -------
+    CheckResult
+    """
+    warnings = tuple(told(opinion.warning) for opinion in found if opinion.warning)
+    warnings += tuple(
+        f"{opinion.link}: the second opinion compares stresses of one mesh whose peak is not a result"
+        for opinion in found
+        if not opinion.known
+    )
+    if not found:
+        warnings = ("no second opinion: no link has a solid model",)
+    return replace(result, second_opinions=found, warnings=(*result.warnings, *warnings))

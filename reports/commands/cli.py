@@ -118,7 +118,7 @@ def check(
         if second_opinion:
             from alula.fea.calculix.second_opinion import second_opinions
             from alula.geometry.base.tidying import scratch_folder
-            from alula.reports.tables.second_opinion import with_second_opinions
+            from alula.reports.check.opinion import with_second_opinions
 
             decks = scratch.enter_context(scratch_folder("alula-"))
             result = with_second_opinions(result, second_opinions(result, decks, threads=threads, progress=progress))

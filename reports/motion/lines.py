@@ -7,12 +7,12 @@ from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.play import drive_line, motion_play_record, play_lines
 from alula.reports.motion.rate_rows import link_columns, point_columns, told_speed, whole_sentences
+from alula.reports.sections.air import drive_in_air
 from alula.reports.sections.assembly import clearance_text
 from alula.reports.sections.friction import motion_friction_lines
 from alula.reports.sections.markup import as_plain
 from alula.reports.sections.springs import motion_springs
 from alula.reports.tables.frames import motion_linkage_line
-from alula.reports.tables.loads import air_lines
 from alula.reports.tables.mechanism import design_lines
 
 
@@ -103,7 +103,10 @@ def _load_case(
     if "drive_power" in row:
         power = _ends(row["drive_power"], "W", over)
         yield f"  drive power at {at}: {power}; energy imbalance {row['energy_imbalance']:.1g} of the largest power"
-    yield from (f"  {line}" for line in air_lines(row.get("flapping")))
+    yield from (
+        f"  {line}"
+        for line in ([as_plain(drive_in_air(load_case, row["flapping"]).text)] if row.get("flapping") else ())
+    )
     if row["joints"] is None:
         yield "  the linkage is statically indeterminate, so equilibrium alone does not give the joint forces"
     for joint, extremes in (row["joints"] or {}).items():

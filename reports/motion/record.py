@@ -13,10 +13,10 @@ from alula.reports.motion.joint_paths import moving_points, path_length
 from alula.reports.motion.play import motion_play_record
 from alula.reports.motion.rates import QUANTITIES, Series, extremes, finite_or_none, rates_record, series, told
 from alula.reports.renderers.record import finite
+from alula.reports.sections.air import motion_air_record
 from alula.reports.sections.assembly import clearance_record
 from alula.reports.sections.friction import motion_friction_record
 from alula.reports.tables.frames import motion_linkage_record
-from alula.reports.tables.loads import motion_air_record
 from alula.reports.tables.mechanism import design_record
 
 Real = NDArray[np.float64]

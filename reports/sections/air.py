@@ -3,16 +3,28 @@
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from alula.fea.outcomes.result import CheckResult
+from alula.fea.whole.motor import demand
+from alula.geometry.base.units import as_text
+from alula.geometry.linkage.placement import Placement
+from alula.loads.case.case import Case
 from alula.loads.records.aero import shares
-from alula.loads.states.case_motion import AirRange
+from alula.loads.records.applied import LineLoad
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.case_motion import AirRange, CaseMotion
+from alula.loads.states.flapping import flapping_loads, wing_reynolds, wing_span
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, sub
 from alula.reports.sections.section import Column, Items, Number, Part, Picture, Section, Table, Text, say, words
 from alula.reports.sentences import told
-from alula.reports.tables.loads import case_air_record
 from alula.reports.words.numbers import joined, number, plain, sentence
 
+Real = NDArray[np.float64]
+_AT = ("without", "least", "stated", "largest")
+"""Air of a drive: none, and the least, the stated and the largest C_N."""
 _WINGS = (
     "All force of the air acts on the axis of {links}: what turns a wing about that axis, the chordwise twist of wing "
     "and link, and the give of the wing's plate are not modelled."
@@ -263,3 +275,99 @@ def _figure(airs: AirRange, name: str) -> Any:
     from alula.reports.figures.motion.air_figures import case_air_pictures
 
     return case_air_pictures(airs)[name]
+
+
+def motion_air_record(airs: AirRange | None, load_case: str) -> dict[str, Any] | None:
+    """Return what the air does to the wings of a load case over a motion, and to its drive.
+
+    Parameters
+    ----------
+    airs : AirRange or None
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    dict or None
+        ``docs/result.md`` describes it; None without air.
+    """
+    if airs is None:
+        return None
+    result = airs.stated
+    case, stated, moved = result.case, result.case.load_cases[load_case], result.moved[load_case]
+    air = stated.flapping
+    if air is None or not np.any(moved.speed):
+        return None
+    wings = []
+    for i, wing in enumerate(case.wings):
+        force = wing_force(case, stated, moved.placement, i)
+        first, last, chord = wing_span(wing, case)
+        largest = int(np.argmax(np.abs(force)))
+        wings.append(
+            {
+                "link": wing.link,
+                "span": [first, last],
+                "chord": list(chord),
+                "largest_force": float(np.abs(force[largest])),
+                "largest_at": float(moved.told(moved.angles[largest])),
+                "reynolds": wing_reynolds(case, air, wing, moved.placement),
+            }
+        )
+    every = dict(zip(_AT, (airs.without, airs.least, result, airs.largest), strict=True))
+    return {
+        "density": as_text(air.density, "density"),
+        "normal_coefficient": air.normal_coefficient,
+        "normal_coefficient_range": list(air.ends),
+        "added_mass": air.added_mass,
+        "wings": wings,
+        "drive": {name: _asked(one, load_case) for name, one in every.items()},
+    }
+
+
+def wing_force(case: Case, load_case: LoadCase, place: Placement, i: int) -> Real:
+    """Return the force of the air on a wing, along its link's y axis.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : LoadCase
+    place : Placement
+        With rates.
+    i : int
+        Number of the wing.
+
+    Returns
+    -------
+    array (...)
+        [N]
+    """
+    alone = case.model_copy(update={"wings": (case.wings[i],)})
+    parts = [
+        load.force if isinstance(load, LineLoad) else load.wrench for load in flapping_loads(alone, load_case, place)
+    ]
+    return np.asarray(sum(part[..., 1] for part in parts))
+
+
+def _asked(moved: CaseMotion, load_case: str) -> dict[str, float]:
+    times = moved.moved[load_case].times
+    assert times is not None
+    balanced = np.isfinite(moved.torque[load_case])
+    power, effort = (values[balanced] for values in (moved.drive_power(load_case), moved.torque[load_case]))
+    found = demand(power, effort, times[balanced])
+    return {"peak_power": found.peak_power, "mean_power": found.mean_power, "peak_effort": found.peak_torque}
+
+
+def case_air_record(airs: AirRange | None) -> dict[str, dict[str, Any]]:
+    """Return what the air does over the motion of a case, for every load case that has air.
+
+    Parameters
+    ----------
+    airs : AirRange or None
+
+    Returns
+    -------
+    dict of str to dict
+        Load case -> its record; empty without air, and without a motion.
+    """
+    found = {} if airs is None else {name: motion_air_record(airs, name) for name in airs.stated.torque}
+    return {name: record for name, record in found.items() if record is not None}

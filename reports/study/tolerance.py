@@ -9,7 +9,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.reports.sections.data import data, entries
+from alula.reports.sections.data import entries
 from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, say, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import sentence
@@ -158,7 +158,7 @@ def _record(result: ToleranceResult) -> dict[str, Any]:
             for one in result.numbers
         ],
         "corner": None if result.corner is None else entries(result.corner, "number value low high deviations"),
-        "left_out": data(result.left_out),
+        "left_out": [told(one) for one in result.left_out],
         "notes": [told(note) for note in result.notes],
         "caveats": [entries(one, "heading topic what why") for one in result.caveats],
         "timings": dict(result.timings),

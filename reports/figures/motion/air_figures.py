@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.reports.figures.motion.motion_figures import DPI, legend, over_angle
 from alula.reports.figures.sheet.chart import Chart
-from alula.reports.tables.loads import motion_air_record
+from alula.reports.sections.air import motion_air_record
 
 Real = NDArray[np.float64]
 _SIZE = (8.0, 6.6)

@@ -11,8 +11,8 @@ from alula.fea.calculix import program as calculix
 from alula.fea.calculix.second_opinion import second_opinions
 from alula.fea.outcomes.opinion import Answer
 from alula.fea.outcomes.result import HandResult
+from alula.reports.check.opinion import with_second_opinions
 from alula.reports.commands.cli import app
-from alula.reports.tables.second_opinion import with_second_opinions
 
 
 @pytest.fixture(scope="module")

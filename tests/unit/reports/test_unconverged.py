@@ -13,9 +13,9 @@ from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.refine.discretisation import MeshStatus
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.case.case_file import read_case
+from alula.reports.check.opinion import opinion_records, say_opinions
 from alula.reports.figures import figures
 from alula.reports.sentences import told
-from alula.reports.tables.second_opinion import opinion_records, say_opinions
 
 
 @pytest.fixture
