@@ -324,7 +324,8 @@ def discretisation_record(found: Discretisation) -> dict[str, Any]:
     -------
     dict
     """
-    return entries(found, "status accuracy sentence") | {
+    return entries(found, "status accuracy") | {
+        "sentence": told(found.reason),
         "stress": entries(found.stress, _SERIES),
         "displacement": entries(found.displacement, _SERIES),
         "meshes": [entries(mesh, "elements unknowns error seconds") for mesh in found.meshes],

@@ -158,7 +158,7 @@ def check_pictures(
     Returns
     -------
     tuple
-        Name -> drawing, or PNG of a solid's stress; and warnings.
+        Name -> Drawing; and warnings.
     """
     from alula.reports.figures.figures import stress_plots
 

@@ -1,12 +1,15 @@
 """Output of ``alula motion``: its files and what it prints."""
 
-import json as jsonlib
 from pathlib import Path
 
 from alula.fea.findings.of_motion import MotionFindings
-from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.lines import motion_lines
-from alula.reports.motion.record import record
+from alula.reports.motion.whole_motion import motion_page, motion_record, motion_sections
+from alula.reports.renderers.console import print_sections
+from alula.reports.renderers.folder import write_sections
+from alula.reports.renderers.record import as_json
+from alula.reports.words.terminal import say
+
+MOTION, ANIMATION = "motion.html", "linkage.gif"
 
 
 def write_motion(found: MotionFindings, folder: Path, name: str) -> None:
@@ -21,22 +24,19 @@ def write_motion(found: MotionFindings, folder: Path, name: str) -> None:
         Of the case, as the command was given it.
     """
     from alula.reports.figures.motion.motion_animation import draw_animation
-    from alula.reports.figures.motion.rate_figures import motion_pictures
-    from alula.reports.figures.outlines.contact import contact_drawing
-    from alula.reports.figures.sheet.drawing import Drawing
-    from alula.reports.page.motion_pages import MOTION, motion_page
+    from alula.reports.turnable.moving import LINKAGE, motion_linkage
+    from alula.reports.turnable.pack import data_block
 
-    (folder / "result.json").write_text(jsonlib.dumps(record(found, name), indent=2) + "\n", encoding="utf-8")
-    write_tables(found, folder)
-    pictures: dict[str, Drawing] = dict(motion_pictures(found))
-    apart = found.clearance
-    if apart is not None and apart.shown is not None:
-        pictures["clearance"] = contact_drawing(apart)
-    for title, picture in pictures.items():
-        (folder / f"{title}.png").write_bytes(picture.png())
-    draw_animation(found.moved.motion, folder / "linkage.gif")
-    page = motion_page(found.moved, pictures, (folder / "linkage.gif").read_bytes(), name=name)
-    (folder / MOTION).write_text(page, encoding="utf-8")
+    sections = motion_sections(found)
+    (folder / "result.json").write_text(as_json(motion_record(found, name, sections)) + "\n", encoding="utf-8")
+    draw_animation(found.moved.motion, folder / ANIMATION)
+    write_sections(
+        motion_page(found, name, sections),
+        folder,
+        MOTION,
+        pictures={LINKAGE: (folder / ANIMATION).read_bytes()},
+        models={LINKAGE: data_block(motion_linkage(found.moved))},
+    )
 
 
 def print_motion(found: MotionFindings, name: str, *, json: bool) -> None:
@@ -50,5 +50,12 @@ def print_motion(found: MotionFindings, name: str, *, json: bool) -> None:
     json : bool
         True to print JSON.
     """
-    data = record(found, name)
-    print(jsonlib.dumps(data, indent=2) if json else "\n".join(motion_lines(found, data)))
+    sections = motion_sections(found)
+    if json:
+        print(as_json(motion_record(found, name, sections)))
+        return
+    from rich.console import Console
+
+    console = Console()
+    say(console, found.moved.case.title)
+    print_sections(sections, console)

@@ -10,8 +10,10 @@ import typer
 
 from alula.reports.commands.ending import progress
 from alula.reports.commands.options import (
+    AccuracyOption,
     CaseArgument,
     JsonOption,
+    LinkOption,
     SetOption,
     VariantsOption,
     WorkersOption,
@@ -62,17 +64,10 @@ def size(
     step: Annotated[
         str | None, typer.Option("--step", help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
     ] = None,
-    link: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'
-        ),
-    ] = None,
+    link: LinkOption = None,
     overrides: SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model that decides: auto, beam or solid.")] = "auto",
-    accuracy: Annotated[
-        str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
-    ] = None,
+    accuracy: AccuracyOption = None,
     analysis: Annotated[str, typer.Option(help="check or envelope.")] = "check",
     threads: VariantsOption = None,
     workers: WorkersOption = None,

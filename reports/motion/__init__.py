@@ -1,4 +1,4 @@
-"""What a motion tells: its record for ``result.json``, its tables as CSV, its lines for the console.
+"""What does a motion tell, and the envelope of stress over it? One file a feature makes sections; nothing is solved.
 
-Hands on ``record``, ``write_tables``, ``print_motion``, and ``series``: speeds, accelerations, momentum and energy.
+Hands on ``motion_sections`` and ``envelope_sections``, and what page, record and tables are made of them.
 """

@@ -1,22 +1,44 @@
-"""What the play of pins does over a motion, as data, as lines of text and as columns of tables."""
+"""What the play of pins does over a motion."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.joint_paths import loosest, moving_points
 from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.motion.joint_paths import loosest, moving_points
-from alula.reports.words.numbers import number
+from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, say, words
 
 Real = NDArray[np.float64]
 
 
-def motion_play_record(found: MotionFindings) -> dict[str, Any] | None:
-    """Return what play does over a motion as plain data.
+def play_section(found: MotionFindings) -> Section:
+    """Return what play does over a motion.
+
+    Parameters
+    ----------
+    found : MotionFindings
+
+    Returns
+    -------
+    Section
+        Without parts where no joint has play.
+    """
+    record = play_record(found)
+    return Section(
+        key="play",
+        title="Play of pins",
+        short="Play",
+        parts=() if record is None else tuple(_parts(found.moved, record)),
+        data={"play": record},
+    )
+
+
+def play_record(found: MotionFindings) -> dict[str, Any] | None:
+    """Return what play does over a motion as an entry of ``result.json``.
 
     Parameters
     ----------
@@ -57,64 +79,68 @@ def _spans(moved: CaseMotion, passes: NDArray[np.bool_]) -> Iterator[list[float]
         yield [float(moved.motion.told(moved.motion.angles[i])) for i in (first, after - 1)]
 
 
-def play_lines(moved: CaseMotion, found: dict[str, Any]) -> list[str]:
-    """Return what play does over a motion, a sentence a line.
-
-    Parameters
-    ----------
-    moved : CaseMotion
-    found : dict
-        From ``motion_play_record``.
-
-    Returns
-    -------
-    list of str
-    """
-    unit, points, lines = moved.motion.unit, found["points"], []
-    ended = {label: row for label, row in points.items() if 0.0 < row["largest"] < math.inf}
+def _parts(moved: CaseMotion, record: Mapping[str, Any]) -> Iterator[Part]:
+    unit, drive = moved.motion.unit, moved.drive.link
+    ended = {label: row for label, row in record["points"].items() if 0.0 < row["largest"] < math.inf}
     if ended:
-        told = "; ".join(f"{label} by up to {_reach(row, unit)}" for label, row in ended.items())
-        held = f"with {moved.drive.link} held, to either side (twice as much both ways)"
-        lines.append(f"Play of pins lets points move {held}: {told}.")
-    near = found["dead_point_distance"]
+        yield Table(
+            key="play",
+            columns=(
+                words("point"),
+                Column("to either side, largest", "mm"),
+                Column("largest at", unit),
+                Column("smallest", "mm"),
+            ),
+            rows=tuple(
+                (
+                    label,
+                    Number(row["largest"], "", 3),
+                    Number(row["largest_at"], decimals=1),
+                    Number(row["smallest"], "", 3),
+                )
+                for label, row in ended.items()
+            ),
+            caption=f"How far play lets points move with {drive} held, to either side (twice as much both ways)",
+        )
+    near = record["dead_point_distance"]
     if near["smallest"] > 0.0:
-        lines.append(
-            f"With play the least distance to a dead point (a ratio) is {number(near['smallest'], 3)}, at "
-            f"{near['smallest_at']:.1f} {unit}."
+        least, at = Number(near["smallest"], "", 3), Number(near["smallest_at"], unit, decimals=1)
+        yield say("With play the least distance to a dead point (a ratio) is {least}, at {at}", least=least, at=at)
+    if record["through_dead_point"]:
+        where = ", ".join(
+            f"{Number(low, decimals=1)} to {Number(high, decimals=1)}" for low, high in record["through_dead_point"]
         )
-    if found["through_dead_point"]:
-        where = ", ".join(f"{a:.1f} to {b:.1f}" for a, b in found["through_dead_point"])
-        lines.append(
-            f"Play of pins may take the linkage through a dead point of {moved.drive.link} at {where} {unit}: neither "
-            "drive, joint forces nor free motion have an end there."
+        yield Text(
+            f"Play of pins may take the linkage through a dead point of {drive} at {where} {unit}: neither drive, "
+            "joint forces nor free motion have an end there."
         )
-    return lines
 
 
-def _reach(row: dict[str, float], unit: str) -> str:
-    most, least = number(row["largest"], 3), number(row["smallest"], 3)
-    return f"{most} mm" + ("" if most == least else f" (at {row['largest_at']:.1f} {unit}; at least {least} mm)")
-
-
-def drive_line(moved: CaseMotion, found: dict[str, Any], load_case: str) -> str:
+def drive_with_play(moved: CaseMotion, record: Mapping[str, Any], load_case: str) -> Text:
     """Return between which ends play may bring the drive torque or force over a motion.
 
     Parameters
     ----------
     moved : CaseMotion
-    found : dict
-        From ``motion_play_record``.
+    record : mapping
+        From ``play_record``.
     load_case : str
 
     Returns
     -------
-    str
+    Text
     """
-    (what, unit), row, at = moved.effort, found[f"drive_{moved.effort[0]}"][load_case], moved.motion.unit
+    (what, unit), at = moved.effort, moved.motion.unit
+    row = record[f"drive_{what}"][load_case]
     if not math.isfinite(row["largest"] - row["smallest"]):
-        return f"with play of pins the drive {what} has no end next to a dead point"
-    low, high = (f"{number(row[end])} {unit} at {row[f'{end}_at']:.1f} {at}" for end in ("smallest", "largest"))
-    return f"with play of pins the drive {what} lies between {low} and {high}"
+        return Text(f"With play of pins the drive {what} has no end next to a dead point.")
+    facts = {end: Number(row[end], unit) for end in ("smallest", "largest")}
+    facts |= {f"{end}_at": Number(row[f"{end}_at"], at, decimals=1) for end in ("smallest", "largest")}
+    return say(
+        f"With play of pins the drive {what} lies between {{smallest}} at {{smallest_at}} and {{largest}} at "
+        "{largest_at}",
+        **facts,
+    )
 
 
 def point_play(found: MotionFindings, label: str) -> dict[str, Real]:

@@ -1,280 +1,182 @@
-"""Speeds, accelerations, momentum and energy over a motion: of links, of points, of the linkage as a whole."""
+"""Speeds, accelerations, momentum and energy of links, of points, and of the linkage as a whole."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from alula.geometry.base.ties import first_largest
-from alula.geometry.linkage.motion import Motion
+from alula.fea.findings.rates import QUANTITIES, Series
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.statics.momentum import LinkageMomentum, on_ground
-from alula.reports.motion.joint_paths import moving_points, owners
+from alula.reports.motion.charts import chart
+from alula.reports.motion.extremes import (
+    SIZES,
+    every_extreme,
+    extreme_cells,
+    extreme_columns,
+    rate_cells,
+    rate_columns,
+)
+from alula.reports.sections.section import (
+    Cell,
+    Column,
+    Folded,
+    Group,
+    Number,
+    Part,
+    Picture,
+    Section,
+    Table,
+    Text,
+    words,
+)
+from alula.reports.words.wording import told_speed
 
-Real = NDArray[np.float64]
-Values = NDArray[Any]
-"""Over the n poses: real numbers, or vectors of the plane as complex ones, x + iy."""
-
-QUANTITIES = {
-    "angular_speed": "rad/s",
-    "angular_acceleration": "rad/s²",
-    "speed": "mm/s",
-    "acceleration": "mm/s²",
-    "momentum": "mN·s",
-    "angular_momentum": "N·mm·s",
-    "kinetic_energy": "N·mm",
-    "potential_energy": "N·mm",
-    "shaking_force": "N",
-    "shaking_moment": "N·mm",
-    "ground_force": "N",
-    "ground_moment": "N·mm",
+_INERTIAL = ("momentum", "angular_momentum", "kinetic_energy")
+_LINK = ("angular_speed", "angular_acceleration", *_INERTIAL)
+_WHOLE = {
+    "momentum": "momentum",
+    "angular_momentum": "angular momentum about {about}",
+    "kinetic_energy": "kinetic energy",
+    "potential_energy": "potential energy of the weights",
+    "shaking_force": "shaking force",
+    "shaking_moment": "shaking moment about {about}",
+    "ground_force": "force on the ground, of all loads",
+    "ground_moment": "moment on the ground about {about}, of all loads",
 }
-"""Unit of each quantity. N·mm is mJ, and mN·s is g·m/s."""
-_ROUNDING = 1e-12
-_GRAMS, _MILLI = 1e6, 1e3
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Series:
-    """Rates at every pose of a motion that has a speed, in the units of ``QUANTITIES``; rounding is zero.
-
-    Attributes
-    ----------
-    motion : Motion
-        At the speed that they belong to.
-    about : str or None
-        The joint about which moments of the whole are taken; None for the global origin.
-    place : complex
-        That point [mm].
-    masses : mapping of str to float
-        Link -> its mass, with what it carries [g].
-    links : mapping of str to mapping
-        Moving link -> quantity -> values; without momentum and energy where it has no mass.
-    points : mapping of str to mapping
-        Moving point -> quantity -> values.
-    whole : mapping of str to array
-        Quantity of the linkage -> values; without those of inertia where nothing was weighed.
-    """
-
-    motion: Motion
-    about: str | None
-    place: complex
-    masses: Mapping[str, float]
-    links: Mapping[str, Mapping[str, Values]]
-    points: Mapping[str, Mapping[str, Values]]
-    whole: Mapping[str, Values]
-
-
-def series(result: CaseMotion, load_case: str | None = None) -> Series | None:
-    """Return the rates of a motion at the speed of a load case.
+def rates_section(moved: CaseMotion, rates: Mapping[str, Series]) -> Section:
+    """Return speeds, momentum and energy.
 
     Parameters
     ----------
-    result : CaseMotion
-    load_case : str, optional
-        The speed of the motion itself, and nothing of the loads, unless given.
+    moved : CaseMotion
+    rates : mapping of str to Series
+        Load case -> at its speed; those with a speed.
 
     Returns
     -------
-    Series or None
-        None without a speed.
+    Section
+        Without parts where nothing has a speed.
     """
-    motion = result.motion if load_case is None else result.moved[load_case]
-    if not motion.moves:
-        return None
-    momentum, longest = result.momentum(load_case), motion.linkage.longest
-    mass = 0.0 if momentum is None else sum(one.mass for one in momentum.links.values())
-    speed, rate = (float(np.max(np.abs(v))) for v in (motion.point_velocities, motion.point_accelerations))
-    sizes = {
-        "angular_speed": speed / longest,
-        "angular_acceleration": rate / longest,
-        "speed": speed,
-        "acceleration": rate,
-        "momentum": _MILLI * mass * speed,
-        "angular_momentum": mass * speed * longest,
-        "kinetic_energy": mass * speed**2,
-        "shaking_force": mass * rate,
-        "shaking_moment": mass * rate * longest,
-    }
-
-    def clean(values: Mapping[str, Values]) -> dict[str, Values]:
-        return {key: _clean(found, _ROUNDING * sizes.get(key, 0.0)) for key, found in values.items()}
-
-    about, place = result.moment_point
-    return Series(
-        motion=motion,
-        about=about,
-        place=place,
-        masses={} if momentum is None else {link: _GRAMS * one.mass for link, one in momentum.links.items()},
-        links={link: clean(_of_link(motion, link, momentum)) for link in motion.linkage.moving},
-        points={label: clean(_of_point(motion, label)) for label in moving_points(motion)},
-        whole=clean(_of_whole(result, load_case, momentum)),
+    records = {name: rates_record(found) for name, found in rates.items()}
+    return Section(
+        key="rates",
+        title="Speeds, momentum and energy",
+        short="Speeds and energy",
+        parts=tuple(_parts(moved, rates, records)) if rates else (),
+        data={"load_cases": {name: {"rates": records.get(name)} for name in moved.torque}},
     )
 
 
-def _clean(values: Values, nil: float) -> Values:
-    """Values, or components of vectors, with zero for what is not above ``nil``."""
-    if np.iscomplexobj(values):
-        return _clean(values.real, nil) + 1j * _clean(values.imag, nil)
-    return np.where(np.abs(values) <= nil, 0.0, values)
-
-
-def _of_link(motion: Motion, link: str, momentum: LinkageMomentum | None) -> dict[str, Values]:
-    found: dict[str, Values] = {
-        "angular_speed": motion.angular_speed(link),
-        "angular_acceleration": motion.angular_acceleration(link),
-    }
-    if momentum is None or link not in momentum.links:
-        return found
-    own = momentum.links[link]
-    carried = {"momentum": _MILLI * own.linear, "angular_momentum": own.angular, "kinetic_energy": own.kinetic}
-    return found | carried
-
-
-def _of_point(motion: Motion, label: str) -> dict[str, Values]:
-    column = motion.column(*owners(motion, label)[0])
-    return {"speed": motion.point_velocities[:, column], "acceleration": motion.point_accelerations[:, column]}
-
-
-def _of_whole(result: CaseMotion, load_case: str | None, momentum: LinkageMomentum | None) -> dict[str, Values]:
-    found: dict[str, Values] = {}
-    if momentum is not None:
-        found |= {
-            "momentum": _MILLI * momentum.linear,
-            "angular_momentum": momentum.angular,
-            "kinetic_energy": momentum.kinetic,
-            "shaking_force": momentum.shaking_force,
-            "shaking_moment": momentum.shaking_moment,
-        }
-    if load_case is None:
-        return found
-    if result.case.load_cases[load_case].own_weight:
-        found["potential_energy"] = result.power[load_case].potential
-    force, moment = on_ground(result.loads[load_case], result.moved[load_case].placement, result.moment_point[1])
-    return found | {"ground_force": force, "ground_moment": moment}
-
-
-def extremes(motion: Motion, values: Real, *, unbounded: bool = False) -> dict[str, Any]:
-    """Return first, last and extreme values over a motion, and where the extremes stand.
+def rates_record(found: Series) -> dict[str, Any]:
+    """Return the rates of a motion at the speed of a load case as an entry of ``result.json``.
 
     Parameters
     ----------
-    motion : Motion
-    values : array (n,)
-        NaN where they are not known.
-    unbounded : bool, optional
-        True where they grow without bound on the way, so that extremes mean nothing.
+    found : Series
 
     Returns
     -------
     dict
-        As ``docs/result.md`` describes them.
     """
-    ends: dict[str, Any] = {"first": finite_or_none(values[0]), "last": finite_or_none(values[-1])}
-    if unbounded or not np.any(np.isfinite(values)):
-        return ends | {"smallest": None, "largest": None, "unbounded": True}
-    for key, sign in (("smallest", -1.0), ("largest", 1.0)):
-        pose = extreme_pose(sign * values)
-        ends |= {key: float(values[pose]), f"{key}_at": float(motion.told(motion.angles[pose]))}
-    return ends | {"unbounded": False}
-
-
-def extreme_pose(values: Real) -> int:
-    """Return the first of the poses whose value is the largest, but for rounding, as in a symmetric linkage.
-
-    Parameters
-    ----------
-    values : array (n,)
-
-    Returns
-    -------
-    int
-    """
-    return first_largest(values, float(np.nanmax(np.abs(values))))
-
-
-def vector_extremes(motion: Motion, values: Values) -> dict[str, Any]:
-    """Return the largest size of a vector over a motion, where it stands, and the ends of its components.
-
-    Parameters
-    ----------
-    motion : Motion
-    values : complex array (n,)
-
-    Returns
-    -------
-    dict
-        As ``docs/result.md`` describes it.
-    """
-    pose = extreme_pose(np.abs(values))
-    return {
-        "largest": float(np.abs(values[pose])),
-        "largest_at": float(motion.told(motion.angles[pose])),
-        "x": [float(values.real.min()), float(values.real.max())],
-        "y": [float(values.imag.min()), float(values.imag.max())],
-    }
-
-
-def rates_record(result: CaseMotion, load_case: str) -> dict[str, Any] | None:
-    """Return the rates of a motion at the speed of a load case as plain data.
-
-    Parameters
-    ----------
-    result : CaseMotion
-    load_case : str
-
-    Returns
-    -------
-    dict or None
-        ``docs/result.md`` describes it; None without a speed.
-    """
-    found = series(result, load_case)
-    if found is None:
-        return None
-    inertial = ("momentum", "angular_momentum", "kinetic_energy")
-    link = ("angular_speed", "angular_acceleration", *inertial)
-    whole = (*inertial, "potential_energy", "shaking_force", "shaking_moment")
+    whole = (*_INERTIAL, "potential_energy", "shaking_force", "shaking_moment")
     return {
         "about": {"joint": found.about, "place": [found.place.real, found.place.imag]},
         "links": {
-            name: {"mass": found.masses.get(name)} | dict.fromkeys(link) | told(found.motion, values)
+            name: {"mass": found.masses.get(name)} | dict.fromkeys(_LINK) | every_extreme(found.motion, values)
             for name, values in found.links.items()
         },
-        "points": {label: told(found.motion, values) for label, values in found.points.items()},
-        "whole": dict.fromkeys(whole) | told(found.motion, found.whole),
+        "points": {label: every_extreme(found.motion, values) for label, values in found.points.items()},
+        "whole": dict.fromkeys(whole) | every_extreme(found.motion, found.whole),
     }
 
 
-def told(motion: Motion, values: Mapping[str, Values]) -> dict[str, Any]:
-    """Return extremes of some quantities: of vectors those of their size and components.
+def _parts(moved: CaseMotion, rates: Mapping[str, Series], records: Mapping[str, Mapping[str, Any]]) -> Iterator[Part]:
+    yield Text(
+        "Of all poses: the smallest and the largest value, of a vector its largest size. Angular momentum of a link is "
+        "about its own centroid. The shaking force and moment are what inertia alone does to the ground. N·mm is mJ, "
+        "and mN·s is g·m/s.",
+        "note",
+    )
+    written: dict[str, Mapping[str, Any]] = {}
+    for i, (name, record) in enumerate(records.items()):
+        shared = {key: record[key] for key in ("links", "points")}
+        same = next((other for other, one in written.items() if one == shared), None)
+        tables = (_links(moved, name, record["links"]), _points(moved, name, record["points"]))
+        parts: list[Part] = list(tables)
+        if same is None:
+            written[name] = shared
+            if len(written) == 1:
+                parts += _speeds(rates[name], f"load case {name}, at {told_speed(moved, name)}")
+        else:
+            parts = [Text(f"Links and points move as in load case {same}."), Folded("The same numbers here", tables)]
+        if record["whole"]["momentum"] is None:
+            left = "Momentum and energy of the links are left out: no load case asks for their weight or inertia."
+            parts.append(Text(left))
+        energy = "energy" if len(records) == 1 else f"energy-{i + 1}"
+        parts += [_energy(moved, name, record), _energy_picture(moved, name, rates[name], energy)]
+        yield Group(f"Load case {name}", tuple(parts), remark=f"at {told_speed(moved, name)}")
 
-    Parameters
-    ----------
-    motion : Motion
-    values : mapping of str to array (n,)
 
-    Returns
-    -------
-    dict
-    """
-    return {
-        key: vector_extremes(motion, found) if np.iscomplexobj(found) else extremes(motion, found)
-        for key, found in values.items()
-    }
+def _links(moved: CaseMotion, load_case: str, rows: Mapping[str, Mapping[str, Any]]) -> Table:
+    weighed = any(row["mass"] is not None for row in rows.values())
+    columns = [words("link"), Column("mass", "g", hidden=not weighed)]
+    for key in _LINK:
+        columns += rate_columns(key, moved.motion.unit, told=weighed or key not in _INERTIAL)
+    cells: list[tuple[Cell, ...]] = [
+        (link, Number(row["mass"]), *(cell for key in _LINK for cell in rate_cells(key, row[key])))
+        for link, row in rows.items()
+    ]
+    return Table(key="links", columns=tuple(columns), rows=tuple(cells), under=(("load case", load_case),))
 
 
-def finite_or_none(value: float) -> float | None:
-    """Return a number as JSON takes it.
+def _points(moved: CaseMotion, load_case: str, rows: Mapping[str, Mapping[str, Any]]) -> Table:
+    at = moved.motion.unit
+    columns = [
+        Column(f"{key}, largest{more}", unit)
+        for key in SIZES[:2]
+        for more, unit in (("", QUANTITIES[key]), (" at", at))
+    ]
+    cells: list[tuple[Cell, ...]] = [
+        (label, *(cell for key in SIZES[:2] for cell in _size(row[key]))) for label, row in rows.items()
+    ]
+    return Table(key="points", columns=(words("point"), *columns), rows=tuple(cells), under=(("load case", load_case),))
 
-    Parameters
-    ----------
-    value : float
 
-    Returns
-    -------
-    float or None
-        None where it is infinite or unknown.
-    """
-    return float(value) if np.isfinite(value) else None
+def _size(row: Mapping[str, Any]) -> tuple[Number, Number]:
+    return Number(row["largest"]), Number(row["largest_at"] if row["largest"] > 0.0 else None, decimals=1)
+
+
+def _energy(moved: CaseMotion, load_case: str, record: Mapping[str, Any]) -> Table:
+    about, whole = record["about"]["joint"] or "the global origin", record["whole"]
+    return Table(
+        key="energy",
+        columns=(words("quantity"), words("unit"), *extreme_columns(moved.motion.unit, ends=False)),
+        rows=tuple(
+            (name.format(about=about), QUANTITIES[key], *extreme_cells(whole[key], ends=False))
+            for key, name in _WHOLE.items()
+            if whole[key] is not None
+        ),
+        caption="The linkage as a whole; of a vector, the largest size",
+        under=(("load case", load_case),),
+    )
+
+
+def _speeds(rates: Series, title: str) -> Iterator[Picture]:
+    """Yield what moves at a speed: links and points."""
+
+    def draw(of: str) -> Any:
+        from alula.reports.figures.motion.rate_figures import speeds_figure
+
+        return speeds_figure(rates, of, title)
+
+    yield chart("link-speeds", "Angular speeds and accelerations of the links", lambda: draw("links"))
+    yield chart("point-speeds", "Speeds and accelerations of the points, as sizes", lambda: draw("points"))
+
+
+def _energy_picture(moved: CaseMotion, load_case: str, rates: Series, name: str) -> Picture:
+    def draw() -> Any:
+        from alula.reports.figures.motion.rate_figures import energy_figure
+
+        return energy_figure(moved, load_case, rates)
+
+    return chart(name, f"Energies, power of the drive and force on the ground, load case {load_case}", draw)

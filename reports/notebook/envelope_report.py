@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +10,17 @@ from alula.fea.common.band import Band
 from alula.fea.common.verdict import Verdict
 from alula.fea.motion.envelope_result import EnvelopeResult
 from alula.geometry.base.errors import CannotRunError
-from alula.reports.commands.envelope import drive_angle
-from alula.reports.notebook.check_report import check_rows
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary
+from alula.reports.motion.envelope import envelope_headline, envelope_sections
+from alula.reports.notebook.check_report import RENAMED as RENAMED_CHECKS
+from alula.reports.notebook.shown import Picture, Table, Tabled, pick, summary, table_of
 from alula.reports.sentences import told
 
 Real = NDArray[np.float64]
+RENAMED = {
+    "checks": RENAMED_CHECKS["checks"],
+    "links": {"low": "safety factor low", "high": "safety factor high"},
+}
+"""Names that columns had before -> their names now, for one version."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +43,6 @@ class EnvelopeReport(Tabled):
     @property
     def headline(self) -> str:
         """The verdict, what decides it, and what it stands on besides."""
-        from alula.reports.page.motion_pages import envelope_headline
-
         return envelope_headline(self.result)
 
     @property
@@ -80,13 +82,13 @@ class EnvelopeReport(Tabled):
         """
         return pick(pick(self.result.links, link, "loaded link").load_cases, load_case, "load case").value
 
-    def table(self, of: Literal["links", "checks"] = "links") -> Table:
+    def table(self, of: str = "links") -> Table:
         """Return a table of the result.
 
         Parameters
         ----------
-        of : {"links", "checks"}
-            The worst pose of every link and load case, or the checks with value, band and limit.
+        of : str, optional
+            ``links``: the worst pose of every link and load case; ``checks`` with value, band and limit; ``fatigue``.
 
         Returns
         -------
@@ -96,10 +98,9 @@ class EnvelopeReport(Tabled):
         Raises
         ------
         CaseError
-            For another table.
+            For another table; the error lists those that there are.
         """
-        tables = {"links": self._link_rows, "checks": self._check_rows}
-        return Table(tuple(pick(tables, of, "table")()))
+        return table_of(envelope_sections(self.result), of, RENAMED.get(of, {}))
 
     def plot_safety_factors(self) -> Picture:
         """Draw the safety factor of every link over the motion."""
@@ -142,25 +143,3 @@ class EnvelopeReport(Tabled):
 
     def _repr_html_(self) -> str:
         return summary(self.verdict, self.result.case.title, self.headline, self.table(), self.warnings)
-
-    def _check_rows(self) -> list[Row]:
-        return check_rows(self.result.checks)
-
-    def _link_rows(self) -> list[Row]:
-        return [
-            {
-                "link": name,
-                "load case": load_case,
-                "safety factor": found.safety_factor.value,
-                "low": found.safety_factor.told.low,
-                "high": found.safety_factor.told.high,
-                "stress": link.measure,
-                "stress [MPa]": found.stress.value,
-                f"at {self.result.drive.link} [deg]": drive_angle(self.result, found.pose),
-                "repetitions to failure": None
-                if found.fatigue is None or found.fatigue.repetitions is None
-                else found.fatigue.repetitions.value,
-            }
-            for name, link in self.result.links.items()
-            for load_case, found in link.load_cases.items()
-        ]

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from alula.fea.common.band import Band
 from alula.fea.vibration.frequency_outcomes import deciding_load_case, least_frequency, unit
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
-from alula.reports.tables.frequencies import history_sentence, mode_rows
+from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
+from alula.reports.sections.frequencies import frequencies_section, history_sentence
+
+RENAMED = {"low": "frequency [Hz] low", "high": "frequency [Hz] high"}
+"""Names that columns had before -> their names now, for one version."""
 
 
 @dataclass(frozen=True)
@@ -37,22 +40,24 @@ class FrequencyReport(Tabled):
         """Of every load case: where the lowest natural frequency is least, and which harmonic meets one."""
         return {name: history_sentence(self.result.case, one) for name, one in self.result.histories.items()}
 
-    def table(self) -> Table:
-        """Return a row for every natural frequency: of the linkage where the lowest is least, and of the links."""
-        rows: list[Row] = [
-            {
-                "load case": row["load_case"],
-                "subject": row["subject"],
-                "number": row["number"],
-                "frequency [Hz]": row["frequency"].value,
-                "low": row["frequency"].low,
-                "high": row["frequency"].high,
-                "over the driving one": row["ratio"].value if row["ratio"] else None,
-                "shape": row["moves"],
-            }
-            for row in mode_rows(self.result)
-        ]
-        return Table(tuple(rows))
+    def table(self, of: str = "frequencies") -> Table:
+        """Return a row for every natural frequency: of the linkage where the lowest is least, and of the links.
+
+        Parameters
+        ----------
+        of : str, optional
+            ``frequencies``, the only one.
+
+        Returns
+        -------
+        Table
+
+        Raises
+        ------
+        CaseError
+            For another table.
+        """
+        return table_of([frequencies_section(self.result)], of, RENAMED)
 
     def plot_campbell(self, load_case: str | None = None) -> Picture:
         """Draw natural frequencies over the motion, and over the speed of the drive, with its harmonics.

@@ -1,19 +1,18 @@
 """What ``alula.motion`` returns."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.findings.of_motion import MotionFindings, PlayOverMotion, motion_findings, play_over_motion
+from alula.fea.findings.rates import series
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.motion.rate_rows import whole_rows
-from alula.reports.motion.rates import QUANTITIES, rates_record, series
-from alula.reports.motion.record import record
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick
+from alula.reports.motion.whole_motion import motion_sections
+from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
+from alula.reports.sections.section import Section
 
 Real = NDArray[np.float64]
 
@@ -58,15 +57,16 @@ class MotionReport(Tabled):
         """Values of the coordinate at which the driven link turns back [degrees or mm]."""
         return tuple(float(self.result.motion.told(at)) for at in self.result.dead_points)
 
-    def table(self, of: Literal["drive", "links", "points", "energy"] = "drive") -> Table:
-        """Return a table of the motion, with a row per load case.
+    def table(self, of: str = "drive") -> Table:
+        """Return a table of the motion, with rows per load case.
 
         Parameters
         ----------
-        of : {"drive", "links", "points", "energy"}
-            Drive and joint forces, with first, last and extreme values; angular speeds, accelerations, momentum and
-            kinetic energy of the links; speeds and accelerations of the points; or momentum, energies and shaking of
-            the linkage. All but the first have rows of the load cases that have a speed.
+        of : str, optional
+            ``drive``: drive and joint forces, with first, last and extreme values. ``links``: angular speeds,
+            accelerations, momentum and kinetic energy of the links; ``points``: speeds and accelerations of the points;
+            ``energy``: momentum, energies and shaking of the linkage; all three of the load cases that have a speed.
+            Or any other table of the page, such as ``directions``, ``springs``, ``play``, ``gaps``, ``wings``.
 
         Returns
         -------
@@ -77,48 +77,13 @@ class MotionReport(Tabled):
         Raises
         ------
         CaseError
-            For a table that does not exist.
+            For a table that there is not; the error lists the others.
         """
-        builders = {"drive": self._drive_rows, "links": self._rows_of, "points": self._rows_of, "energy": self._whole}
-        return Table(tuple(pick(builders, of, "table")(of)))
+        return table_of(self._sections, of)
 
-    def _rows_of(self, of: str) -> Iterator[Row]:
-        for load_case, rates in self._rates():
-            for name, row in rates[of].items():
-                told = {key: value for key, value in row.items() if key != "mass"}
-                mass: Row = {"mass [g]": row["mass"]} if "mass" in row else {}
-                named: Row = {"load case": load_case, of[:-1]: name, **mass}
-                yield named | {
-                    f"{key.replace('_', ' ')}, {end} [{unit}]": None if found is None else found.get(way)
-                    for key, found in told.items()
-                    for end, way, unit in self._ends(key)
-                }
-
-    def _ends(self, key: str) -> list[tuple[str, str, str]]:
-        """What is told of a quantity: the largest size of a vector, or both ends; with the unit."""
-        unit, at = QUANTITIES[key], self.result.motion.unit
-        largest = [("largest", "largest", unit), ("largest at", "largest_at", at)]
-        sized = key in ("speed", "acceleration", "momentum")
-        return largest if sized else [("smallest", "smallest", unit), ("smallest at", "smallest_at", at), *largest]
-
-    def _whole(self, of: str) -> Iterator[Row]:
-        at = self.result.motion.unit
-        for load_case, rates in self._rates():
-            for name, unit, row in whole_rows(rates):
-                yield {
-                    "load case": load_case,
-                    "quantity": name,
-                    "unit": unit,
-                    "smallest": row.get("smallest"),
-                    f"smallest at [{at}]": row.get("smallest_at"),
-                    "largest": row["largest"],
-                    f"largest at [{at}]": row.get("largest_at"),
-                }
-
-    def _rates(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        for load_case in self.result.torque:
-            if (rates := rates_record(self.result, load_case)) is not None:
-                yield load_case, rates
+    @cached_property
+    def _sections(self) -> tuple[Section, ...]:
+        return motion_sections(self._found)
 
     @cached_property
     def _found(self) -> MotionFindings:
@@ -128,27 +93,6 @@ class MotionReport(Tabled):
     @cached_property
     def _play(self) -> PlayOverMotion | None:
         return play_over_motion(self.result)
-
-    def _drive_rows(self, of: str) -> Iterator[Row]:
-        what, unit = self.result.effort
-        at = self.result.motion.unit
-        for load_case, found in record(self._found, "")["load_cases"].items():
-            told = {f"drive {what} on {self.result.drive.link}": (unit, found[f"drive_{what}"])}
-            told |= {f"joint {joint}": ("N", values) for joint, values in (found["joints"] or {}).items()}
-            if "drive_power" in found:
-                told["drive power"] = ("W", found["drive_power"])
-            for name, (unit, values) in told.items():
-                yield {
-                    "load case": load_case,
-                    "quantity": name,
-                    "unit": unit,
-                    "first": values["first"],
-                    "last": values["last"],
-                    "smallest": values["smallest"],
-                    f"smallest at [{at}]": values.get("smallest_at"),
-                    "largest": values["largest"],
-                    f"largest at [{at}]": values.get("largest_at"),
-                }
 
     def plot_drive(self) -> Picture:
         """Draw drive torque or force over the coordinate, a line per load case."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from alula.geometry.base.version import alula_version
 from alula.reports.page.policy import sealed
-from alula.reports.sections.markup import as_html
+from alula.reports.sections.markup import as_html, code
 from alula.reports.sections.section import Beside, Cell, Column, Folded, Group, Mark, Part, Picture, Section, parts_of
 from alula.reports.turnable.script import viewer
 
@@ -54,6 +54,26 @@ class Page:
         return (*self.first, *self.opening, *self.sections)
 
 
+def page_footer(name: str, tables: str) -> tuple[str, str]:
+    """Return what stands below a page.
+
+    Parameters
+    ----------
+    name : str
+        Of the case.
+    tables : str
+        File of the numbers besides ``result.json``.
+
+    Returns
+    -------
+    tuple of (str, str)
+    """
+    return (
+        f"alula {alula_version()}. Case {code(name)}.",
+        f"All numbers as data: {code('result.json')} and {code(tables)} in the same folder.",
+    )
+
+
 def as_page(
     page: Page, pictures: Mapping[str, Any] = MappingProxyType({}), models: Mapping[str, str] = MappingProxyType({})
 ) -> str:
@@ -74,12 +94,15 @@ def as_page(
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
+    from alula.reports.renderers.compiled import CompiledTemplates
+
     environment = Environment(
         loader=PackageLoader("alula.reports"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
     )
     environment.filters |= {
         "marked": lambda text: Markup(as_html(text)),
@@ -150,7 +173,7 @@ def drawn(picture: Any, alt: str) -> str:
     Parameters
     ----------
     picture : object
-        A drawing, which is set as SVG, or the bytes of a PNG or WebP file.
+        A drawing, which knows its element of a page, or the bytes of a PNG or WebP file.
     alt : str
         What it shows.
 
@@ -158,8 +181,8 @@ def drawn(picture: Any, alt: str) -> str:
     -------
     str
     """
-    if hasattr(picture, "svg"):
-        return str(picture.svg(alt))
+    if hasattr(picture, "element"):
+        return str(picture.element(alt))
     return f'<img src="{data_uri(picture)}" alt="{as_html(alt)}">'
 
 

@@ -40,6 +40,23 @@ def as_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
     return found | {"nulls": nulls}
 
 
+def as_brief_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
+    """Return all entries of sections as data that JSON can hold, without ``nulls`` and without the unit of each field.
+
+    Parameters
+    ----------
+    sections : iterable of Section
+    **head
+        Entries above theirs.
+
+    Returns
+    -------
+    dict
+        Infinite and undefined numbers are None.
+    """
+    return dict(finite({**result_stamp(), **head, **merged(section.data for section in sections)}, {}))
+
+
 def as_json(record: Mapping[str, Any]) -> str:
     """Return a record as strict JSON, without NaN or infinity."""
     return json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False)

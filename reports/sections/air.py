@@ -272,9 +272,9 @@ def wing_table(records: dict[str, dict[str, Any]]) -> Table:
 
 
 def _figure(airs: AirRange, name: str) -> Any:
-    from alula.reports.figures.motion.air_figures import case_air_pictures
+    from alula.reports.figures.motion.air_figures import air_chart
 
-    return case_air_pictures(airs)[name]
+    return air_chart(airs, name)
 
 
 def motion_air_record(airs: AirRange | None, load_case: str) -> dict[str, Any] | None:

@@ -49,26 +49,38 @@ def assembly_section(result: CheckResult) -> Section:
         key="assembly",
         title="Links in their layers",
         short="Layers",
-        parts=_parts(found),
+        parts=(
+            Picture(
+                name="assembly",
+                alt="Links and pins in the stated pose, from above and from the side",
+                caption="Links and pins in the stated pose, from above and from the side, a colour for each layer. "
+                "From above, what is higher covers what is lower. Pins (dark) reach from the lowest to the highest "
+                "face of the two links that they join.",
+                draw=lambda: _assembly(found),
+            ),
+            *gap_parts(found),
+        ),
         data={"clearance": clearance_record(found)},
         not_covered=(_left_out(result),),
     )
 
 
-def _parts(found: Clearance) -> tuple[Part, ...]:
+def gap_parts(found: Clearance) -> tuple[Part, ...]:
+    """Return the gaps between links at one height, and a drawing of the least.
+
+    Parameters
+    ----------
+    found : Clearance
+
+    Returns
+    -------
+    tuple of Part
+    """
     touches = found.contact is not None
     where = "at their first contact" if touches else "where they come nearest"
     motion = found.motion
     over = f"over the motion of {motion.coordinate}" if motion is not None else "in the stated pose"
     parts: list[Part] = [
-        Picture(
-            name="assembly",
-            alt="Links and pins in the stated pose, from above and from the side",
-            caption="Links and pins in the stated pose, from above and from the side, a colour for each layer. From "
-            "above, what is higher covers what is lower. Pins (dark) reach from the lowest to the highest face of the "
-            "two links that they join.",
-            draw=lambda: _assembly(found),
-        ),
         Text(f"Links that lie at one height, and pins and the links that they pass, must not touch {over}.", "note"),
         clearance_text(found),
     ]

@@ -67,7 +67,7 @@ def frequencies_section(found: CaseFrequencies | None, *, alone: bool = False) -
     return Section(
         key="frequencies",
         title="Natural frequencies",
-        short="Natural frequencies",
+        short="" if alone else "Natural frequencies",
         parts=tuple(_parts(found, alone=alone)),
         data={"frequencies": _record(found)},
         series=(_series(found),),
@@ -100,10 +100,11 @@ def _parts(found: CaseFrequencies, *, alone: bool) -> Iterator[Part]:
         "note",
     )
     for name, history in sorted(found.histories.items(), key=lambda item: item[0] != first):
-        yield Text((f"{bold(f'{name}.')} " if several else "") + history_sentence(case, history))
-        yield from (say("{note}", "small", note=note) for note in history.lowest.notes)
+        yield Text((f"{bold(f'Load case {name}:')} " if several else "") + history_sentence(case, history))
         if alone or name == first:
             yield from _pictures(found, name)
+    for note in dict.fromkeys(note for history in found.histories.values() for note in history.lowest.notes):
+        yield say("{note}", "small", note=note)
     own = ", and those of links by themselves" if found.links else ""
     yield Folded(f"All natural frequencies{own}", (_table(found),), opened=alone, told=True)
     yield Text(
@@ -173,7 +174,7 @@ def _table(found: CaseFrequencies) -> Table:
         rows += [
             row(k, "", link, Number(mode.frequency), Number(None), directions(mode.in_plane), "") for k, mode in modes
         ]
-        below[len(rows) - 1] = f"By itself, {link} is {own.held}."
+        below[len(rows) - 1] = f"By itself, {link} is {in_words(own.held)}."
     several, driven = len(found.histories) > 1, any(history.driving for history in found.histories.values())
     pose = " in the pose where the lowest is least" if found.case.motion is not None else ""
     return Table.of(

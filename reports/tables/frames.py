@@ -19,9 +19,7 @@ from alula.reports.words.numbers import band, fixed, limit_load, number
 
 if TYPE_CHECKING:
     from alula.fea.frame.joint_forces import JointForces
-    from alula.fea.motion.linkage_history import LinkageOverMotion
     from alula.fea.outcomes.result import CheckResult, LoadCaseResult
-    from alula.loads.states.case_motion import CaseMotion
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 _ROUNDING = 1e-9
@@ -108,58 +106,6 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
         "pins": [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()],
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
     }
-
-
-def motion_linkage_record(moved: "CaseMotion", over: "LinkageOverMotion") -> dict[str, Any]:
-    """Return limit-load factor and largest displacement over a motion as plain data.
-
-    Parameters
-    ----------
-    moved : CaseMotion
-    over : LinkageOverMotion
-        Of a load case.
-
-    Returns
-    -------
-    dict
-    """
-
-    def told(pose: int) -> float | None:
-        return float(moved.motion.told(moved.motion.angles[pose])) if pose >= 0 else None
-
-    return {
-        "poses": [told(pose) for pose in over.poses],
-        "limit_load": data(over.limit_load),
-        "limit_load_at": told(over.limit_pose),
-        "displacement": data(over.displacement),
-        "displacement_at": told(over.displacement_pose),
-        "where": data(over.where) or None,
-    }
-
-
-def motion_linkage_line(moved: "CaseMotion", over: "LinkageOverMotion") -> str:
-    """Return limit-load factor and largest displacement over a motion as one sentence.
-
-    Parameters
-    ----------
-    moved : CaseMotion
-    over : LinkageOverMotion
-        Of a load case.
-
-    Returns
-    -------
-    str
-    """
-    found = motion_linkage_record(moved, over)
-
-    def at(value: float | None) -> str:
-        return "" if value is None else f" at {moved.motion.coordinate} = {value:.5g} {moved.motion.unit}"
-
-    told = f"{len(over.poses)} of {len(moved.motion.angles)} poses: least {limit_load(over.limit_load)}"
-    told += at(found["limit_load_at"])
-    if not over.displacement.unknowable:
-        told += f", largest displacement {band(over.displacement)} mm ({found['where']}){at(found['displacement_at'])}"
-    return f"Linkage in {told}."
 
 
 def linkage_line(case: "LoadCaseResult") -> str:

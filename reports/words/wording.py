@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from alula.loads.text.caveat import Caveat, Heading
 from alula.reports.sentences import told
+from alula.reports.sentences.caveats import caveat
 from alula.reports.words.numbers import joined, measured, number, plain, sentence
 
 if TYPE_CHECKING:
     from alula.fea.outcomes.result import CheckResult, SectionComparison
+    from alula.loads.states.case_motion import CaseMotion
 
 HAND_AGREEMENT = 0.03
 """Largest difference between hand calculation and solid model that needs no explanation."""
@@ -98,7 +100,7 @@ def besides(found: Iterable[Caveat]) -> str:
     """
     every = list(found)
     told = {
-        heading: [one.short for one in every if one.heading is heading]
+        heading: [caveat(one, short=True) for one in every if one.heading is heading]
         for heading in (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
     }
     return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)
@@ -268,3 +270,20 @@ def _with_limit(check: CheckOutcome, *, several: bool) -> str:
     under, sign = f" {_under(check, several=several)}".rstrip(), check.quantity.sense.value
     value = measured(check.value, check.quantity.unit)
     return f"{named(check, long=True)}{under}, {value}; limit {sign} {plain(check.limit)}{unit}"
+
+
+def told_speed(moved: "CaseMotion", load_case: str) -> str:
+    """Return the speed of the coordinate in a load case, at the first pose.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case : str
+
+    Returns
+    -------
+    str
+        In rpm, or in mm/s of a travel.
+    """
+    speed = moved.case.load_cases[load_case].speed or float(moved.moved[load_case].speed[0])
+    return f"{number(speed)} mm/s" if moved.motion.slides else f"{plain(float(f'{speed * 30.0 / math.pi:.4g}'))} rpm"

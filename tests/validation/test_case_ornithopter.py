@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR
 from motion_poses import kinetostatics
+from told_motion import record
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Verdict
-from alula.fea.findings.of_motion import motion_findings
 from alula.fea.motion.link_history import link_histories
 from alula.fea.whole.motor import motor_outcomes
 from alula.geometry.base.errors import CaseError
@@ -21,7 +21,6 @@ from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.statics.statics import solve_statics
-from alula.reports.motion.record import record
 from alula.reports.sentences import told as in_words
 
 RPM = math.pi / 30.0
@@ -133,7 +132,7 @@ def test_speeds_and_momentum_told_are_those_of_closed_forms(case, moved) -> None
 
     The source prints 401 deg/s, 6792 deg/s² and 11 N·mm·s; ours are 398.1, 6610 and below 1e-4 (claims motion.*).
     """
-    told = record(motion_findings(moved), "ornithopter")
+    told = record(moved, "ornithopter")
     drive, angles = OrnithopterRules().drive(), moved.motion.angles
     for name, rpm in (("slow", 150.0), ("fast", 3000.0)):
         closed = drive.motion(angles - math.pi / 2.0, rpm * RPM)

@@ -20,8 +20,8 @@ from alula.loads.records.load_case import LoadCase
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.flapping import PIECES, flapping_loads, in_air
 from alula.loads.states.kinetostatics import work
-from alula.reports.figures.motion.air_figures import air_figures
-from alula.reports.tables.loads import air_lines, motion_air_record
+from alula.reports.figures.motion.air_figures import air_figure
+from alula.reports.sections.air import drive_in_air, motion_air_record
 
 RHO, C_N, L, C = 1.2e-12, 2.0, 300.0, 80.0  # tonne/mm^3, -, mm, mm
 AIR = {"density": "1.2 kg/m^3", "normal_coefficient": C_N, "added_mass": False}
@@ -312,8 +312,8 @@ def test_figure_record_and_sentences_tell_the_torque_of_a_fan():
         assert asked["mean_power"] == pytest.approx(coefficient * torque * omega / 1e3, rel=1e-9)
     assert record["wings"][0]["largest_force"] == pytest.approx(C_N * torque * 4.0 / (3.0 * L), rel=1e-9)
     watts = [f"{coefficient * torque * omega / 1e3:.3g}" for coefficient in (C_N, low, high)]
-    assert "0 W without air, {} W ({} to {}) with it".format(*watts) in air_lines(record)[1]
-    figure = air_figures(airs)["air"]
+    assert "0 W without air, {} W with it ({} W to {} W)".format(*watts) in drive_in_air("air", record).text
+    figure = air_figure(airs, "air")
     for drawn, label, share in zip(
         figure.axes, ("drive torque [N·mm]", "drive power [W]"), (torque, torque * omega / 1e3), strict=True
     ):

@@ -1,11 +1,9 @@
 """Play of pins over a motion: against closed forms of the four-bar, and against linkages with other lengths."""
 
-import csv
 import json
 import math
 import tomllib
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +11,7 @@ import pytest
 from edited_cases import edited
 from numpy.typing import NDArray
 from rocker_case import TOML
+from told_motion import record, rows, texts
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.source import SourceKind
@@ -28,9 +27,7 @@ from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import CaseMotion, solve_case_motion
 from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.loose_motion import LooseMotion, loose_motion
-from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.play import drive_line, motion_play_record, play_lines
-from alula.reports.motion.record import record
+from alula.reports.motion.play import drive_with_play, play_record
 
 Real = NDArray[np.float64]
 A, B, C, D = 40.0, 120.0, 80.0, 100.0
@@ -142,12 +139,13 @@ def test_at_a_dead_point_of_the_drive_nothing_has_an_end() -> None:
         assert np.all(np.isinf(most[beside]))
         assert np.all(np.isinf(least[beside]))
     assert 4 <= int(loose(of).passes.sum()) < 40
-    found = motion_play_record(motion_findings(of))
+    found = play_record(motion_findings(of))
     assert found is not None
     assert len(found["through_dead_point"]) == 2
     assert found["dead_point_distance"]["smallest"] == 0.0
-    assert drive_line(of, found, "load") == "with play of pins the drive torque has no end next to a dead point"
-    assert any("through a dead point of rocker at" in line for line in play_lines(of, found))
+    told = drive_with_play(of, found, "load").text
+    assert told == "With play of pins the drive torque has no end next to a dead point."
+    assert any("through a dead point of rocker at" in line for line in texts(of, "play"))
 
 
 def test_the_whole_motion_agrees_with_single_poses() -> None:
@@ -174,20 +172,18 @@ def test_friction_is_solved_with_play() -> None:
             assert here.effort[sound] == pytest.approx(of.torque[name][loose(of).poses][sound], rel=1e-9)
 
 
-def test_record_and_tables_tell_it(tmp_path: Path) -> None:
+def test_record_and_tables_tell_it() -> None:
     of = moved()
-    told = record(motion_findings(of), "")["play"]
+    told = record(of)["play"]
     assert json.loads(json.dumps(told)) == told
     assert told["clearances"] == {"B": 0.4}
     assert told["points"]["C"]["largest"] == pytest.approx(float(loose(of).free_motion("rocker", "C").max()), rel=2e-2)
-    write_tables(motion_findings(of), tmp_path)
-    with (tmp_path / "torque.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    torque = rows(of, "torque.csv")
     least, most = loose(of).effort("load")
-    assert float(rows[5]["least torque with play [N mm]"]) == pytest.approx(least[5])
-    assert float(rows[5]["largest torque with play [N mm]"]) == pytest.approx(most[5])
-    assert "C play to either side [mm]" in (tmp_path / "points.csv").read_text(encoding="utf-8")
-    assert record(motion_findings(moved("0 mm")), "")["play"] is None
+    assert float(torque[5]["least torque with play [N mm]"]) == pytest.approx(least[5])
+    assert float(torque[5]["largest torque with play [N mm]"]) == pytest.approx(most[5])
+    assert "C play to either side [mm]" in rows(of, "points.csv")[0]
+    assert record(moved("0 mm"))["play"] is None
 
 
 def test_a_motor_covers_what_play_makes_of_the_torque() -> None:

@@ -7,43 +7,25 @@ from numpy.typing import NDArray
 from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.reports.figures.motion.motion_figures import DPI, legend, over_angle
 from alula.reports.figures.sheet.chart import Chart
-from alula.reports.sections.air import motion_air_record
 
 Real = NDArray[np.float64]
 _SIZE = (8.0, 6.6)
 
 
-def case_air_pictures(airs: AirRange | None) -> dict[str, Chart]:
-    """Draw the drive with and without air over the motion of a case.
+def air_chart(airs: AirRange, load_case: str) -> Chart:
+    """Draw ``air_figure`` as a picture.
 
     Parameters
     ----------
-    airs : AirRange or None
+    airs : AirRange
+    load_case : str
+        One with air.
 
     Returns
     -------
-    dict of str to Chart
-        By load case; empty without air, and without a motion.
+    Chart
     """
-    return {} if airs is None else {name: Chart(air_figure(airs, name), dpi=DPI) for name in airs.stated.torque}
-
-
-def air_figures(airs: AirRange | None) -> dict[str, Figure]:
-    """Draw drive torque and power of every load case with air, with and without it.
-
-    Parameters
-    ----------
-    airs : AirRange or None
-
-    Returns
-    -------
-    dict of str to Figure
-        Name of the file, without its ending -> figure; empty without air.
-    """
-    if airs is None:
-        return {}
-    names = [name for name in airs.stated.torque if motion_air_record(airs, name) is not None]
-    return {"air" if len(names) == 1 else f"air-{i + 1}": air_figure(airs, name) for i, name in enumerate(names)}
+    return Chart(air_figure(airs, load_case), dpi=DPI)
 
 
 def air_figure(airs: AirRange, load_case: str) -> Figure:

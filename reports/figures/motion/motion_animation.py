@@ -7,10 +7,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import NDArray
 from PIL import Image
 
+from alula.fea.findings.joint_paths import moving_points
 from alula.geometry.linkage.motion import Motion
 from alula.reports.figures.motion.motion_figures import COLOURS, chains, ground, plane
 from alula.reports.figures.sheet.style import quiet_glyphs
-from alula.reports.motion.joint_paths import moving_points
 
 Real = NDArray[np.float64]
 

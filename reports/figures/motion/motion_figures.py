@@ -10,11 +10,11 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
+from alula.fea.findings.joint_paths import loosest, moving_points
 from alula.fea.findings.of_motion import PlayOverMotion
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.motion.joint_paths import loosest, moving_points
 
 Real = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""All figures of a motion; those of speeds, accelerations, energy and shaking are drawn here."""
+"""Figures of speeds, accelerations, energy and shaking over a motion."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,83 +6,36 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from alula.fea.findings.of_motion import MotionFindings
+from alula.fea.findings.rates import QUANTITIES, Series, Values
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.figures.motion.air_figures import air_figures
 from alula.reports.figures.motion.motion_figures import (
     COLOURS,
     DASHES,
-    DPI,
-    angles_figure,
-    forces_figure,
     legend,
     over_angle,
-    paths_figure,
-    torque_figure,
 )  # fmt: skip
-from alula.reports.figures.sheet.chart import Chart
-from alula.reports.motion.rate_rows import told_speed
-from alula.reports.motion.rates import QUANTITIES, Series, Values, series
+from alula.reports.words.wording import told_speed
 
 _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
-def motion_pictures(found: MotionFindings) -> dict[str, Chart]:
-    """Draw all figures of a motion.
+def speeds_figure(rates: Series, of: str, title: str) -> Figure:
+    """Draw two rates of links or points below each other, of vectors their sizes; rows that are equal share a line.
 
     Parameters
     ----------
-    found : MotionFindings
+    rates : Series
+    of : str
+        ``links`` or ``points``.
+    title : str
 
     Returns
     -------
-    dict of str to Chart
-        By the name of the file, without its ending.
+    Figure
     """
-    result = found.moved
-    figures = {
-        "link-angles": angles_figure(result),
-        "paths": paths_figure(result.motion, found.play),
-        "torque": torque_figure(result, found.play),
-    }
-    for i, load_case in enumerate(result.forces):
-        name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
-        figures[name] = forces_figure(result, load_case)
-    figures |= air_figures(found.air) | rate_figures(result)
-    return {name: Chart(figure, dpi=DPI) for name, figure in figures.items()}
-
-
-def rate_figures(result: CaseMotion) -> dict[str, Figure]:
-    """Draw what moves at a speed: links and points of the first load case that has one, and the energy of every one.
-
-    Parameters
-    ----------
-    result : CaseMotion
-
-    Returns
-    -------
-    dict of str to Figure
-        Name of the file, without its ending -> figure; none where nothing has a speed.
-    """
-    found = {name: rates for name in result.torque if (rates := series(result, name)) is not None}
-    if not found:
-        return {}
-    name, rates = next(iter(found.items()))
-    title = f"load case {name}, at {told_speed(result, name)}"
-    figures = {
-        "link-speeds": _speeds(rates, rates.links, ("angular_speed", "angular_acceleration"), "link", title),
-        "point-speeds": _speeds(rates, rates.points, ("speed", "acceleration"), "point", title),
-    }
-    for i, (name, rates) in enumerate(found.items()):
-        figures["energy" if len(found) == 1 else f"energy-{i + 1}"] = energy_figure(result, name, rates)
-    return figures
-
-
-def _speeds(
-    rates: Series, rows: Mapping[str, Mapping[str, Values]], keys: tuple[str, str], what: str, title: str
-) -> Figure:
-    """Draw two rates of links or points below each other, of vectors their sizes; rows that are equal share a line."""
+    rows: Mapping[str, Mapping[str, Values]] = getattr(rates, of)
+    keys = ("angular_speed", "angular_acceleration") if of == "links" else ("speed", "acceleration")
     figure, panels = over_angle(rates.motion, [f"{key.replace('_', ' ')} [{QUANTITIES[key]}]" for key in keys], _SIZE)
     groups: list[list[str]] = []
     for name in rows:
@@ -91,7 +44,7 @@ def _speeds(
     for i, group in enumerate(groups):
         for axes, key in zip(panels, keys, strict=True):
             _line(axes, rates, _size(rows[group[0]][key]), ", ".join(group), i)
-    legend(panels[0], what)
+    legend(panels[0], of[:-1])
     panels[0].set_title(title, parse_math=False, loc="left", fontsize=10)
     return figure
 

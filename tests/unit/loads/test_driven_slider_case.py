@@ -1,6 +1,5 @@
 """A case whose slider is driven by its travel, from the entries to tables and reports."""
 
-import csv
 import json
 import math
 import re
@@ -8,18 +7,15 @@ import re
 import numpy as np
 import pytest
 from slotted_cases import piston_entries
+from told_motion import pictures, printed, record, rows, texts
 
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import LINKAGE
-from alula.fea.findings.of_motion import motion_findings
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.commands.motion import print_motion
-from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.record import record
 
 A = 40.0
 
@@ -42,26 +38,21 @@ def test_the_piston_holds_what_pushes_it_at_every_travel() -> None:
     assert moved.dead_points == ()
 
 
-def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> None:
+def test_its_tables_and_summary_tell_travels_and_forces() -> None:
     data = piston_entries()
     data["load_cases"]["brake"] = {"forces": [{"link": "rod", "at": "C", "force": ["-20 N", "5 N"]}]}
     moved = solve_case_motion(validate(data))
-    found = json.loads(json.dumps(record(motion_findings(moved), "piston")))
+    found = json.loads(json.dumps(record(moved)))
     assert (found["motion"]["unit"], found["motion"]["first"], found["motion"]["last"]) == ("mm", 90.0, 150.0)
     assert found["motion"]["speed_mm_per_s"] == [400.0, 400.0]
     assert found["load_cases"]["brake"]["drive_force"]["first"] == pytest.approx(20.0)
     assert "drive_torque" not in found["load_cases"]["brake"]
-    print_motion(motion_findings(moved), "piston", json=False)
-    told = capsys.readouterr().out
-    assert "S from 90 to 150 mm: 13 poses, 0.15 s" in told
-    assert "drive force on piston at S: 20 -> 20 N" in told
-    write_tables(motion_findings(moved), tmp_path)
-    with (tmp_path / "torque.csv").open() as stream:
-        rows = list(csv.DictReader(stream))
-    assert float(rows[0]["S travel [mm]"]) == 90.0
-    assert float(rows[-1]["force on piston [N]"]) == pytest.approx(20.0)
-    with (tmp_path / "links.csv").open() as stream:
-        links = list(csv.DictReader(stream))
+    assert "From S = 90 to 150 mm, driven at piston, in 13 poses and 0.1500 s" in texts(moved, "motion")[0]
+    [drive] = [line.split() for line in printed(moved).splitlines() if line.startswith("drive force on piston")]
+    assert drive[4:7] == ["N", "20.00", "20.00"]
+    torque, links = rows(moved, "torque.csv"), rows(moved, "links.csv")
+    assert float(torque[0]["S travel [mm]"]) == 90.0
+    assert float(torque[-1]["force on piston [N]"]) == pytest.approx(20.0)
     first, last = (float(links[i]["crank angle [deg]"]) for i in (0, -1))
     assert first == pytest.approx(math.degrees(moved.motion.angle("crank")[0]))
     assert last < first
@@ -69,9 +60,7 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
 
 
 def test_figures_of_it_are_drawn() -> None:
-    from alula.reports.figures.motion.rate_figures import motion_pictures
-
-    drawn = motion_pictures(motion_findings(solve_case_motion(validate(piston_entries()))))
+    drawn = pictures(solve_case_motion(validate(piston_entries())))
     assert {"link-angles", "paths", "torque"} <= drawn.keys()
     assert all(picture.png().startswith(b"\x89PNG") for picture in drawn.values())
 

@@ -10,10 +10,9 @@ from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, worst_of_each
 from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.figures.sheet.canvas import Canvas
-from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
 from alula.reports.words.wording import checks_of
 
-NAMES = (linkage_name("weight"), diagram_name("AE"), stress_name("GF"))
+NAMES = ("linkage-weight", "diagram-AE", "stress-GF")
 PICTURES = {name: Canvas(90.0 - 10.0 * k, 60.0) for k, name in enumerate(NAMES)}
 
 

@@ -10,13 +10,12 @@ import numpy as np
 import programs
 import pytest
 from PIL import Image
+from told_motion import record, rows
 
 from alula.fea.findings.of_motion import motion_findings
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.commands.motion import print_motion, write_motion
-from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.record import record
 
 CASE = """
 schema_version = 1
@@ -76,7 +75,7 @@ def folder(tmp_path_factory):
     done = run("crank.toml", "-o", "out", cwd=home)
     assert done.returncode == 0, done.stderr
     assert "A slider-crank" in done.stdout
-    assert "energy imbalance" in done.stdout
+    assert "The balance of energy lacks" in done.stdout
     return home / "out" / "motion"
 
 
@@ -104,8 +103,8 @@ def test_power_is_torque_times_speed_in_watts(folder):
     torque = np.array(columns(folder / "torque.csv")["torque on crank [N mm]"], dtype=float)
     written = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     assert written["units"]["power"] == "W"
-    for name, rows in (("push", torque[:73]), ("idle", torque[73:])):
-        power = rows * 20.0 * math.pi / 1000.0
+    for name, own in (("push", torque[:73]), ("idle", torque[73:])):
+        power = own * 20.0 * math.pi / 1000.0
         told = written["load_cases"][name]["drive_power"]
         assert told["largest"] == pytest.approx(power.max(), rel=1e-9)
         assert told["smallest"] == pytest.approx(power.min(), rel=1e-9)
@@ -201,8 +200,9 @@ def test_a_dead_point_of_the_drive_is_told(wing, capsys):
     print_motion(motion_findings(wing), "owl-wing-static", json=False)
     out = capsys.readouterr().out
     assert "Dead point of the driven link AE at GF = 213.5068 deg" in out
-    assert "drive torque on AE at A: -130.6 -> -19.9 N·mm" in out
-    found = record(motion_findings(wing), "owl-wing-static")
+    [drive] = [line.split() for line in out.splitlines() if line.startswith("drive torque on AE")]
+    assert drive[4:] == ["N·mm", "−130.6", "−19.90"], "extremes mean nothing"
+    found = record(wing)
     assert found["load_cases"]["weight"]["drive_torque"]["largest"] is None
     assert found["drive"]["dead_points"] == pytest.approx([213.50682849])
     json.dumps(found, allow_nan=False)
@@ -213,16 +213,15 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
     overrides = ["motion.inertia=false", 'motion.speed="0 rpm"', 'load_cases.idle.speed="600 rpm"', "motion.poses=25"]
     result = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), overrides))
     print_motion(motion_findings(result), "crank", json=False)
-    standing, moving = capsys.readouterr().out.split("Load case idle")
-    assert "Load case push (without inertia)" in standing
+    standing, moving = capsys.readouterr().out.split("Load case idle")[:2]
+    standing = standing.split("Load case push")[1]
+    assert "without inertia" in standing
     assert "drive power" not in standing
     assert "with inertia at 600 rpm" in moving
-    assert "drive power at 600 rpm:" in moving
+    assert "drive power" in moving
     again = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), ["motion.poses=25"]))
     np.testing.assert_allclose(result.torque["idle"], again.torque["idle"], atol=1e-9)
-    write_tables(motion_findings(result), folder.parent)
-    torque = columns(folder.parent / "torque.csv")
-    power = np.array(torque["drive power [N mm/s]"], dtype=float)
+    power = np.array([row["drive power [N mm/s]"] for row in rows(result, "torque.csv")], dtype=float)
     assert np.all(power[:25] == 0.0)
     assert np.max(power[25:]) > 0.0
 

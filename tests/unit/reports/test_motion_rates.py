@@ -3,25 +3,21 @@
 A block of 50 g is all of its mass: at constant ω, x = r cos φ + √(l² - (r sin φ - e)²) and its derivatives tell all.
 """
 
-import csv
 import math
 import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from told_motion import pictures, printed, record, rows, texts
 
-from alula.fea.findings.of_motion import motion_findings
+from alula.fea.findings.rates import series
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.figures.motion.motion_figures import angles_figure, forces_figure, torque_figure
-from alula.reports.figures.motion.rate_figures import energy_figure, rate_figures
-from alula.reports.motion.csv_tables import write_tables
-from alula.reports.motion.lines import motion_lines
-from alula.reports.motion.rate_rows import ends
-from alula.reports.motion.rates import series, vector_extremes
-from alula.reports.motion.record import record
+from alula.reports.figures.motion.rate_figures import energy_figure
+from alula.reports.motion.extremes import between, vector_extremes
 from alula.reports.notebook.motion_report import MotionReport
 
 CASE = """
@@ -92,7 +88,7 @@ def moved():
 
 @pytest.fixture(scope="module")
 def told(moved):
-    return record(motion_findings(moved), "slider-crank")["load_cases"]
+    return record(moved)["load_cases"]
 
 
 def block(omega):
@@ -145,25 +141,21 @@ def test_without_speed_or_mass_nothing_is_told(told):
         .replace('speed = "60 rpm"\n', "")
         .replace('"600 rpm"', '"0 rpm"')
     )
-    still = record(motion_findings(solve_case_motion(validate(tomllib.loads(unweighed)))), "")
+    still = record(solve_case_motion(validate(tomllib.loads(unweighed))))
     assert still["motion"]["points"]["B"]["speed"] is still["motion"]["links"]["rod"]["angular_speed"] is None
     fast = 'poses = 73\nspeed = "60 rpm"\ninertia = false'
     moving = solve_case_motion(validate(tomllib.loads(unweighed.replace("poses = 73", fast))))
-    found = record(motion_findings(moving), "")
+    found = record(moving)
     [rates] = {row["rates"]["whole"]["momentum"] for row in found["load_cases"].values()}
     assert rates is None
     assert found["motion"]["points"]["B"]["speed"]["largest"] == pytest.approx(np.abs(block(2.0 * math.pi)[0]).max())
-    assert "left out: no load case asks for their weight or inertia" in "\n".join(
-        motion_lines(motion_findings(moving), found)
-    )
+    assert "left out: no load case asks for their weight or inertia" in "".join(texts(moving, "rates"))
 
 
-def test_tables_hold_every_pose_at_the_speed_of_its_load_case(moved, tmp_path):
-    write_tables(motion_findings(moved), tmp_path)
-    with (tmp_path / "rates.csv").open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+def test_tables_hold_every_pose_at_the_speed_of_its_load_case(moved):
+    every = rows(moved, "rates.csv")
     for name, rpm in (("slow", 60.0), ("fast", 600.0)):
-        mine = [row for row in rows if row["load case"] == name]
+        mine = [row for row in every if row["load case"] == name]
         speed, rate = block(rpm * math.pi / 30.0)
 
         def column(head, mine=mine):
@@ -174,28 +166,29 @@ def test_tables_hold_every_pose_at_the_speed_of_its_load_case(moved, tmp_path):
         np.testing.assert_allclose(column("linkage kinetic energy [N mm]"), 0.5 * MASS * speed**2, atol=1e-8)
         np.testing.assert_allclose(column("linkage shaking force x [N]"), -MASS * rate, atol=1e-8)
         assert column("time [s]")[-1] == pytest.approx(60.0 / rpm)
-    assert {row["linkage potential energy [N mm]"] for row in rows if row["load case"] == "fast"} == {""}
-    assert {row["load case"] for row in rows} == {"slow", "empty", "again", "fast"}
-    with (tmp_path / "torque.csv").open(encoding="utf-8", newline="") as stream:
-        torque = list(csv.DictReader(stream))
+    assert {row["linkage potential energy [N mm]"] for row in every if row["load case"] == "fast"} == {""}
+    assert {row["load case"] for row in every} == {"slow", "empty", "again", "fast"}
+    torque = rows(moved, "torque.csv")
     assert {row["time [s]"] for row in torque if row["load case"] == "still"} == {""}
     assert float([row["time [s]"] for row in torque if row["load case"] == "fast"][-1]) == pytest.approx(0.1)
 
 
 def test_lines_say_once_what_load_cases_share(moved):
-    text = "\n".join(motion_lines(motion_findings(moved), record(motion_findings(moved), "slider-crank")))
-    assert "as in load case slow" in text.split("Load case again")[1].split("Load case")[0]
+    text = printed(moved).split("Speeds, momentum and energy")[1]
+    again = text.split("Load case again")[1].split("Load case")[0]
+    assert "as in load case slow" in again
+    assert "angular speed" not in again
     slow = text.split("Load case slow")[1].split("Load case")[0]
-    head, unit, *_ = [line for line in slow.split("\n") if "angular speed" in line or "[rad/s]" in line]
-    assert head.index("angular speed") + len("angular speed") == unit.index("[rad/s]") + len("[rad/s]")
-    assert "linkage, shaking moment about O:" in slow
-    assert max(map(len, slow.split("\n"))) < 160
+    assert "angular speed [rad/s]" in slow
+    assert "shaking moment about O" in slow
+    assert max(map(len, slow.split("\n"))) < 180
 
 
 def test_figures_draw_what_tables_tell_in_the_units_of_their_axes(moved):
     """Two load cases at two speeds: power by the torque of virtual work in W, energy in N mm, forces in N."""
-    figures = rate_figures(moved)
-    assert list(figures) == ["link-speeds", "point-speeds", "energy-1", "energy-2", "energy-3", "energy-4"]
+    drawn_all = pictures(moved)
+    figures = {name: drawn_all[name].figure for name in drawn_all if name.startswith(("link-sp", "point-sp", "energy"))}
+    assert sorted(figures) == sorted(["link-speeds", "point-speeds", "energy-1", "energy-2", "energy-3", "energy-4"])
     for name, figure, omega in (("slow", "energy-1", 2.0 * math.pi), ("fast", "energy-4", 20.0 * math.pi)):
         speed, rate = block(omega)
         drawn = {axes.get_ylabel(): axes.lines for axes in figures[figure].axes}
@@ -246,11 +239,11 @@ def test_figures_of_a_motion_draw_directions_torques_and_sizes_of_forces(moved):
 
 def test_numbers_of_tables():
     extremes = {"smallest": -4.7, "largest": 4.7, "unbounded": False}
-    assert ends(extremes) == "±4.700"
-    assert ends(extremes | {"largest": 4.8}) == "−4.700 to 4.800"
-    assert ends(extremes | {"smallest": 4.7}) == "4.700"
-    assert ends(extremes | {"smallest": -1e-15}) == "0 to 4.700"
-    assert ends(None) == ""
+    assert between(extremes) == "±4.700"
+    assert between(extremes | {"largest": 4.8}) == "−4.700 to 4.800"
+    assert between(extremes | {"smallest": 4.7}) == "4.700"
+    assert between(extremes | {"smallest": -1e-15}) == "0 to 4.700"
+    assert between(None) == "–"
 
 
 def test_a_vector_is_told_by_its_size_and_components(moved):

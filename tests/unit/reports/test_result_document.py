@@ -6,13 +6,13 @@ import pytest
 from bars_in_layers import parallel_bars
 from result_paths import compare, documented
 from slotted_cases import piston_entries
+from told_motion import record as motion_record
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
 from alula.reports.commands.telling import json_of
-from alula.reports.motion.record import record as motion_record
 from alula.reports.tools.synthesis import synthesis_section
 
 

@@ -26,6 +26,7 @@ from alula.reports.figures.study.maps import verdict_map
 from alula.reports.figures.study.points import OUTCOMES, Parameter, Response
 from alula.reports.figures.study.spread import histogram, tornado
 from alula.reports.figures.study.style import LOOKS
+from alula.reports.notebook.study_report import StudyReport
 from alula.reports.renderers.console import print_sections
 from alula.reports.sections.section import Command, numbers_of, parts_of, tables_of
 from alula.reports.study.choice import picture_sections
@@ -163,7 +164,7 @@ def test_a_study_is_read_into_columns(tmp_path):
     assert study.margin.value == pytest.approx([1.5, 0.5, math.nan], nan_ok=True)
     assert study.margin.low == pytest.approx([1.35, 0.45, math.nan], nan_ok=True)
     assert study.mass == pytest.approx([10.0, 12.0, math.nan], nan_ok=True)
-    assert (study.safety_factor.limit, list(study.outcome)) == (2.0, ["pass", "fail", "refused"])
+    assert list(study.outcome) == ["pass", "fail", "refused"]
     assert (study.extremes["best"].position, study.extremes["worst"].position) == (0, 1)
     assert study.sentences == {("refused", refused.sentence): [2]}
 
@@ -415,6 +416,12 @@ def test_console_page_notebook_and_store_tell_the_same_of_a_study(tmp_path):
     assert "--set 'a=3 mm' --set 'b=2 mm' --set 'c=1 mm'" in command
     asked = points_table(rows, ["mass of the linkage [g]"]).records
     assert [row["mass of the linkage [g]"] for row in asked] == [row.mass for row in rows]
+    report = StudyReport(folder, {})
+    assert (len(report.table()), report.table("limits").rows[0]["points"]) == (19, 18.0)
+    assert [row["margin"] for row in report.table()][-1] is None
+    with pytest.warns(DeprecationWarning, match="nearest to its limit"):
+        assert report.table()[0]["nearest"] == "safety factor of AE"
+    assert {row["mass [g]"] for row in points_table(rows[-1:]).records} == {None}
 
 
 def test_a_study_without_a_result_yet_is_told_so(tmp_path):

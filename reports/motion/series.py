@@ -1,19 +1,18 @@
-"""Tables of a motion as CSV files, with every pose."""
+"""Every pose of a motion, for CSV files."""
 
-import csv
-import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.findings.joint_paths import moving_points, owners
 from alula.fea.findings.of_motion import MotionFindings
+from alula.fea.findings.rates import QUANTITIES, Series, Values
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.motion.joint_paths import moving_points, owners
 from alula.reports.motion.play import drive_play, point_play
-from alula.reports.motion.rates import QUANTITIES, Series, Values, series
+from alula.reports.sections.section import Section
+from alula.reports.sections.section import Series as File
 from alula.reports.sections.springs import motion_springs
 
 Real = NDArray[np.float64]
@@ -21,32 +20,48 @@ ANGULAR = ("angular_speed", "angular_acceleration")
 """Quantities of a link whose columns have shorter names in ``links.csv``."""
 
 
-def write_tables(found: MotionFindings, folder: Path) -> None:
-    """Write ``links.csv``, ``points.csv``, ``torque.csv`` and ``joint-forces.csv``, with springs ``springs.csv``.
+def motion_series(found: MotionFindings, rates: Mapping[str, Series], own: Series | None) -> Section:
+    """Return every pose, for ``links.csv``, ``points.csv``, ``torque.csv`` and more.
 
-    Torques and joint forces have one load case below the other. So has ``rates.csv``, where load cases have a speed:
-    speeds, accelerations, momentum and energy at the speed of each.
+    Torques and joint forces have one load case below the other. So have rates, where load cases have a speed: speeds,
+    accelerations, momentum and energy at the speed of each.
 
     Parameters
     ----------
     found : MotionFindings
-    folder : Path
-        An existing folder.
+    rates : mapping of str to Series
+        Load case -> at its speed; those with a speed.
+    own : Series or None
+        Rates at the motion's own speed; None without one.
+
+    Returns
+    -------
+    Section
+        Of files alone.
     """
     result = found.moved
     motion = result.motion
-    _write(folder / "links.csv", {**_base(motion), **_link_columns(result)})
-    _write(folder / "points.csv", {**_base(motion), **_point_columns(found)})
-    if springs := motion_springs(result):
-        _write(folder / "springs.csv", {**_base(motion), **dict(springs)})
-    below: dict[str, dict[str, Mapping[str, Real]]] = {
-        "torque.csv": {n: _torque_columns(found, n) for n in result.torque},
-        "rates.csv": {n: _rate_columns(rates) for n in result.torque if (rates := series(result, n)) is not None},
-        "joint-forces.csv": {n: _force_columns(result, n) for n in result.forces},
+    whole = {
+        "links": _link_columns(result, own),
+        "points": _point_columns(found),
+        "springs": dict(motion_springs(result)),
     }
-    for file, cases in below.items():
-        if cases:
-            _write_cases(folder / file, {n: {**_base(result.moved[n]), **columns} for n, columns in cases.items()})
+    below: dict[str, dict[str, Mapping[str, Real]]] = {
+        "torque": {name: _torque_columns(found, name) for name in result.torque},
+        "rates": {name: _rate_columns(one) for name, one in rates.items()},
+        "joint-forces": {name: _force_columns(result, name) for name in result.forces},
+    }
+    files = [
+        File(file=f"{file}.csv", columns={**_base(motion), **columns}, digits=12)
+        for file, columns in whole.items()
+        if columns
+    ]
+    files += [
+        File.below(f"{file}.csv", {name: {**_base(result.moved[name]), **columns} for name, columns in cases.items()})
+        for file, cases in below.items()
+        if cases
+    ]
+    return Section(key="files", series=tuple(files))
 
 
 def _base(motion: Motion) -> dict[str, Real]:
@@ -56,8 +71,8 @@ def _base(motion: Motion) -> dict[str, Real]:
     return columns if motion.times is None else columns | {"time [s]": motion.times}
 
 
-def _link_columns(result: CaseMotion) -> dict[str, Real]:
-    motion, own, columns = result.motion, series(result), dict[str, Real]()
+def _link_columns(result: CaseMotion, own: Series | None) -> dict[str, Real]:
+    motion, columns = result.motion, dict[str, Real]()
     for i, link in enumerate(motion.linkage.moving):
         if motion.slides or link != motion.coordinate:
             columns[f"{link} angle [deg]"] = np.degrees(motion.angle(link))
@@ -139,27 +154,3 @@ def _force_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
         if name in solved.moments:
             columns[f"{name} M of {first} on {second} [N mm]"] = solved.moments[name]
     return columns
-
-
-def _write(path: Path, columns: Mapping[str, Real]) -> None:
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(_rows(columns))
-
-
-def _write_cases(path: Path, cases: Mapping[str, Mapping[str, Real]]) -> None:
-    """Write tables below each other; a column that one lacks is empty there."""
-    names = dict.fromkeys(name for columns in cases.values() for name in columns)
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["load case", *names])
-        for load_case, columns in cases.items():
-            none = np.full(len(next(iter(columns.values()))), np.nan)
-            writer.writerows([load_case, *row] for row in _rows({name: columns.get(name, none) for name in names}))
-
-
-def _rows(columns: Mapping[str, Real]) -> Sequence[list[str]]:
-    """Rows of a table with twelve digits; an unbounded value is left empty."""
-    table = np.column_stack(list(columns.values()))
-    return [[f"{v:.12g}" if math.isfinite(v) else "" for v in row] for row in table.tolist()]

@@ -1,0 +1,410 @@
+"""The least safety factor of each link over a motion, fatigue, and the checks over all poses."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from alula.fea.common.verdict import by_nearness
+from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
+from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from alula.fea.outcomes.unchecked import caveats
+from alula.geometry.materials.material import Material
+from alula.reports.check.links import solver_record
+from alula.reports.motion.friction import friction_over_motion, friction_texts
+from alula.reports.motion.linkage import linkage_over_motion, linkage_text
+from alula.reports.motion.whole_motion import model_section
+from alula.reports.renderers.page import Page, page_footer
+from alula.reports.renderers.record import as_brief_record
+from alula.reports.sections.checks import checks_section
+from alula.reports.sections.data import data, entries
+from alula.reports.sections.section import (
+    Column,
+    Group,
+    Items,
+    Number,
+    Part,
+    Picture,
+    Section,
+    Series,
+    Table,
+    Text,
+    say,
+    words,
+)
+from alula.reports.sentences import told
+from alula.reports.sentences.caveats import caveat, not_checked
+from alula.reports.turnable.moving import ENVELOPE_CAPTION
+from alula.reports.words.numbers import fixed, sentence
+from alula.reports.words.wording import besides, decision
+
+UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
+
+
+def envelope_sections(result: EnvelopeResult) -> tuple[Section, ...]:
+    """Return all that is told of an envelope.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    tuple of Section
+    """
+    several = len(result.moved.forces) > 1
+    return (
+        _motion(result),
+        model_section(result.case, ENVELOPE_CAPTION),
+        checks_section(result.checks, result.verdict, "Over the motion", several=several),
+        _links(result),
+        _fatigue(result),
+        _linkage(result),
+        _limits(result),
+    )
+
+
+def envelope_headline(result: EnvelopeResult) -> str:
+    """Return the verdict of an envelope, what decides it and what it stands on besides.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    str
+    """
+    decided = decision(result.verdict, by_nearness(result.checks), several=len(result.moved.forces) > 1)
+    return " ".join(filter(None, (decided, besides(caveats(result.case, over_motion=True)))))
+
+
+def envelope_record(result: EnvelopeResult, sections: tuple[Section, ...]) -> dict[str, Any]:
+    """Return an envelope as data that JSON can hold.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    sections : tuple of Section
+        As ``envelope_sections``.
+
+    Returns
+    -------
+    dict
+        As ``docs/result.md`` describes it: angles in degrees.
+    """
+    head = {"case": result.name, "title": result.case.title, "verdict": result.verdict.value}
+    return as_brief_record(sections, **head, units=UNITS, timings_s=dict(result.timings))
+
+
+def envelope_page(result: EnvelopeResult, sections: tuple[Section, ...]) -> Page:
+    """Return the page of an envelope.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    sections : tuple of Section
+        As ``envelope_sections``.
+
+    Returns
+    -------
+    Page
+    """
+    return Page(
+        title=f"{result.verdict.value.capitalize()} over the motion: {result.case.title}",
+        kind="Stress of a planar linkage over its motion",
+        heading=result.case.title,
+        verdict=result.verdict.value,
+        lead=(envelope_headline(result),),
+        sections=sections,
+        footer=page_footer(result.name, "envelope.csv"),
+    )
+
+
+def _motion(result: EnvelopeResult) -> Section:
+    """Return which poses were evaluated, and the warnings."""
+    motion, ends = result.moved.motion, np.degrees(result.angles[[0, -1]])
+    text = say(
+        f"From {motion.coordinate} = {{first}}° to {{last}}°, driven at {result.drive.link}; "
+        f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated",
+        first=Number(float(ends[0]), stated=True),
+        last=Number(float(ends[1]), stated=True),
+    )
+    warnings = (
+        (Items(tuple(sentence(told(warning)) for warning in result.warnings), "warnings"),) if result.warnings else ()
+    )
+    idle = (Text(f"Links without load: {', '.join(result.idle)}."),) if result.idle else ()
+    return Section(
+        key="motion",
+        title="The motion",
+        short="Motion",
+        parts=(text, *idle, *warnings),
+        data={
+            "motion": {
+                "coordinate": motion.coordinate,
+                "first": float(ends[0]),
+                "last": float(ends[1]),
+                "poses": len(result.angles),
+                "evaluated": int(result.evaluated.sum()),
+                "returns_to_start": motion.returns,
+                "drive": {"link": result.drive.link, "joint": result.drive.joint},
+                "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
+            },
+            "idle_links": list(result.idle),
+            "warnings": [told(warning) for warning in result.warnings],
+        },
+    )
+
+
+def _links(result: EnvelopeResult) -> Section:
+    """Return the worst pose of every link under every load case, the least safety factor first."""
+
+    def draw() -> Any:
+        from alula.reports.figures.motion.envelope_figures import envelope_figure
+
+        return envelope_figure(result)
+
+    every = [(name, link, found) for name, link in result.links.items() for found in link.load_cases.values()]
+    table = Table(
+        key="links",
+        columns=(
+            words("link"),
+            words("load case"),
+            Column("safety factor (band)"),
+            words("stress"),
+            Column("stress", "MPa"),
+            Column(f"{result.moved.motion.coordinate} at", "deg", hidden=_drives(result)),
+            Column(f"at {result.drive.link}", "deg"),
+            words("at x, y, z [mm]"),
+            Column("repetitions to failure", hidden=True),
+        ),
+        rows=tuple(
+            (
+                name,
+                found.name,
+                Number(found.safety_factor),
+                link.measure,
+                Number(found.stress.value, "", 3),
+                Number(math.degrees(float(result.angles[found.pose])), decimals=1),
+                Number(_drive_angle(result, found.pose), decimals=1),
+                ", ".join(fixed(float(x), 1) for x in found.location),
+                Number(None if found.fatigue is None or found.fatigue.repetitions is None
+                       else found.fatigue.repetitions.value),
+            )
+            for name, link, found in sorted(every, key=lambda row: row[2].severity)
+        ),
+        caption="Least safety factor over the motion",
+    )  # fmt: skip
+    curves = "Safety factor of each link over the motion, with its error band"
+    plots = (
+        Picture(
+            name=f"stress-{name}",
+            alt=f"Stress of link {name} in its worst pose",
+            caption=f"Link {name} in its worst pose, under its worst load case.",
+        )
+        for name in result.links
+    )
+    return Section(
+        key="links",
+        title="The worst pose of each link",
+        short="Links",
+        parts=(table, Picture(name="envelope", alt=curves, caption=f"{curves}.", draw=draw), *plots) if every else (),
+        data={"links": {name: _link_record(result, link) for name, link in result.links.items()}},
+        series=(_series(result),),
+    )
+
+
+def _drives(result: EnvelopeResult) -> bool:
+    """Whether the motion's coordinate is the driven link, so that both have one direction."""
+    return result.moved.motion.coordinate == result.drive.link
+
+
+def _drive_angle(result: EnvelopeResult, pose: int) -> float:
+    """Direction of the driven link at a pose [degrees]."""
+    return math.degrees(float(result.drive_angles[pose]))
+
+
+def _series(result: EnvelopeResult) -> Series:
+    """Return the curves over the motion, one load case below the other; omitted poses have nothing."""
+    angles = {
+        f"{result.moved.motion.coordinate} angle [deg]": np.degrees(result.angles),
+        f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
+    }
+    columns: dict[str, dict[str, ArrayLike]] = {name: dict(angles) for name in result.case.load_cases}
+    for name, of in columns.items():
+        for link in result.links.values():
+            of |= _curves(link, name, len(result.angles))
+    return Series.below("envelope.csv", columns, digits=9)
+
+
+def _curves(link: LinkEnvelope, load_case: str, count: int) -> dict[str, ArrayLike]:
+    found, none = link.load_cases.get(load_case), np.full(count, np.nan)
+    value, low, high = (none, none, none) if found is None else (found.value, found.low, found.high)
+    with np.errstate(divide="ignore"):
+        factors = [link.strength / np.maximum(stress, 0.0) for stress in (value, high, low)]
+    columns: dict[str, ArrayLike] = {}
+    for what, unit, ends in ((f"{link.measure} stress", "MPa", (value, low, high)), ("safety factor", "1", factors)):
+        columns |= {
+            f"{link.link} {what}{end} [{unit}]": found for end, found in zip(("", " low", " high"), ends, strict=True)
+        }
+    history = none if found is None or found.fatigue is None else found.fatigue.history
+    return columns | {f"{link.link} signed stress at the critical point [MPa]": history}
+
+
+def _fatigue(result: EnvelopeResult) -> Section:
+    """Return the cycles of stress at the critical point of each link, and how many repetitions it bears."""
+    rows = [
+        (link, found.name, found.fatigue)
+        for link in result.links.values()
+        for found in link.load_cases.values()
+        if found.fatigue is not None
+    ]
+    parts: list[Part] = []
+    if rows:
+        parts.append(
+            Table(
+                key="fatigue",
+                columns=(
+                    words("link"),
+                    words("load case"),
+                    Column("smallest", "MPa"),
+                    Column("largest", "MPa"),
+                    Column("range", "MPa"),
+                    Column("repetitions to failure (band)"),
+                ),
+                rows=tuple(
+                    (
+                        link.link,
+                        name,
+                        *(Number(x, "", 3) for x in (found.life.smallest, found.life.largest, found.life.stress_range)),
+                        "unknown, no exponent" if found.repetitions is None else Number(found.repetitions, "", 2),
+                    )
+                    for link, name, found in rows
+                ),
+                caption="Signed stress at the critical point over one motion",
+            )
+        )
+    materials = {result.case.part_of(link.link).material: result.case.material_of(link.link) for link, _, _ in rows}
+    parts += [
+        Text(f"Fatigue of {one.title}: cycles of {_measure_of(one)}; {_scatter_of(one)}.") for one in materials.values()
+    ]
+    missing: dict[str, list[str]] = {}
+    for name, link in result.links.items():
+        if link.no_fatigue:
+            missing.setdefault(told(link.no_fatigue), []).append(name)
+    parts += [say(f"No fatigue of {', '.join(names)}: {{why}}", why=why) for why, names in missing.items()]
+    return Section(key="fatigue", title="Fatigue", short="Fatigue", parts=tuple(parts))
+
+
+def _linkage(result: EnvelopeResult) -> Section:
+    """Return the linkage as a whole and friction, for every load case."""
+    several, friction = len(result.linkage) > 1, result.work.items()
+
+    def texts(name: str) -> Iterator[Text]:
+        if name in result.linkage:
+            yield linkage_text(result.moved, result.linkage[name])
+        if name in result.work:
+            yield from friction_texts(result.moved, result.work[name], name)
+
+    every = {name: tuple(texts(name)) for name in dict.fromkeys((*result.linkage, *result.work))}
+    parts = [part for name, own in every.items() for part in ((Group(f"Load case {name}", own),) if several else own)]
+    record = {name: friction_over_motion(result.moved, work, name) for name, work in friction}
+    return Section(
+        key="linkage",
+        title="The linkage as a whole",
+        short="Linkage",
+        parts=tuple(parts),
+        data={
+            "linkage": {name: linkage_over_motion(result.moved, over) for name, over in result.linkage.items()},
+            **({"friction": record} if record else {}),
+        },
+    )
+
+
+def _limits(result: EnvelopeResult) -> Section:
+    """Return what the verdict stands on besides, which the headline tells too."""
+    found = caveats(result.case, over_motion=True)
+    headings: Mapping[str, list[str]] = {one.heading: [] for one in found}
+    for one in found:
+        headings[one.heading].append(caveat(one))
+    items = tuple((heading.capitalize(), f"{'; '.join(texts)}.") for heading, texts in headings.items())
+    return Section(
+        key="limits",
+        title="What the verdict does not cover",
+        short="Not covered",
+        parts=(Items(items, "columns2 note"),) if items else (),
+        data={
+            "not_checked": not_checked(caveats(result.case, over_motion=True)),
+            "caveats": [entries(one, "heading topic what why") for one in found],
+        },
+    )
+
+
+def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
+    material = result.case.material_of(link.link)
+    return entries(link, "measure strength elements unknowns imbalance notes") | {
+        "worst_load_case": link.worst.name,
+        "load_cases": {name: _load_case_record(result, found, material) for name, found in link.load_cases.items()},
+        "no_fatigue": data(link.no_fatigue) or None,
+        "unit_loads": link.units,
+        "solutions": link.modes,
+        **solver_record(link),
+        "support_reaction": link.reaction,
+    }
+
+
+def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
+    return {
+        **entries(found, "stress safety_factor"),
+        "at": {
+            "pose": found.pose,
+            "coordinate": math.degrees(float(result.angles[found.pose])),
+            "drive": _drive_angle(result, found.pose),
+            "location": found.location.tolist(),
+            "pin_pressure_span": found.governing.span,
+            "transfer": found.governing.transfer,
+        },
+        "fatigue": None if found.fatigue is None else _fatigue_record(found.fatigue, material),
+    }
+
+
+def _fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
+    assert material.fatigue is not None
+    life = fatigue.life
+    return {
+        "measure": _measure_of(material),
+        "rule": material.fatigue.rule,
+        "location": fatigue.location.tolist(),
+        "smallest": life.smallest,
+        "largest": life.largest,
+        "range": life.stress_range,
+        "cycles": [{"range": size, "mean": mean, "count": count} for size, mean, count in life.cycles],
+        "equivalent_peak_stress": data(fatigue.stress),
+        "wanted_repetitions": fatigue.wanted,
+        "strength_at_wanted": fatigue.strength,
+        "repetitions": data(fatigue.repetitions),
+        "scatter": _scatter_of(material),
+        "source": material.fatigue.source,
+    }
+
+
+def _measure_of(material: Material) -> str:
+    """Return the stress whose cycles count for fatigue."""
+    if material.brittle:
+        return "the principal stress of largest magnitude"
+    return "the von Mises stress with the sign of the principal stress of largest magnitude"
+
+
+def _scatter_of(material: Material) -> str:
+    """Return the uncertainty of a fatigue life, in one sentence."""
+    fatigue = material.fatigue
+    assert fatigue is not None
+    asked = f"the required factors of {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life must cover it"
+    if fatigue.exponent is None:
+        return f"the material card states one point of the S-N curve and no scatter; {asked}"
+    return (
+        f"the material card states no scatter; 10 % more stress shortens the life by a factor of "
+        f"{1.1**fatigue.exponent:.2g}; {asked}"
+    )

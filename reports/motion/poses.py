@@ -1,0 +1,167 @@
+"""The poses of a motion: its range, directions of the links, paths of the points, springs, dead points."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from alula.fea.findings.joint_paths import moving_points, path_length
+from alula.fea.findings.of_motion import MotionFindings
+from alula.fea.findings.rates import Series
+from alula.loads.states.case_motion import CaseMotion
+from alula.reports.motion.charts import chart
+from alula.reports.motion.extremes import every_extreme, finite_or_none
+from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.springs import motion_springs
+
+
+def motion_section(found: MotionFindings, own: Series | None) -> Section:
+    """Return range, directions of the links, paths, springs and dead points.
+
+    Parameters
+    ----------
+    found : MotionFindings
+    own : Series or None
+        Rates at the motion's own speed; None without one.
+
+    Returns
+    -------
+    Section
+    """
+    return Section(
+        key="motion",
+        title="The motion",
+        short="Motion",
+        parts=tuple(_parts(found)),
+        data={"motion": _motion(found.moved, own), "drive": _drive(found)},
+    )
+
+
+def range_text(moved: CaseMotion) -> Text:
+    """Return over which poses the linkage moves.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+
+    Returns
+    -------
+    Text
+    """
+    motion = moved.motion
+    first, last = (Number(float(motion.told(motion.angles[i])), stated=True) for i in (0, -1))
+    told = f"From {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
+    told += f"{len(motion.angles)} poses"
+    facts: dict[str, object] = {"first": first, "last": last}
+    if motion.times is not None:
+        told += " and {duration}"
+        facts["duration"] = Number(float(motion.times[-1]), "s")
+    told += "; largest gap of a loop {gap} of the longest link"
+    return say(told, **facts, gap=Number(motion.residual, "", 1))
+
+
+def _parts(found: MotionFindings) -> Iterator[Part]:
+    moved, motion = found.moved, found.moved.motion
+
+    def figure(name: str, *more: Any) -> Any:
+        from alula.reports.figures.motion import motion_figures
+
+        return getattr(motion_figures, name)(*more)
+
+    yield range_text(moved)
+    if motion.returns:
+        yield Text("The linkage returns to its start.")
+    yield from _dead_points(found)
+    yield Table(
+        key="directions",
+        columns=(words("link"), *(Column(title, "deg") for title in ("first", "last", "smallest", "largest"))),
+        rows=tuple(
+            (link, *(Number(value, decimals=3) for value in _ends(motion.angle(link)).values()))
+            for link in motion.linkage.moving
+        ),
+        caption="Directions of the links",
+    )
+    yield chart("link-angles", "Directions of the links", lambda: figure("angles_figure", moved))
+    yield chart("paths", "Paths of the joints", lambda: figure("paths_figure", motion, found.play))
+    if springs := motion_springs(moved):
+        yield Table(
+            key="springs",
+            columns=(words("spring or tendon"), *map(Column, ("first", "last", "smallest", "largest"))),
+            rows=tuple(
+                (
+                    told,
+                    *(
+                        Number(float(value), derived=True)
+                        for value in (values[0], values[-1], values.min(), values.max())
+                    ),
+                )
+                for told, values in springs
+            ),
+        )
+
+
+def _dead_points(found: MotionFindings) -> Iterator[Text]:
+    moved, motion = found.moved, found.moved.motion
+    link = moved.drive.link
+    for at in moved.dead_points:
+        yield say(
+            f"Dead point of the driven link {link} at {motion.coordinate} = {{at}}: {link} reverses its direction "
+            f"there; drive {moved.effort[0]} and joint forces grow without bound",
+            at=Number(float(motion.told(at)), motion.unit, decimals=4),
+        )
+    if not moved.dead_points:
+        way, least = (
+            finite_or_none(float(motion.told(found.way_to_dead_point))),
+            Number(found.dead_point_distance, "", 3),
+        )
+        beyond = "none was met beyond" if way is None else "the nearest is {way} beyond"
+        yield say(
+            f"No dead point of {link} in the range, {beyond}; least distance (a ratio) {{least}}",
+            way=Number(way, motion.unit),
+            least=least,
+        )
+
+
+def _ends(angles: Any) -> dict[str, float]:
+    """First, last, smallest and largest of angles [deg]."""
+    ends = {"first": angles[0], "last": angles[-1], "smallest": angles.min(), "largest": angles.max()}
+    return {key: math.degrees(float(value)) for key, value in ends.items()}
+
+
+def _motion(moved: CaseMotion, own: Series | None) -> dict[str, Any]:
+    motion = moved.motion
+
+    def rates(of: Mapping[str, Any], *quantities: str) -> dict[str, Any]:
+        return dict.fromkeys(quantities) if own is None else every_extreme(own.motion, {q: of[q] for q in quantities})
+
+    links, points = ({}, {}) if own is None else (own.links, own.points)
+    return {
+        "coordinate": motion.coordinate,
+        "unit": motion.unit,
+        "first": float(motion.told(motion.angles[0])),
+        "last": float(motion.told(motion.angles[-1])),
+        "poses": len(motion.angles),
+        "speed_mm_per_s" if motion.slides else "speed_rad_per_s": [float(motion.speed[0]), float(motion.speed[-1])],
+        "duration": None if motion.times is None else float(motion.times[-1]),
+        "closure_residual": motion.residual,
+        "returns_to_start": motion.returns,
+        "inertia": moved.case.inert,
+        "links": {
+            link: _ends(motion.angle(link)) | rates(links.get(link, {}), "angular_speed", "angular_acceleration")
+            for link in motion.linkage.moving
+        },
+        "points": {
+            label: {"path_length": path_length(xy), **rates(points.get(label, {}), "speed", "acceleration")}
+            for label, xy in moving_points(motion).items()
+        },
+    }
+
+
+def _drive(found: MotionFindings) -> dict[str, Any]:
+    moved = found.moved
+    return {
+        "link": moved.drive.link,
+        "joint": moved.drive.joint,
+        "dead_points": [float(moved.motion.told(at)) for at in moved.dead_points],
+        "least_distance": found.dead_point_distance,
+        "way_to_dead_point": finite_or_none(float(moved.motion.told(found.way_to_dead_point))),
+    }
