@@ -1,9 +1,11 @@
 """A check as it is told: page, console, ``result.json``, what is not covered."""
 
 import io
+import math
 
 from rich.console import Console
 
+from alula.fea.common.band import Band
 from alula.fea.findings.of_check import with_findings
 from alula.reports.check import screen
 from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
@@ -63,3 +65,22 @@ def printed(result, width=80):
 
 def not_covered(result):
     return tuple(entry for one in sections(result) for entry in one.not_covered)
+
+
+def values_of(data):
+    """All numbers of a record, however deep."""
+    if isinstance(data, dict):
+        for item in data.values():
+            yield from values_of(item)
+    elif isinstance(data, list):
+        for item in data:
+            yield from values_of(item)
+    elif isinstance(data, float | int) and not isinstance(data, bool):
+        yield float(data)
+
+
+def ends_of(number):
+    """The value of a number that is told, with the ends of its band, as far as they are finite."""
+    value = number.value
+    found = (value.told.value, value.told.low, value.told.high) if isinstance(value, Band) else (value,)
+    return [float(one) for one in found if one is not None and math.isfinite(one)]

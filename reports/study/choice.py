@@ -142,7 +142,7 @@ def _sensitivities(study: StudyColumns, response: Response, ending: str) -> Sect
     found = regression(study.parameters, response)
     if isinstance(found, str):
         return Section(key=name, title=title, parts=(Text(found),))
-    share = Number(found.r_squared, decimals=2)
+    share = Number(found.r_squared, decimals=2, derived=True)
     fitted = say(
         "A linear model of {what}, fitted to {points} points, holds R² = {share} of its variance{doubt}",
         what="the logarithm of the number" if found.logarithm else "the number",
@@ -152,7 +152,7 @@ def _sensitivities(study: StudyColumns, response: Response, ending: str) -> Sect
     )
     sizes = found.coefficients.tolist()
     order = sorted(range(len(sizes)), key=lambda i: -abs(sizes[i]))
-    rows = tuple((found.names[i], Number(sizes[i], decimals=2)) for i in order)
+    rows = tuple((found.names[i], Number(sizes[i], decimals=2, derived=True)) for i in order)
     table = Table(key=name, columns=(words("entry"), Column("standardised coefficient")), rows=rows)
     caption = (
         "A bar is the standardised coefficient: by how many standard deviations the number moves where the entry moves "

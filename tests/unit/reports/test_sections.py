@@ -8,6 +8,7 @@ from html import unescape
 import pytest
 import told
 from solved import by_hand
+from told import ends_of, values_of
 
 from alula.fea.common.band import Band
 from alula.reports.notebook.check_report import CheckReport
@@ -38,24 +39,6 @@ CASES = (
 
 def flat(text):
     return " ".join(as_plain(text).split())
-
-
-def values_of(data):
-    """All numbers of a record, however deep."""
-    if isinstance(data, dict):
-        for item in data.values():
-            yield from values_of(item)
-    elif isinstance(data, list):
-        for item in data:
-            yield from values_of(item)
-    elif isinstance(data, float | int) and not isinstance(data, bool):
-        yield float(data)
-
-
-def ends_of(number):
-    value = number.value
-    found = (value.told.value, value.told.low, value.told.high) if isinstance(value, Band) else (value,)
-    return [float(one) for one in found if one is not None and math.isfinite(one)]
 
 
 def console_parts(parts):
