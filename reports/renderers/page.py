@@ -139,7 +139,7 @@ def _contents(page: Page) -> Iterator[tuple[str, str, bool]]:
 
 def _capital(head: str) -> str:
     """Return the head of a column with a capital, unless it begins with a symbol."""
-    return head[:1].upper() + head[1:] if head[:3].isalpha() and len(head.split(" ")[0]) > 2 else head
+    return head[:1].upper() + head[1:] if head[:3].replace("-", "").isalpha() and len(head.split(" ")[0]) > 2 else head
 
 
 def _beside(part: Beside, pictures: Mapping[str, Any], models: Mapping[str, str]) -> str:
