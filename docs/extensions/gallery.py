@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from alula.reports.notebook.shown import Picture
+from alula.reports.notebook.shown import ShownPicture
 from docs.extensions.links import DOCS, GENERATED
 
 FOLDER = DOCS / "gallery"
@@ -82,7 +82,7 @@ def pictures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any
 
     values = block_vars["example_globals"]
     last = values.get("___")
-    if not isinstance(last, Picture):
+    if not isinstance(last, ShownPicture):
         return ""
     values["___"] = None  # else the next block without a value, and its text, would show it again
     file = Path(next(block_vars["image_path_iterator"]))

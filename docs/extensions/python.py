@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import alula
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Verdict
-from alula.reports.notebook.shown import Picture, Table
+from alula.reports.notebook.shown import ShownPicture, ShownTable
 
 CASE = "Case"
 """The one name of ``alula.__all__`` that is a class."""
-HELD = (Table, Picture, Band, Verdict)
+HELD = (ShownTable, ShownPicture, Band, Verdict)
 """What the reports hold."""
 
 

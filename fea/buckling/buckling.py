@@ -72,7 +72,7 @@ class ColumnFactors:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Column:
+class StraightColumn:
     """A link in compression as a column, over one pose or several.
 
     Attributes
@@ -114,7 +114,7 @@ def least_factor(case: Case, link: str, beam: BeamCheck) -> float:
     return math.inf if found is None else found.value
 
 
-def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
+def column(case: Case, link: str, beam: BeamCheck) -> StraightColumn | None:
     """Return the column that stands for a link in one pose; None where nothing makes it buckle.
 
     Parameters
@@ -126,7 +126,7 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
 
     Returns
     -------
-    Column or None
+    StraightColumn or None
     """
     _, _, compression = beam.forces.largest(lambda f: -f[:, 0])
     forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
@@ -142,7 +142,7 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
 
 def worst_column(
     case: Case, link: str, compression: Real, factors: ColumnFactors, counted: NDArray[np.bool_]
-) -> Column | None:
+) -> StraightColumn | None:
     """Return the column of several poses; None where nothing makes the link buckle in any.
 
     Parameters
@@ -158,14 +158,14 @@ def worst_column(
 
     Returns
     -------
-    Column or None
+    StraightColumn or None
     """
     pose = first_largest(np.where(counted, 1.0 / factors.value, -np.inf))
     if math.isinf(factors.value[pose]):
         return None
     value, least, most = (float(f[counted].min()) for f in (factors.value, factors.least, factors.most))
     outermost, pressed = holding(case, link).outermost, float(compression[pose])
-    return Column(pose=pose, compression=pressed, outermost=outermost, value=value, least=least, most=most)
+    return StraightColumn(pose=pose, compression=pressed, outermost=outermost, value=value, least=least, most=most)
 
 
 def link_factors(case: Case, link: str, force: AxialForce) -> ColumnFactors:
@@ -237,7 +237,7 @@ def column_outcome(
     case: Case,
     load_case: str,
     link: str,
-    found: Column,
+    found: StraightColumn,
     moved: LargeDisplacement | None = None,
     where: Reason | None = None,
 ) -> CheckOutcome:
@@ -251,7 +251,7 @@ def column_outcome(
     load_case : str
         Its name.
     link : str
-    found : Column
+    found : StraightColumn
     moved : LargeDisplacement, optional
         What became of the linkage in large displacement; left out over a motion, whose links are taken as rigid.
     where : Reason, optional

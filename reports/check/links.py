@@ -6,8 +6,9 @@ from typing import Any
 
 from alula.fea.outcomes.result import CheckResult, HandResult, LinkResult, LoadCaseResult, SolidResult
 from alula.fea.refine.discretisation import Discretisation
+from alula.fea.whole.build_directions import BuildDirections, build_directions_of
 from alula.reports.sections.data import data, entries
-from alula.reports.sections.layers import BuildDirections, build_directions_of, layer_parts, layer_record
+from alula.reports.sections.layers import layer_parts, layer_record
 from alula.reports.sections.markup import bold
 from alula.reports.sections.section import (
     Beside,

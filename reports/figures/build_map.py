@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.solid.layers import AZIMUTH, POLAR, build_directions
+from alula.fea.whole.build_directions import BuildDirections
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.style import GROUND, INK
-from alula.reports.sections.layers import BuildDirections, direction
-from alula.reports.words.numbers import number
+from alula.reports.words.numbers import direction, number
 
 Real = NDArray[np.float64]
 _WIDTH, _HEIGHT = 262.0, 330.0

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from alula.fea.findings.joint_paths import moving_points, owners
 from alula.fea.findings.of_motion import MotionFindings
-from alula.fea.findings.rates import QUANTITIES, Series, Values
+from alula.fea.findings.rates import QUANTITIES, RateSeries, Values
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.play import drive_play, point_play
@@ -20,7 +20,7 @@ ANGULAR = ("angular_speed", "angular_acceleration")
 """Quantities of a link whose columns have shorter names in ``links.csv``."""
 
 
-def motion_series(found: MotionFindings, rates: Mapping[str, Series], own: Series | None) -> Section:
+def motion_series(found: MotionFindings, rates: Mapping[str, RateSeries], own: RateSeries | None) -> Section:
     """Return every pose, for ``links.csv``, ``points.csv``, ``torque.csv`` and more.
 
     Torques and joint forces have one load case below the other. So have rates, where load cases have a speed: speeds,
@@ -29,9 +29,9 @@ def motion_series(found: MotionFindings, rates: Mapping[str, Series], own: Serie
     Parameters
     ----------
     found : MotionFindings
-    rates : mapping of str to Series
+    rates : mapping of str to RateSeries
         Load case -> at its speed; those with a speed.
-    own : Series or None
+    own : RateSeries or None
         Rates at the motion's own speed; None without one.
 
     Returns
@@ -71,7 +71,7 @@ def _base(motion: Motion) -> dict[str, Real]:
     return columns if motion.times is None else columns | {"time [s]": motion.times}
 
 
-def _link_columns(result: CaseMotion, own: Series | None) -> dict[str, Real]:
+def _link_columns(result: CaseMotion, own: RateSeries | None) -> dict[str, Real]:
     motion, columns = result.motion, dict[str, Real]()
     for i, link in enumerate(motion.linkage.moving):
         if motion.slides or link != motion.coordinate:
@@ -91,7 +91,7 @@ def _link_columns(result: CaseMotion, own: Series | None) -> dict[str, Real]:
     return columns
 
 
-def _rate_columns(found: Series) -> dict[str, Real]:
+def _rate_columns(found: RateSeries) -> dict[str, Real]:
     """Columns of all rates of a load case."""
     columns: dict[str, Real] = {}
     for of in (found.links, found.points, {"linkage": found.whole}):

@@ -13,7 +13,7 @@ from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
 from alula.reports.check.whole_check import check_sections
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary, table_of
+from alula.reports.notebook.shown import Row, ShownPicture, ShownTable, Tabled, pick, summary, table_of
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
 from alula.reports.sentences import told
@@ -100,7 +100,7 @@ class CheckReport(Tabled):
         """All that is told of it, as on the page of ``alula check``."""
         return check_sections(self._told)
 
-    def table(self, of: str = "checks") -> Table:
+    def table(self, of: str = "checks") -> ShownTable:
         """Return a table of the result.
 
         Parameters
@@ -112,7 +112,7 @@ class CheckReport(Tabled):
 
         Returns
         -------
-        Table
+        ShownTable
             A sequence of mappings, shown as a table.
 
         Raises
@@ -122,7 +122,7 @@ class CheckReport(Tabled):
         """
         return table_of(self.sections, of, RENAMED.get(of, {}))
 
-    def plot_linkage(self, load_case: str | None = None) -> Picture:
+    def plot_linkage(self, load_case: str | None = None) -> ShownPicture:
         """Draw the linkage in its pose with the joint forces.
 
         Parameters
@@ -132,7 +132,7 @@ class CheckReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -143,14 +143,14 @@ class CheckReport(Tabled):
 
         name = self.load_cases[0] if load_case is None else load_case
         pick(self.result.load_cases, name, "load case")
-        return Picture(linkage_drawing(self.result, name).png())
+        return ShownPicture(linkage_drawing(self.result, name).png())
 
-    def plot_assembly(self) -> Picture:
+    def plot_assembly(self) -> ShownPicture:
         """Draw the links in their layers, from above and from the side.
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -162,14 +162,14 @@ class CheckReport(Tabled):
         if self.result.clearance is None:
             layer = layer_of(self.result.case.links)
             raise CaseError(f"the case states no layers, so all links lie in one plane; give every link one: {layer}")
-        return Picture(assembly_drawing(self.result.clearance).png())
+        return ShownPicture(assembly_drawing(self.result.clearance).png())
 
-    def plot_box(self) -> Picture:
+    def plot_box(self) -> ShownPicture:
         """Draw the box about the linkage over its motion, from above and from the side, with the limits of its checks.
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -180,14 +180,14 @@ class CheckReport(Tabled):
 
         if self.result.size is None:
             raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
-        return Picture(box_drawing(self.result.size, size_limits(self.result.case)).png())
+        return ShownPicture(box_drawing(self.result.size, size_limits(self.result.case)).png())
 
-    def plot_clearance(self) -> Picture:
+    def plot_clearance(self) -> ShownPicture:
         """Draw the two outlines that touch first over the motion, or come nearest.
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -198,9 +198,9 @@ class CheckReport(Tabled):
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
-        return Picture(contact_drawing(self.result.clearance).png())
+        return ShownPicture(contact_drawing(self.result.clearance).png())
 
-    def plot_frequencies(self, what: Literal["campbell", "shapes"] = "campbell") -> Picture:
+    def plot_frequencies(self, what: Literal["campbell", "shapes"] = "campbell") -> ShownPicture:
         """Draw natural frequencies over the motion and the speed of the drive, or the shapes that belong to them.
 
         Parameters
@@ -209,7 +209,7 @@ class CheckReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
             Of the load case that decides.
 
         Raises
@@ -224,7 +224,7 @@ class CheckReport(Tabled):
         report = FrequencyReport(self.result.frequencies)
         return pick({"campbell": report.plot_campbell, "shapes": report.plot_shapes}, what, "picture")()
 
-    def plot_internal_forces(self, link: str) -> Picture:
+    def plot_internal_forces(self, link: str) -> ShownPicture:
         """Draw normal force, shear force and bending moment along a link, under the load case that stresses it most.
 
         Parameters
@@ -233,7 +233,7 @@ class CheckReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -244,9 +244,9 @@ class CheckReport(Tabled):
 
         pick({name: name for name in self._links}, link, "link")
         stations = {point: x for point, (x, _) in self.result.case.links[link].points.items()}
-        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations).png())
+        return ShownPicture(internal_force_diagram(self._case(link, None).links[link].beam, stations).png())
 
-    def plot_build_directions(self, link: str) -> Picture:
+    def plot_build_directions(self, link: str) -> ShownPicture:
         """Draw the safety factor of a printed link's layers for every direction in which it may be built.
 
         Parameters
@@ -256,20 +256,20 @@ class CheckReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
         CaseError
             For a link without layers, and where nothing is known of them.
         """
+        from alula.fea.whole.build_directions import build_directions_of
         from alula.reports.figures.build_map import build_map
-        from alula.reports.sections.layers import build_directions_of
 
         known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
-        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")).png())
+        return ShownPicture(build_map(pick(known, link, "printed link, solved as a solid,")).png())
 
-    def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
+    def plot_stress(self, link: str, load_case: str | None = None) -> ShownPicture:
         """Draw the stress of a link on its deformed shape, and around its largest value.
 
         Parameters
@@ -281,7 +281,7 @@ class CheckReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -301,7 +301,7 @@ class CheckReport(Tabled):
         plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link].png())
+        return ShownPicture(plots[link].png())
 
     def write(self, folder: str | Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
         """Write ``report.html``, ``result.json``, pictures and VTU files into a folder, as ``alula check -o`` does.
@@ -363,9 +363,9 @@ class CheckReport(Tabled):
         return pick(self.result.load_cases, load_case, "load case")
 
 
-def _applicable(checks: Sequence[CheckOutcome]) -> Table:
+def _applicable(checks: Sequence[CheckOutcome]) -> ShownTable:
     judged, several = [check for check in checks if check.applies], len({check.load_case for check in checks}) > 1
-    return Table.of([check_table(judged, several=several)], RENAMED["checks"])
+    return ShownTable.of([check_table(judged, several=several)], RENAMED["checks"])
 
 
 def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from html import escape
 
 from alula.fea.claims.audit import ClaimResult
-from alula.reports.notebook.shown import Table, Tabled
+from alula.reports.notebook.shown import ShownTable, Tabled
 from alula.reports.sections.published import claims_section, count
 
 
@@ -39,9 +39,9 @@ class ClaimsReport(Tabled):
         """Number of figures by finding: ``"holds"``, ``"does-not-hold"``, ``"does-not-follow"``, ..."""
         return Counter(result.finding.value for result in self.result)
 
-    def table(self) -> Table:
+    def table(self) -> ShownTable:
         """Return the figures: name, published value, ours, finding, source, note."""
-        return Table(tuple(claims_section(self.result).data["claims"]))
+        return ShownTable(tuple(claims_section(self.result).data["claims"]))
 
     def __str__(self) -> str:
         return self.headline

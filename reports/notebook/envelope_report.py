@@ -12,7 +12,7 @@ from alula.fea.motion.envelope_result import EnvelopeResult
 from alula.geometry.base.errors import CannotRunError
 from alula.reports.motion.envelope import envelope_headline, envelope_sections
 from alula.reports.notebook.check_report import RENAMED as RENAMED_CHECKS
-from alula.reports.notebook.shown import Picture, Table, Tabled, pick, summary, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, summary, table_of
 from alula.reports.sentences import told
 
 Real = NDArray[np.float64]
@@ -82,7 +82,7 @@ class EnvelopeReport(Tabled):
         """
         return pick(pick(self.result.links, link, "loaded link").load_cases, load_case, "load case").value
 
-    def table(self, of: str = "links") -> Table:
+    def table(self, of: str = "links") -> ShownTable:
         """Return a table of the result.
 
         Parameters
@@ -92,7 +92,7 @@ class EnvelopeReport(Tabled):
 
         Returns
         -------
-        Table
+        ShownTable
             A sequence of mappings, shown as a table.
 
         Raises
@@ -102,13 +102,13 @@ class EnvelopeReport(Tabled):
         """
         return table_of(envelope_sections(self.result), of, RENAMED.get(of, {}))
 
-    def plot_safety_factors(self) -> Picture:
+    def plot_safety_factors(self) -> ShownPicture:
         """Draw the safety factor of every link over the motion."""
         from alula.reports.figures.motion.envelope_figures import envelope_figure
 
-        return Picture(envelope_figure(self.result).png())
+        return ShownPicture(envelope_figure(self.result).png())
 
-    def plot_stress(self, link: str) -> Picture:
+    def plot_stress(self, link: str) -> ShownPicture:
         """Draw the stress of a link at its worst pose under its worst load case.
 
         Parameters
@@ -118,7 +118,7 @@ class EnvelopeReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -133,7 +133,7 @@ class EnvelopeReport(Tabled):
         plots, warnings = stress_pictures(self.result, [link])
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
-        return Picture(plots[link].png())
+        return ShownPicture(plots[link].png())
 
     def __str__(self) -> str:
         return f"{self.headline}\n\n{self.table()}"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from alula.fea.common.band import Band
 from alula.fea.vibration.frequency_outcomes import deciding_load_case, least_frequency, unit
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
-from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, table_of
 from alula.reports.sections.frequencies import frequencies_section, history_sentence
 
 RENAMED = {"low": "frequency [Hz] low", "high": "frequency [Hz] high"}
@@ -40,7 +40,7 @@ class FrequencyReport(Tabled):
         """Of every load case: where the lowest natural frequency is least, and which harmonic meets one."""
         return {name: history_sentence(self.result.case, one) for name, one in self.result.histories.items()}
 
-    def table(self, of: str = "frequencies") -> Table:
+    def table(self, of: str = "frequencies") -> ShownTable:
         """Return a row for every natural frequency: of the linkage where the lowest is least, and of the links.
 
         Parameters
@@ -50,7 +50,7 @@ class FrequencyReport(Tabled):
 
         Returns
         -------
-        Table
+        ShownTable
 
         Raises
         ------
@@ -59,7 +59,7 @@ class FrequencyReport(Tabled):
         """
         return table_of([frequencies_section(self.result)], of, RENAMED)
 
-    def plot_campbell(self, load_case: str | None = None) -> Picture:
+    def plot_campbell(self, load_case: str | None = None) -> ShownPicture:
         """Draw natural frequencies over the motion, and over the speed of the drive, with its harmonics.
 
         Parameters
@@ -69,7 +69,7 @@ class FrequencyReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -81,9 +81,9 @@ class FrequencyReport(Tabled):
         name, history = self._history(load_case)
         case = self.result.case
         coordinate = "pose" if case.motion is None else case.motion_coordinate
-        return Picture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name).png())
+        return ShownPicture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name).png())
 
-    def plot_shapes(self, load_case: str | None = None) -> Picture:
+    def plot_shapes(self, load_case: str | None = None) -> ShownPicture:
         """Draw the shapes of the lowest natural frequencies, in the pose where the first is least.
 
         Parameters
@@ -93,7 +93,7 @@ class FrequencyReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -102,7 +102,7 @@ class FrequencyReport(Tabled):
         """
         from alula.reports.figures.vibration.shapes import shapes_drawing
 
-        return Picture(shapes_drawing(self._history(load_case)[1].lowest).png())
+        return ShownPicture(shapes_drawing(self._history(load_case)[1].lowest).png())
 
     def _history(self, load_case: str | None) -> tuple[str, FrequencyHistory]:
         name = deciding_load_case(self.result) if load_case is None else load_case

@@ -11,7 +11,7 @@ from alula.fea.findings.of_motion import MotionFindings, PlayOverMotion, motion_
 from alula.fea.findings.rates import series
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.whole_motion import motion_sections
-from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, table_of
 from alula.reports.sections.section import Section
 
 Real = NDArray[np.float64]
@@ -57,7 +57,7 @@ class MotionReport(Tabled):
         """Values of the coordinate at which the driven link turns back [degrees or mm]."""
         return tuple(float(self.result.motion.told(at)) for at in self.result.dead_points)
 
-    def table(self, of: str = "drive") -> Table:
+    def table(self, of: str = "drive") -> ShownTable:
         """Return a table of the motion, with rows per load case.
 
         Parameters
@@ -70,7 +70,7 @@ class MotionReport(Tabled):
 
         Returns
         -------
-        Table
+        ShownTable
             ``at`` is the value of the coordinate there. Extremes are None where a dead point makes them unbounded, and
             where a quantity is not known. Of a vector, the largest is that of its size.
 
@@ -94,13 +94,13 @@ class MotionReport(Tabled):
     def _play(self) -> PlayOverMotion | None:
         return play_over_motion(self.result)
 
-    def plot_drive(self) -> Picture:
+    def plot_drive(self) -> ShownPicture:
         """Draw drive torque or force over the coordinate, a line per load case."""
         from alula.reports.figures.motion.motion_figures import torque_figure
 
         return _picture(torque_figure(self.result, self._play))
 
-    def plot_energy(self, load_case: str) -> Picture:
+    def plot_energy(self, load_case: str) -> ShownPicture:
         """Draw energies, power of the drive and force on the ground of a load case that has a speed.
 
         Parameters
@@ -109,7 +109,7 @@ class MotionReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -121,7 +121,7 @@ class MotionReport(Tabled):
         moving = {name: found for name in self.result.torque if (found := series(self.result, name)) is not None}
         return _picture(energy_figure(self.result, load_case, pick(moving, load_case, "load case with a speed")))
 
-    def plot_linkage(self) -> Picture:
+    def plot_linkage(self) -> ShownPicture:
         """Draw the linkage at a few poses, with the paths of its points."""
         from alula.reports.figures.motion.motion_figures import paths_figure
 
@@ -139,8 +139,8 @@ class MotionReport(Tabled):
         return f"<p><b>{escape(self.result.case.title)}</b></p>\n{self.table()._repr_html_()}"
 
 
-def _picture(figure: object) -> Picture:
+def _picture(figure: object) -> ShownPicture:
     from alula.reports.figures.motion.motion_figures import DPI
     from alula.reports.figures.sheet.chart import Chart
 
-    return Picture(Chart(figure, dpi=DPI).png())
+    return ShownPicture(Chart(figure, dpi=DPI).png())

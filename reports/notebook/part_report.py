@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.exchange.part import part_entries
-from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, table_of
 from alula.reports.tools.part import BORES, GRAMS, Inspection, part_section
 
 
@@ -35,16 +35,16 @@ class PartReport(Tabled):
         """The entries of a case file for the part, as TOML; empty where it has no bore for a pin."""
         return part_entries(self.result)
 
-    def table(self) -> Table:
+    def table(self) -> ShownTable:
         """Return one row a bore: diameter, length and centre [mm] in the frame of the file."""
         return table_of([part_section(self.result)], BORES)
 
-    def plot_part(self) -> Picture:
+    def plot_part(self) -> ShownPicture:
         """Draw the part from above and from below, with its bores and largest flat faces named.
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -56,7 +56,7 @@ class PartReport(Tabled):
         picture, trouble = part_picture(self.result.facts, self.result.surface)
         if picture is None:
             raise CannotRunError(trouble)
-        return Picture(picture.png())
+        return ShownPicture(picture.png())
 
     def __str__(self) -> str:
         return str(self.table())

@@ -41,7 +41,7 @@ class OldNames(dict[str, Cell]):
 
 
 @dataclass(frozen=True)
-class Table:
+class ShownTable:
     """Rows of a result, each a mapping of column names to numbers or text.
 
     Printed it is aligned text, in a notebook a table, both with the digits and bands of the report; ``list(table)`` is
@@ -64,7 +64,7 @@ class Table:
     cells: tuple[tuple[str, ...], ...] = ()
 
     @classmethod
-    def of(cls, tables: Sequence[Told], renamed: Mapping[str, str] = MappingProxyType({})) -> "Table":
+    def of(cls, tables: Sequence[Told], renamed: Mapping[str, str] = MappingProxyType({})) -> "ShownTable":
         """Return tables of sections, those of one name, as one.
 
         Parameters
@@ -75,7 +75,7 @@ class Table:
 
         Returns
         -------
-        Table
+        ShownTable
         """
         found = [record for table in tables for record in table.records]
         names = dict.fromkeys(name for record in found for name in record)
@@ -164,7 +164,7 @@ class Table:
         return pandas.DataFrame(list(self.rows), columns=list(self.columns))
 
 
-def table_of(sections: Iterable[Section], name: str, renamed: Mapping[str, str] = MappingProxyType({})) -> Table:
+def table_of(sections: Iterable[Section], name: str, renamed: Mapping[str, str] = MappingProxyType({})) -> ShownTable:
     """Return a table of sections by its name.
 
     Parameters
@@ -172,11 +172,11 @@ def table_of(sections: Iterable[Section], name: str, renamed: Mapping[str, str] 
     sections : iterable of Section
     name : str
     renamed : mapping of str to str, optional
-        As of ``Table.of``.
+        As of ``ShownTable.of``.
 
     Returns
     -------
-    Table
+    ShownTable
 
     Raises
     ------
@@ -188,13 +188,13 @@ def table_of(sections: Iterable[Section], name: str, renamed: Mapping[str, str] 
     for part in every:
         if isinstance(part, Told) and part.key:
             found.setdefault(part.key, []).append(part)
-    return Table.of(pick(found, name, "table"), renamed)
+    return ShownTable.of(pick(found, name, "table"), renamed)
 
 
 class Tabled:
     """A report whose tables are frames of pandas on request."""
 
-    table: Callable[..., Table]
+    table: Callable[..., ShownTable]
 
     def frame(self, *of: str) -> "DataFrame":
         """Return a table of the report as a frame of pandas, which the extra ``alula[pandas]`` installs.
@@ -207,7 +207,7 @@ class Tabled:
         Returns
         -------
         pandas.DataFrame
-            As ``Table.frame``.
+            As ``ShownTable.frame``.
 
         Raises
         ------
@@ -220,7 +220,7 @@ class Tabled:
 
 
 @dataclass(frozen=True)
-class Picture:
+class ShownPicture:
     """A picture that a notebook shows by itself.
 
     Attributes
@@ -235,7 +235,7 @@ class Picture:
         return self.png
 
     def __repr__(self) -> str:
-        return f"Picture({len(self.png)} bytes of PNG)"
+        return f"ShownPicture({len(self.png)} bytes of PNG)"
 
     def save(self, path: str | Path) -> None:
         """Write the picture as a PNG file.
@@ -281,7 +281,7 @@ def pick(named: Mapping[str, T], name: str, what: str) -> T:
 
 
 def summary(
-    verdict: Verdict, title: str, lead: str, table: Table, warnings: Sequence[str], below: Sequence[str] = ()
+    verdict: Verdict, title: str, lead: str, table: ShownTable, warnings: Sequence[str], below: Sequence[str] = ()
 ) -> str:
     """Return a short account of a result as HTML, with all text escaped.
 
@@ -291,7 +291,7 @@ def summary(
     title : str
     lead : str
         Its first sentence.
-    table : Table
+    table : ShownTable
     warnings : sequence of str
     below : sequence of str, optional
         Paragraphs below the table.

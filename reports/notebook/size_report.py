@@ -7,7 +7,7 @@ from html import escape
 from alula.fea.sizing.least import Sized
 from alula.fea.sizing.lightest import Lightest
 from alula.reports.commands.telling import text_of
-from alula.reports.notebook.shown import Table, Tabled, table_of
+from alula.reports.notebook.shown import ShownTable, Tabled, table_of
 from alula.reports.study.size import SOLVED, size_section
 
 
@@ -39,12 +39,12 @@ class SizeReport(Tabled):
             return None
         return {found.path: found.values[found.failing]}
 
-    def table(self) -> Table:
+    def table(self) -> ShownTable:
         """Return one row a variant that was solved: its values, the verdict, the check nearest to its limit.
 
         Returns
         -------
-        Table
+        ShownTable
             ``margin`` is 1 where the worse end of that check's band is at its limit, and larger on the safe side.
         """
         return table_of([size_section(self.result)], SOLVED)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from alula.fea.study.store import Store
-from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, table_of
 from alula.reports.study.columns import read_study
 from alula.reports.study.page import pictures_of
 from alula.reports.study.rows import study_rows
@@ -27,7 +27,7 @@ class StudyReport(Tabled):
     folder: Path
     counts: Mapping[str, int]
 
-    def table(self, of: str = "points") -> Table:
+    def table(self, of: str = "points") -> ShownTable:
         """Return a table of ``alula study show``.
 
         Parameters
@@ -39,20 +39,20 @@ class StudyReport(Tabled):
 
         Returns
         -------
-        Table
+        ShownTable
             ``margin`` is 1 where the worse end of that check's band is at its limit, and larger on the safe side.
         """
         with Store.reading(self.folder) as store:
             if of == "points":
-                return Table.of([points_table(list(study_rows(store)))], {"nearest": "nearest to its limit"})
+                return ShownTable.of([points_table(list(study_rows(store)))], {"nearest": "nearest to its limit"})
             return table_of(study_sections(read_study(store)), of)
 
     @property
-    def pictures(self) -> Mapping[str, Picture]:
+    def pictures(self) -> Mapping[str, ShownPicture]:
         """What ``alula study show`` draws of the variants, by the title of each picture."""
         with Store.reading(self.folder) as store:
             found = pictures_of(study_sections(read_study(store)))
-        return {one.alt: Picture(one.draw().png()) for one in found if one.draw is not None}
+        return {one.alt: ShownPicture(one.draw().png()) for one in found if one.draw is not None}
 
     def __str__(self) -> str:
         return str(self.table())

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from alula.geometry.mechanisms.synthesis import Synthesis
 from alula.reports.commands.synthesis import draw_linkage
-from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, table_of
 from alula.reports.tools.synthesis import POINTS, synthesis_section
 
 
@@ -32,15 +32,15 @@ class SynthesisReport(Tabled):
         """What its user must know, one sentence each: branch and order defects, lock-ups, Grashof's condition."""
         return tuple(finding.sentence for finding in self.result.findings)
 
-    def table(self) -> Table:
+    def table(self) -> ShownTable:
         """Return the precision points: directions of the links [degrees], and the branch as seen from each drive."""
         return table_of([synthesis_section(self.result)], POINTS)
 
-    def plot_linkage(self) -> Picture:
+    def plot_linkage(self) -> ShownPicture:
         """Draw the linkage at the three precision points."""
         stream = io.BytesIO()
         draw_linkage(self.result, stream)
-        return Picture(stream.getvalue())
+        return ShownPicture(stream.getvalue())
 
     def __str__(self) -> str:
         return str(self.table())

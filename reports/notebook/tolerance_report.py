@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
-from alula.reports.notebook.shown import Picture, Table, Tabled, pick, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, table_of
 from alula.reports.study.tolerance import names, tolerance_sections
 
 
@@ -30,7 +30,7 @@ class ToleranceReport(Tabled):
         """Every number that was sampled, by quantity, subject and load case."""
         return dict(zip(names(self.result), self.result.numbers, strict=True))
 
-    def table(self, of: str = "numbers") -> Table:
+    def table(self, of: str = "numbers") -> ShownTable:
         """Return a table of ``alula tolerance``.
 
         Parameters
@@ -41,11 +41,11 @@ class ToleranceReport(Tabled):
 
         Returns
         -------
-        Table
+        ShownTable
         """
         return table_of(tolerance_sections(self.result), of, {"sense": "limit sense"})
 
-    def plot_spread(self, number: str) -> Picture:
+    def plot_spread(self, number: str) -> ShownPicture:
         """Draw how a number spreads over the samples, with its limit.
 
         Parameters
@@ -55,7 +55,7 @@ class ToleranceReport(Tabled):
 
         Returns
         -------
-        Picture
+        ShownPicture
 
         Raises
         ------
@@ -64,7 +64,7 @@ class ToleranceReport(Tabled):
         """
         from alula.reports.figures.study.tolerance_pictures import spread_picture
 
-        return Picture(spread_picture(pick(self.numbers, number, "number")).png())
+        return ShownPicture(spread_picture(pick(self.numbers, number, "number")).png())
 
     def __str__(self) -> str:
         return str(self.table())

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from alula.fea.common.band import Band
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -229,3 +231,20 @@ def sentence(text: str) -> str:
     str
     """
     return f"{text[:1].upper()}{text[1:].rstrip('.')}."
+
+
+def direction(vector: tuple[float, float, float]) -> str:
+    """Return a direction as a unit vector in words.
+
+    Parameters
+    ----------
+    vector : tuple of 3 float
+        Of any length.
+
+    Returns
+    -------
+    str
+        Such as ``(0.50, 0, 0.87)``.
+    """
+    unit = np.asarray(vector) / np.linalg.norm(vector)
+    return f"({', '.join(fixed(float(x), 0 if abs(x - round(x)) < 5e-3 else 2) for x in unit)})"

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from alula.reports.figures.sheet.drawing import Plotted
 from alula.reports.figures.sheet.letters import SHARES, SIZE, extent
-from alula.reports.figures.sheet.marks import Area, Box, Mark, Raster, Stroke, Text
+from alula.reports.figures.sheet.marks import Area, Box, Mark, Raster, Stroke, Writing
 from alula.reports.figures.sheet.style import INK
 from alula.reports.figures.sheet.svg import as_svg
 
@@ -29,7 +29,7 @@ class Canvas:
     height : float
         [points].
     marks : list of Stroke, Area or Raster
-    texts : list of Text
+    texts : list of Writing
     plotted : list of Plotted
         Its curves, in the units of their axes.
     """
@@ -37,7 +37,7 @@ class Canvas:
     def __init__(self, width: float, height: float) -> None:
         self.width, self.height = width, height
         self.marks: list[Mark] = []
-        self.texts: list[Text] = []
+        self.texts: list[Writing] = []
         self.plotted: list[Plotted] = []
 
     def line(
@@ -154,7 +154,7 @@ class Canvas:
         bold: bool = False,
         halo: float = 0.0,
         turned: bool = False,
-    ) -> Text:
+    ) -> Writing:
         """Write a text of one or more lines.
 
         Parameters
@@ -175,7 +175,7 @@ class Canvas:
 
         Returns
         -------
-        Text
+        Writing
         """
         side, level = anchor.split()
         wide, tall = extent(text, size, bold=bold)
@@ -184,7 +184,7 @@ class Canvas:
         x, y = np.asarray(at, dtype=np.float64)
         left, top = x - wide * SHARES[side], y - tall * SHARES[level]
         box = (float(left), float(top), float(left + wide), float(top + tall))
-        written = Text(text=text, box=box, colour=colour, size=size, bold=bold, side=side, halo=halo, turned=turned)
+        written = Writing(text=text, box=box, colour=colour, size=size, bold=bold, side=side, halo=halo, turned=turned)
         self.texts.append(written)
         return written
 

@@ -74,7 +74,7 @@ Mark = Stroke | Area | Raster
 
 
 @dataclass(frozen=True, kw_only=True)
-class Text:
+class Writing:
     """A text.
 
     Attributes

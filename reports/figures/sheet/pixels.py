@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.reports.figures.sheet.letters import font
-from alula.reports.figures.sheet.marks import Area, Mark, Raster, Text
+from alula.reports.figures.sheet.marks import Area, Mark, Raster, Writing
 from alula.reports.figures.sheet.style import DPI
 
 Real = NDArray[np.float64]
@@ -19,7 +19,7 @@ _FINE = 2
 _ANCHORS = {"left": "ls", "center": "ms", "right": "rs"}
 
 
-def as_pixels(width: float, height: float, marks: Iterable[Mark], texts: Iterable[Text]) -> bytes:
+def as_pixels(width: float, height: float, marks: Iterable[Mark], texts: Iterable[Writing]) -> bytes:
     """Return a sheet as PNG, without a date, so that equal sheets are equal bytes.
 
     Parameters
@@ -27,7 +27,7 @@ def as_pixels(width: float, height: float, marks: Iterable[Mark], texts: Iterabl
     width, height : float
         [points].
     marks : iterable of Stroke, Area or Raster
-    texts : iterable of Text
+    texts : iterable of Writing
 
     Returns
     -------
@@ -98,7 +98,7 @@ def _dashed(points: Real, dash: float, gap: float) -> list[Real]:
     return found
 
 
-def _write(sheet: Any, text: Text) -> None:
+def _write(sheet: Any, text: Writing) -> None:
     from PIL import Image, ImageDraw
 
     scale, letters = DPI / 72.0, font(text.size, text.bold)

@@ -9,7 +9,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.reports.figures.sheet.marks import Area, Mark, Raster, Stroke, Text
+from alula.reports.figures.sheet.marks import Area, Mark, Raster, Stroke, Writing
 from alula.reports.figures.sheet.style import INK
 
 Real = NDArray[np.float64]
@@ -20,7 +20,7 @@ _PIXELS = 96.0 / 72.0
 """Of CSS for a point."""
 
 
-def as_svg(width: float, height: float, marks: Sequence[Mark], texts: Iterable[Text], alt: str) -> str:
+def as_svg(width: float, height: float, marks: Sequence[Mark], texts: Iterable[Writing], alt: str) -> str:
     """Return a sheet as SVG.
 
     Coordinates are whole hundredths of a point. Neighbouring marks of one colour share their paths, since it does not
@@ -31,7 +31,7 @@ def as_svg(width: float, height: float, marks: Sequence[Mark], texts: Iterable[T
     width, height : float
         [points].
     marks : sequence of Stroke, Area or Raster
-    texts : iterable of Text
+    texts : iterable of Writing
     alt : str
         What the picture is, for who does not see it.
 
@@ -134,7 +134,7 @@ def _image(raster: Raster) -> str:
     )
 
 
-def _style(text: Text) -> str:
+def _style(text: Writing) -> str:
     """Return what neighbouring texts may share."""
     style = f' font-size="{_told(text.size)}"'
     style += "" if text.colour == INK else f' fill="{text.colour}"'
@@ -144,7 +144,7 @@ def _style(text: Text) -> str:
     return style + _ANCHORS["center" if text.turned else text.side]
 
 
-def _lines(text: Text) -> str:
+def _lines(text: Writing) -> str:
     """Return the lines of a text, each set to the width that it has on the sheet."""
     found = []
     for line, (x, y), wide in text.lines():

@@ -14,9 +14,10 @@ from told import as_json, not_covered, print_result, render
 from alula.fea.common.band import Band
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.solid.layers import Layers, best_directions, build_directions
+from alula.fea.whole.build_directions import build_directions_of
 from alula.reports.figures.build_map import _project, build_map
 from alula.reports.page.pictures import layers_name
-from alula.reports.sections.layers import build_directions_of, direction
+from alula.reports.words.numbers import direction
 
 LINK = "GF"
 

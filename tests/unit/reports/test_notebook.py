@@ -15,7 +15,7 @@ import alula
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.notebook.check_report import CheckReport
-from alula.reports.notebook.shown import Picture, Table
+from alula.reports.notebook.shown import ShownPicture, ShownTable
 
 HOSTILE = "<script>alert('&')</script>"
 
@@ -41,7 +41,7 @@ def report(result):
 
 
 def is_png(picture):
-    return isinstance(picture, Picture) and imread(io.BytesIO(picture._repr_png_())).ndim == 3
+    return isinstance(picture, ShownPicture) and imread(io.BytesIO(picture._repr_png_())).ndim == 3
 
 
 def test_numbers_are_those_of_result_json(report):
@@ -73,13 +73,13 @@ def test_tables_have_a_row_each(report):
 
 
 def test_a_table_as_text_keeps_its_columns():
-    text = str(Table(({"name": "a", "x [mm]": 3.0, "of": None}, {"name": "long", "x [mm]": math.inf, "of": None})))
+    text = str(ShownTable(({"name": "a", "x [mm]": 3.0, "of": None}, {"name": "long", "x [mm]": math.inf, "of": None})))
     assert text.splitlines() == ["name  x [mm]  of", "a          3", "long       ∞"]
-    assert str(Table(())) == "(no rows)"
+    assert str(ShownTable(())) == "(no rows)"
 
 
 def test_numbers_stand_to_the_right_in_html():
-    html = Table(({"name": "a", "x [mm]": 3.0},))._repr_html_()
+    html = ShownTable(({"name": "a", "x [mm]": 3.0},))._repr_html_()
     assert '<td style="text-align: left">a</td><td style="text-align: right">3</td>' in html
 
 
@@ -90,7 +90,7 @@ def test_html_shows_verdict_and_checks_and_runs_nothing_of_the_case(report):
     assert page.texts.count(HOSTILE) == 2
     assert page.tags.count("tr") == 1 + len(report.table())
     assert report.verdict.value.upper() in page.texts
-    table = Page(Table(({HOSTILE: HOSTILE},))._repr_html_())
+    table = Page(ShownTable(({HOSTILE: HOSTILE},))._repr_html_())
     assert "script" not in table.tags
     assert table.texts.count(HOSTILE) == 2
 
