@@ -109,16 +109,12 @@ def _dead_points(found: MotionFindings) -> Iterator[Text]:
             at=Number(float(motion.told(at)), motion.unit, decimals=4),
         )
     if not moved.dead_points:
-        way, least = (
-            finite_or_none(float(motion.told(found.way_to_dead_point))),
-            Number(found.dead_point_distance, "", 3),
-        )
-        beyond = "none was met beyond" if way is None else "the nearest is {way} beyond"
-        yield say(
-            f"No dead point of {link} in the range, {beyond}; least distance (a ratio) {{least}}",
-            way=Number(way, motion.unit),
-            least=least,
-        )
+        way = finite_or_none(float(motion.told(found.way_to_dead_point)))
+        facts: dict[str, object] = {"least": Number(found.dead_point_distance, "", 3)}
+        beyond = "none was met beyond"
+        if way is not None:
+            beyond, facts["way"] = "the nearest is {way} beyond", Number(way, motion.unit)
+        yield say(f"No dead point of {link} in the range, {beyond}; least distance (a ratio) {{least}}", **facts)
 
 
 def _ends(angles: Any) -> dict[str, float]:

@@ -53,9 +53,9 @@ def assembly_section(result: CheckResult) -> Section:
             Picture(
                 name="assembly",
                 alt="Links and pins in the stated pose, from above and from the side",
-                caption="Links and pins in the stated pose, from above and from the side, a colour for each layer. From "
-                "above, what is higher covers what is lower. Pins (dark) reach from the lowest to the highest face of the "
-                "two links that they join.",
+                caption="Links and pins in the stated pose, from above and from the side, a colour for each layer. "
+                "From above, what is higher covers what is lower. Pins (dark) reach from the lowest to the highest "
+                "face of the two links that they join.",
                 draw=lambda: _assembly(found),
             ),
             *gap_parts(found),

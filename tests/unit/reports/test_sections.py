@@ -8,13 +8,13 @@ from html import unescape
 import pytest
 import told
 from solved import by_hand
+from told import console_parts, ends_of, flat, values_of
 
 from alula.fea.common.band import Band
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.sections.markup import as_html, as_plain, bold, code, link, sub
 from alula.reports.sections.section import (
     Column,
-    Folded,
     Number,
     Section,
     Series,
@@ -34,40 +34,6 @@ CASES = (
     ("slider-crank",),
     ("finger",),
 )
-
-
-def flat(text):
-    return " ".join(as_plain(text).split())
-
-
-def values_of(data):
-    """All numbers of a record, however deep."""
-    if isinstance(data, dict):
-        for item in data.values():
-            yield from values_of(item)
-    elif isinstance(data, list):
-        for item in data:
-            yield from values_of(item)
-    elif isinstance(data, float | int) and not isinstance(data, bool):
-        yield float(data)
-
-
-def ends_of(number):
-    value = number.value
-    found = (value.told.value, value.told.low, value.told.high) if isinstance(value, Band) else (value,)
-    return [float(one) for one in found if one is not None and math.isfinite(one)]
-
-
-def console_parts(parts):
-    """Parts that a console tells."""
-    for part in parts:
-        if isinstance(part, Folded) and not part.told:
-            continue
-        if isinstance(part, Text) and "note" in part.kind:
-            continue
-        yield part
-        if hasattr(part, "parts"):
-            yield from console_parts(part.parts)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case[0])
