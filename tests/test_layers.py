@@ -24,16 +24,8 @@ LAYERS = {
         *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
     "reports": (
-        "words",
-        "sentences",
-        "tables",
-        "motion",
-        "figures",
-        "turnable",
-        "page",
-        "study",
-        "commands",
-        "notebook",
+        *("words", "sentences", "figures", "turnable", "sections", "page", "renderers"),
+        *("check", "motion", "study", "tools", "commands", "notebook"),
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""

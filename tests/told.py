@@ -85,6 +85,7 @@ def values_of(data):
 
 
 def ends_of(number):
+    """The value of a number that is told, with the ends of its band, as far as they are finite."""
     value = number.value
     found = (value.told.value, value.told.low, value.told.high) if isinstance(value, Band) else (value,)
     return [float(one) for one in found if one is not None and math.isfinite(one)]

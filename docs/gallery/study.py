@@ -21,7 +21,7 @@ found = alula.study(
 found
 
 # %%
-# What the study draws of its variants: here the safety factor that is nearest to its limit.
+# What the study draws of its variants: here the margin of the check that is nearest to its limit.
 pictures = found.pictures
 print(*pictures, sep="\n")
 next(iter(pictures.values()))
@@ -30,7 +30,7 @@ next(iter(pictures.values()))
 # Thicker bars pass by more. The folder keeps all numbers; the table has the check that is nearest to its limit.
 rows = sorted((float(row["parts.bar.thickness"].split()[0]), row) for row in found.table())
 for thickness, row in rows:
-    print(f"{thickness:g} mm: {row['verdict']}, margin {row['margin']:.2f}, {row['nearest']}")
+    print(f"{thickness:g} mm: {row['verdict']}, margin {row['margin']:.2f}, {row['nearest to its limit']}")
 margins = [row["margin"] for _, row in rows]
 assert margins == sorted(margins)
 

@@ -43,7 +43,7 @@ class SolidHolding:
         Where it may be built in and free elsewhere, each by itself; empty where its joints stay in place.
     most : ndarray or None
         Joints hold it as well as they can; None where that is not known.
-    words : Reason
+    how : Reason
         How ``value`` holds it, for people.
     """
 
@@ -51,7 +51,7 @@ class SolidHolding:
     value: Real
     alone: tuple[Real, ...]
     most: Real | None
-    words: Reason
+    how: Reason
 
 
 def solid_holding(case: Case, link: str) -> SolidHolding:
@@ -85,15 +85,15 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     kept = {point for name, point in joints.items() if linkage.joints[name].bonded or name == drive}
     most = [held.kept(held.surface(p), ALL if p in kept else ALL[:TURN_Z]) for p in joints.values()]
     if support is not None:
-        value, words = held.kept(f"end:{support}", ALL), reason("built_in_at", place=support)
-        return SolidHolding(places=places, value=value, alone=(), most=np.vstack([*most, value]), words=words)
-    value, words = held.in_place(held_joints)
+        value, how = held.kept(f"end:{support}", ALL), reason("built_in_at", place=support)
+        return SolidHolding(places=places, value=value, alone=(), most=np.vstack([*most, value]), how=how)
+    value, how = held.in_place(held_joints)
     return SolidHolding(
         places=places,
         value=value,
         alone=tuple(held.kept(held.surface(point), ALL) for point in sorted(kept)),
         most=None if carried else np.vstack(most),
-        words=words,
+        how=how,
     )
 
 
@@ -132,15 +132,15 @@ class _Conditions:
         third = max(points, key=off.__getitem__)
         if off[third] > OFF_LINE * max(lengths):
             last_row = self.row((self.surface(third), np.eye(6)[2]))
-            words = reason("on_pins_and_third", first=first, last=last, third=third)
+            how = reason("on_pins_and_third", first=first, last=last, third=third)
         else:
             turn = [0.0, 0.0, 0.0, *along, 0.0]
             last_row = self.row((one, turn), (other, turn))
-            words = reason("on_pins", first=first, last=last)
+            how = reason("on_pins", first=first, last=last)
         rows = [
             *self.kept(one, (0, 1, 2)),
             self.row((other, [-along[1], along[0], 0.0, 0.0, 0.0, 0.0])),
             *self.kept(other, (2,)),
             last_row,
         ]
-        return np.array(rows), words
+        return np.array(rows), how

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from alula.fea.common.reason import reason
 from alula.geometry.parts.tube import Tube
 from alula.loads.case.case import Case
 from alula.loads.text.caveat import Caveat, Topic
@@ -55,6 +56,6 @@ def wall_caveats(case: Case) -> Iterator[Caveat]:
     if thin:
         yield Caveat(
             topic=Topic.BUCKLING,
-            what=f"buckling of the wall of {', '.join(thin)}",
-            why="it is so thin that it may buckle before it yields",
+            what=reason("buckling_of_walls", links=thin),
+            why=reason("thin_wall"),
         )

@@ -131,8 +131,8 @@ def temperature_caveats(case: Case) -> Iterator[Caveat]:
     """
     stated = case.conditions.temperature
     if stated is not None and not ROOM[0] <= stated <= ROOM[1]:
-        at = f"{stated:g} degC"
-        yield Caveat(topic=Topic.TEMPERATURE, what="thermal expansion", why=f"at {at} sizes are taken as stated")
+        why = reason("sizes_as_stated", temperature=stated)
+        yield Caveat(topic=Topic.TEMPERATURE, what=reason("thermal_expansion"), why=why)
     asked = [check.joints or case.pinned_joints for check in case.all_checks.values() if isinstance(check, PinCheck)]
     used = dict.fromkeys(case.joints[joint].pin_material for joints in asked for joint in joints)
     left = [
@@ -142,9 +142,8 @@ def temperature_caveats(case: Case) -> Iterator[Caveat]:
         and strength_unknown(case.all_materials[name], case.conditions)
     ]
     if left:
-        at = f"{case.conditions.temperature:g} degC"
         yield Caveat(
             topic=Topic.TEMPERATURE,
-            what=f"pins at {at}",
-            why=f"no temperature_factors of {', '.join(left)}; its strength is that of room temperature",
+            what=reason("pins_at_temperature", temperature=case.conditions.temperature),
+            why=reason("no_temperature_factors", materials=left),
         )

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from alula.fea.common.reason import reason
 from alula.geometry.materials.material import Material
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed
@@ -27,9 +28,9 @@ def creep_caveats(case: Case) -> Iterator[Caveat]:
         checks = [check for check in case.all_checks.values() if isinstance(check, SustainedCheck)]
         judged = {link for check in checks for link in check.links or case.checked_links}
         if left := [link for link in creeping if link not in judged]:
-            yield Caveat(topic=Topic.CREEP, what=f"creep of {', '.join(left)}", why="no check")
+            yield Caveat(topic=Topic.CREEP, what=reason("creep_of", links=left), why=reason("no_check"))
     elif creeping and stays:
-        yield Caveat(topic=Topic.CREEP, what="creep under loads that stay", why="no conditions.duration")
+        yield Caveat(topic=Topic.CREEP, what=reason("creep"), why=reason("no_duration"))
 
 
 def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
@@ -48,13 +49,15 @@ def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     if not case.checked_links or all(one.speed == 0.0 for one in case.load_cases.values()):
         return
     if not over_motion:
-        yield Caveat(topic=Topic.FATIGUE, what="fatigue", why="alula envelope follows the motion")
+        yield Caveat(topic=Topic.FATIGUE, what=reason("fatigue"), why=reason("envelope_follows_motion"))
         return
     bare = dict.fromkeys(
         case.part_of(link).material for link in case.checked_links if case.material_of(link).fatigue is None
     )
     if bare:
-        yield Caveat(topic=Topic.FATIGUE, what="fatigue", why=f"no fatigue data of {', '.join(bare)}")
+        yield Caveat(
+            topic=Topic.FATIGUE, what=reason("fatigue"), why=reason("no_fatigue_data_of", materials=tuple(bare))
+        )
 
 
 def _is_plastic(name: str, material: Material) -> bool:

@@ -136,8 +136,12 @@ def layer_scatter(material: Material) -> Scatter:
     ranges = [
         _range(SourceKind.STRENGTH, value, stated, what)
         for value, stated, what in (
-            (material.strength_across_layers, material.strength_across_layers_range, "_across_layers"),
-            (material.shear_strength_between_layers, material.shear_strength_between_layers_range, "_along_layers"),
+            (material.strength_across_layers, material.strength_across_layers_range, "range_of_stress_across_layers"),
+            (
+                material.shear_strength_between_layers,
+                material.shear_strength_between_layers_range,
+                "range_of_stress_along_layers",
+            ),
         )
         if value is not None
     ]
@@ -162,9 +166,11 @@ def compliance_scatter(material: Material) -> Scatter:
     return _range(SourceKind.MODULUS, material.youngs_modulus, material.youngs_modulus_range).inverse
 
 
-def _range(kind: SourceKind, value: float, stated: tuple[float, float] | None, what: str = "") -> Scatter:
+def _range(
+    kind: SourceKind, value: float, stated: tuple[float, float] | None, what: str = "range_of_stress"
+) -> Scatter:
     if stated is None:
         return Scatter()
     low, high = min(stated[0], value), max(stated[1], value)
-    source = Source(kind=kind, detail=reason(f"range_of_stress{what}", low=low, high=high))
+    source = Source(kind=kind, detail=reason(what, low=low, high=high))
     return Scatter(low=low / value, high=high / value, sources=(source,))

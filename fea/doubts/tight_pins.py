@@ -164,14 +164,14 @@ def _statements(case: Case, link: str) -> Iterator[tuple[Reason, dict[str, tuple
                if joint.type == "revolute" and case.linkage.rise(name) != 0.0
                and not (joint.tight_in or joint.bonded)]  # fmt: skip
     own = [name for name in unknown if link in joints[name].links]
-    for names, links, which in (
-        (own, "both", slice(2)),
-        (unknown, "first", slice(1)),
-        (unknown, "second", slice(1, 2)),
-        (unknown, "both", slice(2)),
+    for names, kind, which in (
+        (own, "tight_in_both_decides", slice(2)),
+        (unknown, "tight_in_first_decides", slice(1)),
+        (unknown, "tight_in_second_decides", slice(1, 2)),
+        (unknown, "tight_in_both_decides", slice(2)),
     ):
         if names:
             yield (
-                reason(f"tight_in_{links}_decides", joints=names),
+                reason(kind, joints=names),
                 {name: tuple(joints[name].links)[which] for name in names},
             )

@@ -38,8 +38,8 @@ Real = NDArray[np.float64]
 
 LAWS = (WIDE, NARROW)
 ELSEWHERE, FATIGUE_ELSEWHERE = (
-    Source(kind=SourceKind.DISCRETISATION, detail=reason(f"fourfold_estimate_of_{what}"))
-    for what in ("pose", "fatigue")
+    Source(kind=SourceKind.DISCRETISATION, detail=reason(kind))
+    for kind in ("fourfold_estimate_of_pose", "fourfold_estimate_of_fatigue")
 )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from alula.fea.solid.layers import Layers
 from alula.geometry.base.errors import CaseError
@@ -188,8 +189,8 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
     ------
     Caveat
     """
-    breaks, rings = "below 1 it lets pass what the load breaks", "below 1 it lets pass what rings below its drive"
-    least: dict[str, tuple[float | None, str]] = {}
+    breaks, rings = reason("lets_pass_what_breaks"), reason("lets_pass_what_rings")
+    least: dict[str, tuple[float | None, Reason]] = {}
     for name, check in case.checks.items():
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
@@ -206,7 +207,9 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
                 least[f"materials.{card}.minimum_safety_factor"] = (own, breaks)
     for entry, (minimum, why) in least.items():
         if minimum is not None and minimum < 1.0:
-            yield Caveat(heading=Heading.UNUSUAL, topic=Topic.LIMIT, what=f"{entry} = {minimum:g}", why=why)
+            yield Caveat(
+                heading=Heading.UNUSUAL, topic=Topic.LIMIT, what=reason("entry_is", entry=entry, value=minimum), why=why
+            )
 
 
 def layer_caveats(case: Case) -> Iterator[Caveat]:
@@ -225,10 +228,9 @@ def layer_caveats(case: Case) -> Iterator[Caveat]:
     unknown = [link for link in asked if case.material_of(link).strength_across_layers is None]
     bare = [link for link in unknown if case.part_of(link).build_direction is None and _may_be_printed(case, link)]
     if bare:
-        which = "" if len(bare) == len(case.checked_links) else f" of {', '.join(bare)}"
-        yield Caveat(
-            topic=Topic.LAYERS, what=f"layers{which}", why="strength between the layers of a print is not known"
-        )
+        all_links = len(bare) == len(case.checked_links)
+        what = reason("layers") if all_links else reason("layers_of", links=bare)
+        yield Caveat(topic=Topic.LAYERS, what=what, why=reason("strength_between_layers_unknown"))
 
 
 def _may_be_printed(case: Case, link: str) -> bool:

@@ -136,8 +136,8 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
     if drive is None or drive.stop or drive.idle or case.pose.equilibrium or drive.pushes(case.linkage):
         return
     if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].bonded:
-        why = 'its torque enters by the flat faces; with drive.transfer = "bore-shear" it twists the pin'
-        yield Caveat(topic=Topic.SHAFT, what=f"drive shaft at {drive.joint}", why=why)
+        why = reason("torque_by_flat_faces")
+        yield Caveat(topic=Topic.SHAFT, what=reason("drive_shaft", joint=drive.joint), why=why)
 
 
 def twisted(case: Case, joint: str, stress: PinStress, twist: Band) -> PinStress:

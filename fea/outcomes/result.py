@@ -351,7 +351,7 @@ class CheckResult:
         Of the case; None without one, and where the linkage does not get along it.
     in_air : AirRange or None
         The motion of the load cases with air; None without any, and where it cannot be moved.
-    harmonic : str
+    harmonic : Reason or None
         Which harmonic of the drive comes nearest to a natural frequency that no check asks for, as
         ``alula.fea.vibration.harmonics.nearest_harmonic`` says.
     """
@@ -373,12 +373,26 @@ class CheckResult:
     changes: tuple[VerdictChange, ...] = ()
     motion: Motion | None = None
     in_air: AirRange | None = None
-    harmonic: str = ""
+    harmonic: Reason | None = None
 
     @cached_property
     def caveats(self) -> tuple[Caveat, ...]:
         """What a reader of the verdict must know besides."""
         return caveats(self.case, harmonic=self.harmonic)
+
+    def governing(self, link: str) -> LoadCaseResult:
+        """Return the load case with the lowest end of a link's safety factor, or with an unknown one.
+
+        Parameters
+        ----------
+        link : str
+            Its name.
+
+        Returns
+        -------
+        LoadCaseResult
+        """
+        return min(self.load_cases.values(), key=lambda case: case.links[link].severity)
 
     @property
     def frames(self) -> Mapping[str, LargeDisplacement]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from alula.fea.buckling.wall import wall_caveats
 from alula.fea.common.at_temperature import as_if_cold, temperature_caveats
 from alula.fea.common.lasting import creep_caveats, fatigue_caveats
-from alula.fea.common.reason import Reason
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.outcomes.limits import layer_caveats, limit_caveats
 from alula.fea.outcomes.pins import shaft_caveats
 from alula.geometry.materials.plausible import untold, unusual
@@ -25,7 +25,7 @@ from alula.loads.states.weighed import mass_caveats
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
 
-def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tuple[Caveat, ...]:
+def caveats(case: Case, *, over_motion: bool = False, harmonic: Reason | None = None) -> tuple[Caveat, ...]:
     """Return all that a reader of a case's verdict must know besides.
 
     Parameters
@@ -33,7 +33,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tup
     case : Case
     over_motion : bool, optional
         True for a verdict on the motion (``alula envelope``), False for one on the stated pose.
-    harmonic : str, optional
+    harmonic : Reason, optional
         What is known of vibration without a check of it, as ``nearest_harmonic`` says.
 
     Returns
@@ -63,27 +63,11 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: str = "") -> tup
     )
 
 
-def unchecked(case: Case, *, over_motion: bool = False) -> tuple[str, ...]:
-    """Return what is not checked, each in a few words with the reason: ``thigh (no part)``.
-
-    Parameters
-    ----------
-    case : Case
-    over_motion : bool, optional
-        As of ``caveats``.
-
-    Returns
-    -------
-    tuple of str
-    """
-    return tuple(str(one) for one in caveats(case, over_motion=over_motion) if one.heading is Heading.NOT_CHECKED)
-
-
 def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
     """Yield the links and pins that no check looks at."""
     for link in case.linkage.moving:
         if link not in case.checked_links:
-            yield Caveat(topic=Topic.PART, what=link, why="no part")
+            yield Caveat(topic=Topic.PART, what=link, why=reason("no_part"))
     stressed: set[str] = set()
     pinned: set[str] = set()
     for check in case.all_checks.values():
@@ -93,20 +77,20 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
             stressed.update(check.links or case.checked_links)
     left = [link for link in case.checked_links if link not in stressed]
     if left:
-        yield Caveat(topic=Topic.STRESS, what=f"stress of {', '.join(left)}", why="no check")
+        yield Caveat(topic=Topic.STRESS, what=reason("stress_of", links=left), why=reason("no_check"))
     pins = [name for name, joint in case.joints.items() if joint.type != "slider" and not joint.clamped]
     loose = [name for name in pins if name not in pinned]
     if loose:
-        which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"
-        yield Caveat(topic=Topic.PINS, what=which, why="no check")
+        which = reason("pins") if loose == pins else reason("pins_of", joints=loose)
+        yield Caveat(topic=Topic.PINS, what=which, why=reason("no_check"))
 
 
-def _vibration(case: Case, harmonic: str) -> Iterator[Caveat]:
+def _vibration(case: Case, harmonic: Reason | None) -> Iterator[Caveat]:
     """Yield vibration where the drive has a speed and no check asks for frequencies."""
     asked = any(isinstance(check, FrequencyCheck) for check in case.checks.values())
     if not asked and any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
-        why = "; ".join(filter(None, ('no check of type "frequency"', harmonic)))
-        yield Caveat(topic=Topic.VIBRATION, what="vibration", why=why)
+        why = together(reason("no_frequency_check"), harmonic)
+        yield Caveat(topic=Topic.VIBRATION, what=reason("vibration"), why=why)
 
 
 def _pins(case: Case) -> Iterator[Caveat]:
@@ -115,9 +99,12 @@ def _pins(case: Case) -> Iterator[Caveat]:
     silent = dict.fromkeys(x for names in asked for x in names if "pin_material" not in case.joints[x].model_fields_set)
     for material in dict.fromkeys(case.joints[name].pin_material for name in silent):
         own = [name for name in silent if case.joints[name].pin_material == material]
-        which = "pins" if len(own) == len(case.pinned_joints) else f"pins {', '.join(own)}"
+        which = () if len(own) == len(case.pinned_joints) else tuple(own)
         yield Caveat(
-            heading=Heading.ASSUMED, topic=Topic.MATERIAL, what=f"{which} of {material}", why="no pin_material stated"
+            heading=Heading.ASSUMED,
+            topic=Topic.MATERIAL,
+            what=reason("material_of_pins", joints=which, material=material),
+            why=reason("no_pin_material"),
         )
 
 

@@ -123,5 +123,5 @@ def _factors(
         least=min(buckled.factor for buckled in found),
         most=max(most, found[0].factor),
         error=error,
-        holding=task.holding.words,
+        holding=task.holding.how,
     )

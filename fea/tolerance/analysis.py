@@ -154,8 +154,8 @@ def _require(statics: CaseStatics, frames: Mapping[str, LargeDisplacement]) -> N
     for name, forces in statics.forces.items():
         if not forces.by_equilibrium:
             raise CannotRunError(
-                f"tolerances: under load case {name} {forces.reason}, so the joint forces of samples do not "
-                "follow from equilibrium alone, which is not covered; vary entries with alula study"
+                f"tolerances: under load case {name} the joint forces are those of a {forces.model} and do not follow "
+                "from equilibrium alone, which is not covered; vary entries with alula study"
             )
         if statics.standing[name].case is not statics.case:
             raise CannotRunError(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason, reason
 from alula.fea.vibration.over_motion import FrequencyHistory, pose_frequencies
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.case import Case
@@ -98,8 +98,8 @@ def _below(first: float, last: float, level: float) -> tuple[float, float]:
     return (0.0, crossing) if first <= level else (crossing, 1.0)
 
 
-def nearest_harmonic(case: Case) -> str:
-    """Say which harmonic comes nearest to the lowest natural frequency in the stated pose, where no check asks.
+def nearest_harmonic(case: Case) -> Reason | None:
+    """Return which harmonic comes nearest to the lowest natural frequency in the stated pose, where no check asks.
 
     By the frame of centre lines alone: some 20 ms of processor time for a four-bar linkage.
 
@@ -109,20 +109,20 @@ def nearest_harmonic(case: Case) -> str:
 
     Returns
     -------
-    str
-        Of the load case in which one comes nearest; "" where a check asks for frequencies, nothing drives, or no
+    Reason or None
+        Of the load case in which one comes nearest; None where a check asks for frequencies, nothing drives, or no
         natural frequency is found.
     """
     if any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
-        return ""
+        return None
     driven = {abs(one.speed): (name, one) for name, one in reversed(case.load_cases.items()) if one.speed != 0.0}
     if not driven:
-        return ""  # before anything is weighed
+        return None  # before anything is weighed
     try:
         found = pose_frequencies(case.model_copy(update={"load_cases": dict(driven.values())}), count=1)
     except (CannotRunError, CaseError):
-        return ""
-    nearest, told = math.inf, ""
+        return None
+    nearest, said = math.inf, None
     for history in found.values():
         frequency, driving = history.lowest.modes[0].frequency, history.driving
         if not 0.0 < frequency.value < math.inf:
@@ -132,60 +132,5 @@ def nearest_harmonic(case: Case) -> str:
         ratio = harmonic * driving / frequency.value
         if abs(math.log(ratio)) < nearest:
             nearest = abs(math.log(ratio))
-            told = (
-                f"in this pose the {ordinal(harmonic)} harmonic of {60.0 * driving:.4g} rpm is at {ratio:.3g} of the "
-                f"lowest natural frequency, {hertz(frequency)}"
-            )
-    return told
-
-
-def ordinal(n: int) -> str:
-    """Return ``1st``, ``2nd``, ``3rd``, ``4th``.
-
-    Parameters
-    ----------
-    n : int
-        From 1 to 20.
-
-    Returns
-    -------
-    str
-    """
-    return f"{n}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(n, 'th') }"
-
-
-def hertz(frequency: Band) -> str:
-    """Return ``43.2 (38.0 to 47.0) Hz``.
-
-    Parameters
-    ----------
-    frequency : Band
-        [Hz]
-
-    Returns
-    -------
-    str
-    """
-    return f"{banded(frequency)} Hz"
-
-
-def banded(value: Band) -> str:
-    """Return ``43.2 (38.0 to 47.0)``.
-
-    Parameters
-    ----------
-    value : Band
-
-    Returns
-    -------
-    str
-    """
-    if math.isinf(value.high):
-        return f"{_three(value.value)} (no band)" if math.isfinite(value.value) else "unknown"
-    shown, low, high = (_three(end) for end in (value.value, value.low, value.high))
-    return shown if low == high else f"{shown} ({low} to {high})"
-
-
-def _three(value: float) -> str:
-    """Return a number with three digits, and without a power of ten."""
-    return f"{value:#.3g}".rstrip(".") if value < 999.5 else f"{float(f'{value:.3g}'):.0f}"
+            said = reason("harmonic_in_pose", harmonic=harmonic, rpm=60.0 * driving, ratio=ratio, frequency=frequency)
+    return said

@@ -8,6 +8,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
+from alula.loads.text.reason import reason
 
 LOOSE = 0.1
 """Play over the diameter of its pin above which it is unusual: ISO 286 H11/c11, a loose fit, leaves 0.06 at 3 mm."""
@@ -208,23 +209,27 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
     ------
     Caveat
     """
-    for what, clamped in (("bonds", False), ("clamps", True)):
+    for kind, clamped in (("bonds", False), ("clamps", True)):
         held = [name for name, joint in case.linkage.joints.items() if joint.bonded and joint.clamped == clamped]
         if held:
-            yield Caveat(topic=Topic.BONDS, what=f"{what} {', '.join(held)}", why="what holds them is not judged")
+            yield Caveat(topic=Topic.BONDS, what=reason(kind, joints=held), why=reason("not_judged_what_holds"))
     short = [name for name in rubbing_joints(case) if case.joints[name].type == "slider"]
     short = [name for name in short if case.joints[name].guide_length is None]
     if short:
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.FRICTION,
-            what=f"no couple on {', '.join(short)}",
-            why="no guide_length stated",
+            what=reason("no_couple_on", joints=short),
+            why=reason("no_guide_length", joint=short[0]),
         )
     asked = any(isinstance(check, MotorCheck) for check in case.checks.values())
     if asked and not rubbing_joints(case):
+        first = next(iter(case.pinned_joints), next(iter(case.joints)))
         yield Caveat(
-            heading=Heading.ASSUMED, topic=Topic.FRICTION, what="joints without friction", why="none states any"
+            heading=Heading.ASSUMED,
+            topic=Topic.FRICTION,
+            what=reason("joints_without_friction"),
+            why=reason("none_states_friction", joint=first),
         )
     for name, play in clearances(case).items():
         diameter = case.joints[name].pin_diameter or math.inf
@@ -232,6 +237,6 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             yield Caveat(
                 heading=Heading.UNUSUAL,
                 topic=Topic.PLAY,
-                what=f"play of {play:g} mm at {name}",
-                why=f"its pin has {diameter:g} mm",
+                what=reason("large_play", play=play, joint=name),
+                why=reason("diameter_of_pin", diameter=diameter),
             )

@@ -14,6 +14,7 @@ from alula.loads.records.flapping import WIDEST, Wing, check_flapping
 from alula.loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.explain import require
+from alula.loads.text.reason import reason
 
 Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing
 
@@ -241,9 +242,10 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
     """
     light = [name for name, one in case.load_cases.items() if case.carried and one.carried and not one.own_weight]
     if light:
-        yield Caveat(topic=Topic.WEIGHT, what="weight of what links carry", why=f"no own_weight in {', '.join(light)}")
+        why = reason("no_own_weight", load_cases=light, first=light[0])
+        yield Caveat(topic=Topic.WEIGHT, what=reason("weight_of_carried"), why=why)
     if case.carried and not any(one.carried for one in case.load_cases.values()):
-        yield Caveat(topic=Topic.WEIGHT, what="what links carry", why="carried is false in every load case")
+        yield Caveat(topic=Topic.WEIGHT, what=reason("what_links_carry"), why=reason("carried_is_false"))
     pinned = {(link, case.linkage.point_of(name, link)) for name, joint in case.joints.items() for link in joint.links}
     on_pins = dict.fromkeys(
         f"{force.at} of {force.link}"
@@ -255,6 +257,6 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.LOADS,
-            what=f"force{'s' if len(on_pins) > 1 else ''} at {', '.join(on_pins)}",
-            why="the pin there bears it, not the link's eye",
+            what=reason("forces_on_pins", places=tuple(on_pins)),
+            why=reason("pin_bears_it"),
         )

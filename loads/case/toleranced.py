@@ -11,6 +11,7 @@ from alula.loads.case.core import CoreCase
 from alula.loads.records.tolerances import Distribution, Tolerance
 from alula.loads.text.caveat import Caveat, Topic
 from alula.loads.text.explain import printable, require
+from alula.loads.text.reason import reason
 
 PINS = "pins"
 STRENGTHS = ("yield_strength", "ultimate_strength", "strength_across_layers")
@@ -201,4 +202,4 @@ def tolerance_caveats(case: CoreCase) -> Iterator[Caveat]:
     Caveat
     """
     if case.tolerances:
-        yield Caveat(topic=Topic.TOLERANCES, what="tolerances", why="alula tolerance looks at them")
+        yield Caveat(topic=Topic.TOLERANCES, what=reason("tolerances"), why=reason("tolerance_looks_at_them"))

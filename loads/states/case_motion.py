@@ -36,6 +36,7 @@ from alula.loads.statics.friction import Presses
 from alula.loads.statics.momentum import LinkageMomentum, linkage_momentum
 from alula.loads.statics.statics import Drive
 from alula.loads.text.caveat import Caveat, Topic
+from alula.loads.text.reason import reason
 
 Real = NDArray[np.float64]
 
@@ -409,8 +410,8 @@ def step_caveats(case: Case) -> Iterator[Caveat]:
     if step > COARSE:
         yield Caveat(
             topic=Topic.MOTION,
-            what=f"what lies between the {motion.poses} poses of the motion",
-            why=f"they are {math.degrees(step):.3g}° apart",
+            what=reason("between_poses", poses=motion.poses),
+            why=reason("poses_apart", degrees=math.degrees(step)),
         )
 
 
@@ -431,10 +432,10 @@ def inertia_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     if motion is None or motion.rate == (0.0, 0.0):
         return
     if motion.inertia is False:
-        yield Caveat(topic=Topic.INERTIA, what="inertia", why="motion.inertia is false")
+        yield Caveat(topic=Topic.INERTIA, what=reason("inertia"), why=reason("inertia_is_false"))
     elif case.pose.equilibrium:
-        yield Caveat(topic=Topic.INERTIA, what="inertia", why="the pose is found at rest, pose.equilibrium is true")
+        yield Caveat(topic=Topic.INERTIA, what=reason("inertia"), why=reason("pose_at_rest"))
     elif case.inert and not case.turns_steadily and not over_motion:
-        yield Caveat(topic=Topic.INERTIA, what="inertia in this pose", why="alula envelope has that of the motion")
+        yield Caveat(topic=Topic.INERTIA, what=reason("inertia_in_pose"), why=reason("envelope_has_inertia"))
     elif case.inert and case.turns_steadily and all(one.speed == 0.0 for one in case.load_cases.values()):
-        yield Caveat(topic=Topic.INERTIA, what="inertia", why="every load case states that it stands still")
+        yield Caveat(topic=Topic.INERTIA, what=reason("inertia"), why=reason("all_stand_still"))

@@ -20,6 +20,7 @@ from alula.loads.case.forks import levels
 from alula.loads.case.layers import on_one_axis, slab
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.text.caveat import Caveat, Topic
+from alula.loads.text.reason import reason
 
 Real = NDArray[np.float64]
 
@@ -264,9 +265,7 @@ def collision_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     if not case.stacked and len(case.checked_links) > 1:
-        yield Caveat(
-            topic=Topic.COLLISIONS, what="collisions of links and couples of their pins", why="no link states a layer"
-        )
+        yield Caveat(topic=Topic.COLLISIONS, what=reason("collisions_and_couples"), why=reason("no_layer_stated"))
 
 
 def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:

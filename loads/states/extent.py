@@ -18,6 +18,7 @@ from alula.loads.records.check_spec import SizeCheck
 from alula.loads.states.clearance import Assembly, along, assembly, start_of, way_of
 from alula.loads.states.flapping import wing_span
 from alula.loads.text.caveat import Caveat, Topic
+from alula.loads.text.reason import Reason, reason
 
 _NEAR = 1e-6
 """Share of the longest link to which the box over a motion is found."""
@@ -125,8 +126,8 @@ def _outlines(found: Assembly) -> Iterator[Standing]:
         yield point_shape(f"wing of {wing.link}", ends, level - half, level + half, joined=True), Spot(link=wing.link)
 
 
-def unmeasured(case: Case) -> tuple[str, ...]:
-    """Return what the box of a case does not hold, or not all of, in a few words each.
+def unmeasured(case: Case) -> tuple[Reason, ...]:
+    """Return what the box of a case does not hold, or not all of.
 
     Parameters
     ----------
@@ -134,14 +135,14 @@ def unmeasured(case: Case) -> tuple[str, ...]:
 
     Returns
     -------
-    tuple of str
+    tuple of Reason
     """
-    found = [f"{link} beyond its points (no part)" for link in case.links if case.links[link].part is None]
+    found = [reason("beyond_points", link=link) for link in case.links if case.links[link].part is None]
     winged = {wing.link for wing in case.wings}
     carrying = [link for link in dict.fromkeys(carried.link for carried in case.carried) if link not in winged]
-    found += [f"what {', '.join(carrying)} carr{'ies' if len(carrying) == 1 else 'y'}"] if carrying else []
+    found += [reason("what_links_carry", links=carrying)] if carrying else []
     kinds = (("spring", case.springs), ("tendon", case.tendons))
-    return (*found, *(f"{kind} {name}" for kind, records in kinds for name in records))
+    return (*found, *(reason("spring_or_tendon", kind=kind, name=name) for kind, records in kinds for name in records))
 
 
 def size_caveats(case: Case) -> Iterator[Caveat]:
@@ -156,4 +157,4 @@ def size_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     if any(isinstance(check, SizeCheck) for check in case.all_checks.values()):
-        yield from (Caveat(topic=Topic.SIZE, what=f"size of {what}") for what in unmeasured(case))
+        yield from (Caveat(topic=Topic.SIZE, what=reason("size_of", what=what)) for what in unmeasured(case))

@@ -31,6 +31,7 @@ from alula.loads.states.kinetostatics import work
 from alula.loads.states.springs import SpringState, joint_value, spring_states, stop_gaps, touching
 from alula.loads.statics.statics import Drive
 from alula.loads.text.caveat import Caveat, Heading, Topic
+from alula.loads.text.reason import reason
 
 Real = NDArray[np.float64]
 
@@ -416,10 +417,14 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.DRIVE,
-            what="a drive that does not give",
-            why="its stiffness counts for natural frequencies alone",
+            what=reason("rigid_drive"),
+            why=reason("stiffness_for_frequencies"),
         )
     elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+        usual = "20 N/mm" if case.joints[case.drive.joint].type == "slider" else "2 N*m/rad"
         yield Caveat(
-            heading=Heading.ASSUMED, topic=Topic.DRIVE, what="a drive that does not give", why="no drive.stiffness"
+            heading=Heading.ASSUMED,
+            topic=Topic.DRIVE,
+            what=reason("rigid_drive"),
+            why=reason("no_drive_stiffness", usual=usual),
         )

@@ -12,6 +12,7 @@ from alula.loads.case.layers import on_one_axis, pin_masses
 from alula.loads.records.check_spec import MassCheck
 from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.text.caveat import Caveat, Topic
+from alula.loads.text.reason import Reason, reason
 
 Real = NDArray[np.float64]
 
@@ -46,13 +47,13 @@ class Weighed:
         By link, of those that weigh anything.
     centroid : array (2,)
         Of all of it, in the stated pose and global axes [mm]; NaN where nothing weighs anything.
-    not_counted : tuple of str
+    not_counted : tuple of Reason
         What else has a mass, in a few words each, with the reason.
     """
 
     links: Mapping[str, LinkWeighed]
     centroid: Real
-    not_counted: tuple[str, ...]
+    not_counted: tuple[Reason, ...]
 
     @property
     def total(self) -> LinkWeighed:
@@ -96,8 +97,8 @@ def weighed(case: Case, pose: Pose) -> Weighed:
     return Weighed(links=links, centroid=np.array([centre.real, centre.imag]), not_counted=unweighed(case))
 
 
-def unweighed(case: Case) -> tuple[str, ...]:
-    """Return what has a mass that a case does not tell, in a few words each.
+def unweighed(case: Case) -> tuple[Reason, ...]:
+    """Return what has a mass that a case does not tell.
 
     Parameters
     ----------
@@ -105,28 +106,28 @@ def unweighed(case: Case) -> tuple[str, ...]:
 
     Returns
     -------
-    tuple of str
+    tuple of Reason
         Links that state to be massless are not among it.
     """
     carrying = {carried.link for carried in case.carried}
     told = {*case.checked_links, *case.massless, *carrying}
-    found = [f"{link} (no part)" for link in case.links if link not in told]
-    found += [f"wing of {wing.link} (it carries no mass)" for wing in case.wings if wing.link not in carrying]
-    found += _pins_left(case) if case.layered else ["pins (no layers, hence no lengths)"]
+    found = [reason("link_without_part", link=link) for link in case.links if link not in told]
+    found += [reason("wing_without_mass", link=wing.link) for wing in case.wings if wing.link not in carrying]
+    found += _pins_left(case) if case.layered else [reason("pins_without_lengths")]
     kinds = (("spring", case.springs), ("tendon", case.tendons))
-    return (*found, *(f"{kind} {name}" for kind, records in kinds for name in records))
+    return (*found, *(reason("spring_or_tendon", kind=kind, name=name) for kind, records in kinds for name in records))
 
 
-def _pins_left(case: Case) -> Iterator[str]:
+def _pins_left(case: Case) -> Iterator[Reason]:
     """Yield the pins of a layered case that ``pin_masses`` leaves out."""
     known, ground = pin_masses(case), case.linkage.ground
     own = [[name for name in group if case.joints[name].type != "slider"] for group in on_one_axis(case)]
     left = [group for group in own if not set(group) & set(known)]
-    reasons = {True: "no diameter", False: f"in {ground}, which has no part"}
+    reasons = {True: reason("no_diameter"), False: reason("in_ground_without_part", ground=ground)}
     for unknown, why in reasons.items():
         names = [name for group in left for name in group if (case.joints[name].pin_diameter is None) is unknown]
         if names:
-            yield f"pin{'s' if len(names) > 1 else ''} {', '.join(names)} ({why})"
+            yield reason("pins_left_out", joints=names, why=why)
 
 
 def mass_caveats(case: Case) -> Iterator[Caveat]:
@@ -141,4 +142,4 @@ def mass_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     if any(isinstance(check, MassCheck) and check.others is None for check in case.all_checks.values()):
-        yield from (Caveat(topic=Topic.MASS, what=f"mass of {what}") for what in unweighed(case))
+        yield from (Caveat(topic=Topic.MASS, what=reason("mass_of", what=what)) for what in unweighed(case))

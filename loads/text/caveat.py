@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from alula.loads.text.reason import Reason
+
 
 class Heading(StrEnum):
     """Under which heading a caveat is told."""
@@ -49,22 +51,13 @@ class Caveat:
     ----------
     heading : Heading
     topic : Topic
-    what : str
-        In a few words.
-    why : str
-        Its reason; "" where ``what`` has it.
+    what : Reason or str
+        In a few words; a text is a name.
+    why : Reason or str
+        "" where ``what`` has it.
     """
 
     heading: Heading = Heading.NOT_CHECKED
     topic: Topic
-    what: str
-    why: str = ""
-
-    def __str__(self) -> str:
-        """For people: ``thigh (no part)``."""
-        return f"{self.what} ({self.why})" if self.why else self.what
-
-    @property
-    def short(self) -> str:
-        """For a headline: without the reason where most cases have the same."""
-        return self.what if self.topic in (Topic.SHAFT, Topic.COLLISIONS) else str(self)
+    what: Reason | str
+    why: Reason | str = ""

@@ -11,8 +11,8 @@ from alula.fea.outcomes.result import CheckResult, HandResult
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Command, Items, Part, Section
 from alula.reports.sentences import told
+from alula.reports.sentences.verdicts import named
 from alula.reports.words.numbers import joined, number, plain, sentence
-from alula.reports.words.wording import named
 
 _NARROWED: dict[SourceKind, str] = {
     SourceKind.DISCRETISATION: "finer meshes (--accuracy, --max-unknowns; of frames solid.mesh_size)",

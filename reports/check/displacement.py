@@ -10,10 +10,10 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.solid.buckling_factor import MOST
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.pins import pin_parts, pin_record
-from alula.reports.check.statics import reaction_records
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
 from alula.reports.sections.play import play_parts, play_record
+from alula.reports.sections.reactions import reaction_records
 from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
 from alula.reports.sentences import told as told_of
 from alula.reports.words.numbers import joined
@@ -57,11 +57,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
         told = Text(f"{told.text} {below} {bold('undeformed pose')}.", "apart")
     yield told
     yield linkage_text(case)
-    if found := thrusts(forces, moved.reactions):
-        facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
-        places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
-        yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
-    yield from play_parts(result.case, case)
+    yield from play_parts(result.case, case.name, forces.play)
     yield from _deformed(case)
     yield from _ways_to_hold(result, case)
     yield from pin_parts(result.case, case)

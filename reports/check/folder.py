@@ -1,7 +1,7 @@
 """The output folder of a check: report, result, pictures and VTU files."""
 
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -9,9 +9,9 @@ from pathlib import Path
 from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
-from alula.reports.check.links import worst_load_case
+from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
-from alula.reports.page.claims_page import CLAIMS, write_claims
+from alula.reports.figures.sheet.drawing import Drawing
 from alula.reports.page.output import MARK, write_folder
 from alula.reports.renderers.page import as_page
 
@@ -81,34 +81,39 @@ def write_report(
     from alula.reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
-        told, published = result, write_claims(result, claims, folder, REPORT)
+        told, (beside_it, published) = result, published_page(result, claims, REPORT)
+        if beside_it:
+            (folder / CLAIMS).write_text(beside_it, encoding="utf-8")
         page = check_page(told, check_sections(told, published))
         with ThreadPoolExecutor(1) as beside:
             drawn = beside.submit(check_pictures, result, page, progress)
             _write_fields(result, folder / FIELDS)
             models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
             pictures, warnings = drawn.result()
-        if warnings:
-            for warning in warnings:
-                progress(f"Warning: {warning}")
-            told = replace(result, warnings=(*result.warnings, *warnings))
-        sections = check_sections(told, published)
-        files = {name: picture if isinstance(picture, bytes) else picture.png() for name, picture in pictures.items()}
-        shown = {name: repacked(one) if name.startswith("stress-") else one for name, one in pictures.items()}
-        (folder / REPORT).write_text(as_page(check_page(told, sections), shown, models), encoding="utf-8")
-        (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
-        (folder / PICTURES).mkdir()
-        for name, picture in files.items():
-            (folder / PICTURES / f"{name}.png").write_bytes(picture)
+            files = beside.submit(_write_pictures, pictures, folder / PICTURES)  # packing them lets others run
+            if warnings:
+                for warning in warnings:
+                    progress(f"Warning: {warning}")
+                told = replace(result, warnings=(*result.warnings, *warnings))
+            sections = check_sections(told, published)
+            (folder / REPORT).write_text(as_page(check_page(told, sections), pictures, models), encoding="utf-8")
+            (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
+            files.result()
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
 
     write_folder(target, "check", fill)
 
 
+def _write_pictures(pictures: Mapping[str, Drawing], folder: Path) -> None:
+    folder.mkdir()
+    for name, picture in pictures.items():
+        (folder / f"{name}.png").write_bytes(picture.png())
+
+
 def _write_fields(result: CheckResult, folder: Path) -> None:
     """Write the VTU file of every link that was solved as a solid."""
-    links = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
+    links = {link: result.governing(link).links[link] for link in next(iter(result.load_cases.values())).links}
     solids = {link: found for link, found in links.items() if isinstance(found, SolidResult)}
     if not solids:
         return
@@ -117,24 +122,3 @@ def _write_fields(result: CheckResult, folder: Path) -> None:
     folder.mkdir()
     for link, found in solids.items():
         write_vtu(folder / f"{link}.vtu", found.governing_case.displacement, found.stress)
-
-
-def repacked(picture: bytes) -> bytes:
-    """Return a PNG as lossless WebP, which takes some six tenths of the bytes where colours shade into one another.
-
-    Parameters
-    ----------
-    picture : bytes
-
-    Returns
-    -------
-    bytes
-    """
-    from io import BytesIO
-
-    from PIL import Image
-
-    packed = BytesIO()
-    with Image.open(BytesIO(picture)) as image:
-        image.save(packed, "WEBP", lossless=True, quality=60)
-    return packed.getvalue()

@@ -7,11 +7,11 @@ from typing import Any
 from alula.fea.common.verdict import by_nearness
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
-from alula.reports.check.links import worst_load_case
-from alula.reports.check.statics import shown_components
-from alula.reports.sections.section import Beside, Column, Folded, Number, Part, Picture, Section, Table, say, words
+from alula.reports.sections.pose import pose_tables
+from alula.reports.sections.reactions import shown_components
+from alula.reports.sections.section import Beside, Folded, Number, Part, Picture, Section, say
+from alula.reports.sentences.verdicts import checks_of
 from alula.reports.words.numbers import plain
-from alula.reports.words.wording import checks_of
 
 
 def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
@@ -27,7 +27,7 @@ def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
         That of the check nearest to its limit first.
     """
     first, checks = next(iter(result.load_cases.values())), by_nearness(checks_of(result))
-    names = dict.fromkeys([first.name, *(worst_load_case(result, link).name for link in first.links)])
+    names = dict.fromkeys([first.name, *(result.governing(link).name for link in first.links)])
     return tuple(sorted(names, key=lambda name: not checks or name != checks[0].load_case))
 
 
@@ -89,30 +89,12 @@ def linkage_section(result: CheckResult) -> Section:
     pose = result.pose
     parts: list[Part] = [linkage_picture(result, name, "half") for name in governing_load_cases(result)[1:]]
     parts += _held(result)
-    tables = (
-        Table(
-            key="points",
-            columns=(words("point"), Column("x", "mm"), Column("y", "mm")),
-            rows=tuple((name, *(Number(float(x), decimals=3) for x in at)) for name, at in pose.points.items()),
-            caption="Points in global axes",
-        ),
-        Table(
-            key="directions",
-            columns=(words("link"), words("from → to"), Column("direction", "deg")),
-            rows=tuple(
-                (link, f"{names[0]} → {names[-1]}", Number(math.degrees(pose.angles[link]) % 360.0, "", 6))
-                for link in pose.linkage.moving
-                for names in [list(result.case.links[link].points)]
-            ),
-            caption="Directions of the links",
-        ),
-    )
     closure = say(
         "Closure residual {residual} of the longest link ({length})",
         residual=Number(pose.residual, "", 2),
         length=Number(pose.linkage.longest, "mm", stated=True),
     )
-    folded = (closure, Beside(tables, "columns"), *_dead_points(result))
+    folded = (closure, Beside(pose_tables(pose, result.case), "columns"), *_dead_points(result))
     parts.append(Folded("Points, directions, closure and distance to a dead point", folded))
     return Section(
         key="linkage",

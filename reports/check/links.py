@@ -25,28 +25,12 @@ from alula.reports.sections.section import (
     words,
 )
 from alula.reports.sentences import told
+from alula.reports.sentences.verdicts import agreement, apart
 from alula.reports.words.numbers import joined, number, plain, sentence
-from alula.reports.words.wording import agreement, apart
 
 LEAST_TOLD = 1e-9
 """Solver error below which its size is not stated."""
 _SERIES = "sizes values order kind factor index"
-
-
-def worst_load_case(result: CheckResult, link: str) -> LoadCaseResult:
-    """Return the load case with the lowest end of a link's safety factor, or with an unknown one.
-
-    Parameters
-    ----------
-    result : CheckResult
-    link : str
-        Its name.
-
-    Returns
-    -------
-    LoadCaseResult
-    """
-    return min(result.load_cases.values(), key=lambda case: case.links[link].severity)
 
 
 def links_section(result: CheckResult) -> Section:
@@ -76,7 +60,10 @@ def links_section(result: CheckResult) -> Section:
         data={
             "links": {name: _worst(result, name) for name in names},
             "load_cases": {
-                name: {"links": {link: _link(found) for link, found in case.links.items()}}
+                name: {
+                    "title": result.case.load_cases[name].title,
+                    "links": {link: _link(found) for link, found in case.links.items()},
+                }
                 for name, case in result.load_cases.items()
             },
         },
@@ -99,7 +86,7 @@ def _summary(result: CheckResult, names: Sequence[str]) -> Iterator[Part]:
     if len(cases) == 1:
         yield _table(every, several=False, key="links")
         return
-    worst = [worst_load_case(result, name) for name in names]
+    worst = [result.governing(name) for name in names]
     yield _table([(case, case.links[name]) for case, name in zip(worst, names, strict=True)], several=True)
     yield Folded("Under each load case", (_table(every, several=True, key="links"),), told=True)
 
@@ -135,7 +122,7 @@ def _table(rows: Sequence[tuple[LoadCaseResult, LinkResult]], *, several: bool, 
 
 def _group(result: CheckResult, name: str, layers: Mapping[str, BuildDirections]) -> Group:
     """Return all of one link under the load case that stresses it most."""
-    worst = worst_load_case(result, name)
+    worst = result.governing(name)
     found = worst.links[name]
     parts: list[Part] = []
     picture = Picture(
@@ -324,7 +311,8 @@ def discretisation_record(found: Discretisation) -> dict[str, Any]:
     -------
     dict
     """
-    return entries(found, "status accuracy sentence") | {
+    return entries(found, "status accuracy") | {
+        "sentence": told(found.reason),
         "stress": entries(found.stress, _SERIES),
         "displacement": entries(found.displacement, _SERIES),
         "meshes": [entries(mesh, "elements unknowns error seconds") for mesh in found.meshes],
@@ -380,7 +368,7 @@ def _by_model(result: LinkResult) -> dict[str, Any]:
 
 def _worst(result: CheckResult, link: str) -> dict[str, Any]:
     """The link under the load case that stresses it most, with the displacement of the one that moves it most."""
-    worst = worst_load_case(result, link)
+    worst = result.governing(link)
     moved = max(result.load_cases.values(), key=lambda case: case.links[link].displacement_max.high)
     return _link(worst.links[link]) | {
         "load_case": worst.name,

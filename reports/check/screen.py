@@ -9,9 +9,9 @@ from alula.reports.renderers.console import print_sections, print_table, verdict
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
 from alula.reports.sentences import told
+from alula.reports.sentences.verdicts import besides, brief, checks_of, headline
 from alula.reports.words.numbers import joined, sentence
 from alula.reports.words.terminal import height, say, say_command, shortened
-from alula.reports.words.wording import besides, brief, checks_of, headline
 
 if TYPE_CHECKING:
     from rich.console import Console

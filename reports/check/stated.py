@@ -6,11 +6,11 @@ from typing import Any
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.geometry.materials.material import Material
 from alula.loads.sources.published_statics import StaticsAudit
-from alula.loads.text.caveat import Heading
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold, code, link
 from alula.reports.sections.section import Column, Group, Items, Number, Part, Section, Table, Text, say, words
 from alula.reports.sentences import told
+from alula.reports.sentences.caveats import not_checked
 from alula.reports.words.numbers import joined, sentence
 
 _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
@@ -60,7 +60,7 @@ def case_section(result: CheckResult, published: str = "") -> Section:
         parts=tuple(parts),
         data={
             "conditions": entries(case.conditions, "duration temperature"),
-            "not_checked": [data(str(one)) for one in result.caveats if one.heading is Heading.NOT_CHECKED],
+            "not_checked": not_checked(result.caveats),
             "caveats": [entries(one, "heading topic what why") for one in result.caveats],
             "assumptions": list(case.assumptions),
             "warnings": data(result.warnings),

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +12,13 @@ from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.case.layers import pin_masses
 from alula.loads.records.carried import CarriedSpread
-from alula.loads.statics.rounding import size_of, without_rounding
 from alula.loads.statics.statics import Reactions
-from alula.reports.sections.data import entries
-from alula.reports.sections.friction import friction_record, friction_sentence
-from alula.reports.sections.markup import bold, code, sub
+from alula.reports.sections.friction import friction_record
+from alula.reports.sections.markup import code, sub
+from alula.reports.sections.reactions import reaction_parts, reaction_records
 from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
-from alula.reports.sections.springs import holding_sentence, spring_sentences, standing_record
-from alula.reports.words.numbers import joined, plain, turning
-
-AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
-_ROUNDING = 1e-9
+from alula.reports.sections.springs import holding_sentence, standing_record
+from alula.reports.words.numbers import joined, plain
 
 
 def statics_section(result: CheckResult) -> Section:
@@ -71,84 +66,8 @@ _SPRINGS = (
 
 
 def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
-    told, pose = without_rounding(case.reactions), result.pose
     yield Text(f"{weight_sentence(result.case, case.name)}.")
-    shown = shown_components(case.reactions)
-    yield joint_table(told, shown, case.name)
-    if "Mz" not in shown:
-        for joint in told.joints.values():
-            if pose.linkage.joints[joint.joint].type == "slider":
-                moment = Number(float(joint.wrench[5]), "N·mm")
-                yield say(
-                    "The guide {joint} also exerts a moment of {moment} ({turns}) on {on}",
-                    joint=joint.joint, moment=moment, turns=turning(joint.wrench[5]), on=joint.on,
-                )  # fmt: skip
-    for line in spring_sentences(case.standing):
-        yield Text(f"{line}.")
-    yield _driving(case, told)
-    yield say("Residual of the equilibrium: {share} of the load", "note", share=Number(case.reactions.residual, "", 2))
-    if case.work is not None:
-        yield Text(f"{friction_sentence(case.work, case.reactions)}.")
-
-
-def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Table:
-    """Return a table of joint forces.
-
-    Parameters
-    ----------
-    told : Reactions
-        Without rounding errors.
-    shown : tuple of str
-        Components, of ``AXES``.
-    load_case : str
-
-    Returns
-    -------
-    Table
-    """
-    forces, moments = ([axis for axis in shown if axis[0] == kind] for kind in "FM")
-    size = size_of(told)
-    return Table.of(
-        (
-            words("joint"),
-            words("by → on"),
-            *(Column(f"F{sub(axis[1])}", "N") for axis in forces),
-            Column("size", "N"),
-            *(Column(f"M{sub(axis[1])}", "N·mm") for axis in moments),
-        ),
-        [
-            (
-                name,
-                f"{joint.by} → {joint.on}",
-                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in forces),
-                Number(float(joint.magnitude), beside=float(size[0])),
-                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in moments),
-            )
-            for name, joint in told.joints.items()
-        ],
-        key="joints",
-        caption=f"Joint forces{' and moments about the joint' if moments else ''}, global axes",
-        under=(("load case", load_case),),
-        kind="keep",
-    )
-
-
-def _driving(case: LoadCaseResult, told: Reactions) -> Text:
-    """Return what drives or holds the pose."""
-    drive = case.reactions.drive
-    if held := holding_sentence(case.standing):
-        return Text(bold(f"{held}."))
-    if drive is None:
-        return Text("")
-    if drive.pushes(case.reactions.pose.linkage):
-        return say(
-            "Drive force on {link} along {joint}: {force}, already included in the guide reaction above",
-            link=drive.link, joint=drive.joint, force=Number(told.drive_force, "N"),
-        )  # fmt: skip
-    return say(
-        "Drive torque on {link} about {joint}: {torque} ({turns}; counter-clockwise is positive)",
-        link=drive.link, joint=drive.joint, torque=Number(told.drive_torque, "N·mm"), turns=turning(told.drive_torque),
-    )  # fmt: skip
+    yield from reaction_parts(case.name, case.reactions, case.forces, case.standing, case.work, case.loads)
 
 
 def _method(result: CheckResult, first: LoadCaseResult) -> Text:
@@ -199,49 +118,6 @@ def weight_sentence(case: Case, name: str) -> str:
     if case.massless:
         told.append(f"{joined(list(case.massless))} {'is' if len(case.massless) == 1 else 'are'} massless")
     return "; ".join(told)
-
-
-def shown_components(reactions: Reactions) -> tuple[str, ...]:
-    """Return the components of the joint forces that a table shows.
-
-    Fx and Fy always; Fz, Mx and My with loads out of the plane; Mz with bonded joints.
-
-    Parameters
-    ----------
-    reactions : Reactions
-
-    Returns
-    -------
-    tuple of str
-        Of ``AXES``.
-    """
-    wrenches = np.array([joint.wrench for joint in reactions.joints.values()]).reshape(-1, 6)
-    sizes = np.abs(wrenches).max(axis=0, initial=0.0)
-    force, arm = sizes[:3].max(), reactions.pose.linkage.longest
-    acts = sizes > _ROUNDING * np.array([force] * 3 + [force * arm] * 3)
-    revolute = [reactions.pose.linkage.joints[name].type == "revolute" for name in reactions.joints]
-    turned = np.abs(wrenches[revolute, 5]).max(initial=0.0) > _ROUNDING * force * arm
-    spatial = bool(acts[2:5].any())
-    shown = {"Fx": True, "Fy": True, "Fz": spatial, "Mx": spatial, "My": spatial, "Mz": bool(turned)}
-    return tuple(axis for axis in AXES if shown[axis])
-
-
-def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
-    """Return the reaction of every joint as plain data: force in the plane, magnitude, and the whole wrench.
-
-    Parameters
-    ----------
-    reactions : Reactions
-
-    Returns
-    -------
-    list of dict
-        One entry per joint.
-    """
-    return [
-        entries(joint, "joint on by magnitude wrench") | {"force": joint.force[:2].tolist()}
-        for joint in reactions.joints.values()
-    ]
 
 
 def _system(case: LoadCaseResult) -> dict[str, object]:

@@ -10,7 +10,7 @@ from alula.geometry.base.version import alula_version
 from alula.reports.check.changes import changes_section
 from alula.reports.check.displacement import displacement_section
 from alula.reports.check.linkage import governing_load_cases, linkage_picture, linkage_section
-from alula.reports.check.links import links_section, worst_load_case
+from alula.reports.check.links import links_section
 from alula.reports.check.mass_and_size import whole_section
 from alula.reports.check.opinion import opinion_section
 from alula.reports.check.pins import pins_left_out
@@ -25,9 +25,9 @@ from alula.reports.sections.design import design_section
 from alula.reports.sections.frequencies import frequencies_section
 from alula.reports.sections.markup import code
 from alula.reports.sections.section import Picture, Section, parts_of
+from alula.reports.sentences.verdicts import checks_of, headline
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from alula.reports.words.numbers import fixed
-from alula.reports.words.wording import checks_of, headline
 
 
 def check_sections(result: CheckResult, published: str = "") -> tuple[Section, ...]:
@@ -158,12 +158,12 @@ def check_pictures(
     Returns
     -------
     tuple
-        Name -> drawing, or PNG of a solid's stress; and warnings.
+        Name -> Drawing; and warnings.
     """
     from alula.reports.figures.figures import stress_plots
 
     links = next(iter(result.load_cases.values())).links
-    worst = {link: worst_load_case(result, link).links[link] for link in links}
+    worst = {link: result.governing(link).links[link] for link in links}
     progress("Drawing the linkage, the internal forces and the stress plots ...")
     with ThreadPoolExecutor(1) as beside:  # its work is that of a child process
         rendered = beside.submit(stress_plots, worst, {link: result.case.links[link].points for link in worst})

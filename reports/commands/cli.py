@@ -268,7 +268,9 @@ def claims(
     from alula.fea.claims.sources import check_all, check_claims
     from alula.geometry.base.errors import CaseError
     from alula.loads.sources.claim import read_source, sources
-    from alula.reports.tables.claims import as_json, as_markdown, as_text
+    from alula.reports.check.published import as_json, as_markdown
+    from alula.reports.commands.telling import tell
+    from alula.reports.sections.published import claims_section, count
     from alula.reports.words.limits import limited
 
     if case is None and overrides:
@@ -279,13 +281,14 @@ def claims(
         else:
             found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
     results = [result for group in found.values() for result in group]
+    titles = {name: read_source(name).title if name in sources() else name for name in found}
     if json:
         print(as_json(results))
     elif markdown:
-        titles = {name: read_source(name).title if name in sources() else name for name in found}
         print(as_markdown(found, titles), end="")
     else:
-        print(as_text(results))
+        tell([claims_section(group, titles[name]) for name, group in found.items()])
+        print(count(results))
     if strict and any(result.finding.refutes for result in results):
         raise SystemExit(1)
 
@@ -308,12 +311,14 @@ def synth(
     json: JsonOption = False,
 ) -> None:
     """Synthesise a four-bar through three precision points, and report its defects."""
-    from alula.reports.commands.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
+    from alula.reports.commands.synthesis import PUBLISHED_POINTS, read_synthesis, write_synthesis
+    from alula.reports.commands.telling import tell
     from alula.reports.page.output import refuse_unusable, write_folder
+    from alula.reports.tools.synthesis import synthesis_section
 
     refuse_unusable(output, "synth")
     found = read_synthesis(points or PUBLISHED_POINTS, ground)
-    print_synthesis(found, json=json)
+    tell([synthesis_section(found)], json=json)
     if output is not None:
         write_folder(output, "synth", lambda folder: write_synthesis(found, folder))
         _tell(f"\nRecord and drawing: {output / 'synth'}", json)
@@ -346,7 +351,7 @@ def inspect(
     json: JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from alula.reports.commands.inspect_part import as_json, inspect_file, print_inspection, write_inspection
+    from alula.reports.commands.inspect_part import inspect_file, print_inspection, write_inspection
     from alula.reports.figures.figures import start_renderer
     from alula.reports.page.output import refuse_unusable, write_folder
 
@@ -354,7 +359,7 @@ def inspect(
     if output is not None:
         start_renderer()
     found = inspect_file(file, material, unit)
-    _show(found, as_json if json else None, print_inspection)
+    print_inspection(found, json=json)
     if output is not None:
         progress("Drawing the part ...")
         write_folder(output, "inspect", lambda folder: write_inspection(found, folder, progress))

@@ -26,6 +26,21 @@ VariantsOption = Annotated[
 ]
 WorkersOption = Annotated[int | None, typer.Option("--workers", min=1, max=256, hidden=True)]
 """What ``VariantsOption`` was called; it goes with the version after 0.1."""
+VaryOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--vary",
+        help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".',
+    ),
+]
+LinkOption = Annotated[
+    list[str] | None,
+    typer.Option("--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'),
+]
+AccuracyOption = Annotated[
+    str | None,
+    typer.Option("--accuracy", help='Discretisation error of solids, such as "5 %".', show_default=False),
+]
 MemoryOption = Annotated[
     str | None,
     typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.', show_default=False),

@@ -1,7 +1,5 @@
 """The command ``alula size``: the least size that passes, the greatest that fails, and what limits them."""
 
-import json as jsonlib
-import sys
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -10,8 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.reports.commands.ending import progress
 from alula.reports.commands.options import (
+    AccuracyOption,
     CaseArgument,
+    JsonOption,
+    LinkOption,
     SetOption,
     VariantsOption,
     WorkersOption,
@@ -19,10 +21,9 @@ from alula.reports.commands.options import (
     folder_option,
 )
 from alula.reports.commands.study import stated
+from alula.reports.commands.telling import tell
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from alula.fea.sizing.least import Sized
     from alula.fea.sizing.lightest import Lightest
     from alula.loads.compose.stated_case import StatedCase
@@ -63,26 +64,20 @@ def size(
     step: Annotated[
         str | None, typer.Option("--step", help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
     ] = None,
-    link: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'
-        ),
-    ] = None,
+    link: LinkOption = None,
     overrides: SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model that decides: auto, beam or solid.")] = "auto",
-    accuracy: Annotated[
-        str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
-    ] = None,
+    accuracy: AccuracyOption = None,
     analysis: Annotated[str, typer.Option(help="check or envelope.")] = "check",
     threads: VariantsOption = None,
     workers: WorkersOption = None,
     output: Annotated[Path | None, folder_option("Folder that keeps what was computed, as of a study.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+    json: JsonOption = False,
 ) -> None:
     """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
     from alula.loads.case.case_file import stated_changes
     from alula.loads.compose.stated_case import StatedCase
+    from alula.reports.study.size import size_section
 
     found = find_size(
         StatedCase.read(case),
@@ -100,15 +95,10 @@ def size(
         analysis=analysis,
         workers=at_a_time(threads, workers),
         folder=output,
-        tell=_tell,
+        tell=progress,
     )
-    if json:
-        print(jsonlib.dumps(_record(found), indent=2, allow_nan=False))
-    else:
-        from rich.console import Console
-
-        print_found(found, Console())
-    raise SystemExit(_status(found))
+    tell([size_section(found)], json=json)
+    raise SystemExit(exit_status(found))
 
 
 def find_size(
@@ -209,43 +199,6 @@ def find_size(
     return found
 
 
-def print_found(found: "Sized | Lightest", console: "Console") -> None:
-    """Print the result of either search.
-
-    Parameters
-    ----------
-    found : Sized or Lightest
-    console : rich.console.Console
-    """
-    from alula.fea.sizing.least import Sized
-    from alula.reports.commands.lightest import print_lightest
-    from alula.reports.words.terminal import say
-    from alula.reports.words.wording import besides
-
-    if isinstance(found, Sized):
-        print_size(found, console)
-    else:
-        print_lightest(found, console)
-    if left := besides(found.caveats):
-        say(console, left)
-
-
-def _record(found: "Sized | Lightest") -> Mapping[str, Any]:
-    from alula.fea.sizing.least import Sized
-    from alula.reports.commands.lightest import record_of
-    from alula.reports.sections.data import entries
-
-    told = record(found) if isinstance(found, Sized) else record_of(found)
-    return {**told, "caveats": [entries(one, "heading topic what why") for one in found.caveats]}
-
-
-def _status(found: "Sized | Lightest") -> int:
-    from alula.fea.sizing.least import Sized
-    from alula.reports.commands.lightest import status_of
-
-    return exit_status(found) if isinstance(found, Sized) else status_of(found)
-
-
 def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None) -> "list[Axis]":
     """Read what may be chosen: ranges in steps, and lists."""
     from alula.geometry.base.errors import CaseError
@@ -274,115 +227,21 @@ def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None
     return axes
 
 
-def _tell(sentence: str) -> None:
-    print(sentence, file=sys.stderr, flush=True)
-
-
-def exit_status(found: "Sized") -> int:
-    """Return the status of the command: 0 where a value passes, 1 where all fail, 3 where none is decided to pass.
+def exit_status(found: "Sized | Lightest") -> int:
+    """Return the status of the command: 0 where a value passes, 1 where all fail, 3 where that is open.
 
     Parameters
     ----------
-    found : Sized
+    found : Sized or Lightest
 
     Returns
     -------
     int
     """
+    from alula.fea.sizing.lightest import Lightest, none_passes
+
+    if isinstance(found, Lightest):
+        return 0 if found.best is not None else 1 if none_passes(found) else 3
     if found.passing is not None:
         return 0
     return 1 if found.failing in (0, len(found.values) - 1) and not found.opened else 3
-
-
-def record(found: "Sized") -> Mapping[str, Any]:
-    """Return the result as plain data.
-
-    Parameters
-    ----------
-    found : Sized
-
-    Returns
-    -------
-    mapping
-    """
-    from alula.geometry.base.version import result_stamp
-    from alula.reports.renderers.record import finite
-
-    def value(step: int | None) -> object:
-        return None if step is None else found.values[step]
-
-    solved = [
-        {
-            "value": found.values[step],
-            "state": result.state,
-            "verdict": result.verdict,
-            "sentence": result.sentence,
-            "limit": None if (limit := found.limit(step)) is None else limit.__dict__,
-        }
-        for step, result in sorted(found.results.items())
-    ]
-    told = {
-        **result_stamp(),
-        "entry": found.path,
-        "passing": value(found.passing),
-        "failing": value(found.failing),
-        "undecided": [found.values[step] for step in found.opened],
-        "fails_beyond": [found.values[step] for step in found.turns],
-        "solved": solved,
-    }
-    return dict(finite(told, {}))
-
-
-def print_size(found: "Sized", console: "Console") -> None:
-    """Print the result.
-
-    Parameters
-    ----------
-    found : Sized
-    console : rich.console.Console
-    """
-    from alula.reports.words.terminal import say
-
-    least, most = ("Least", "greatest") if found.rising else ("Greatest", "least")
-    span = f"{found.values[0]} to {found.values[-1]}"
-    if found.passing is None:
-        say(console, f"No value of {found.path} from {span} passes over its whole band.", style="bold")
-    else:
-        say(console, f"{least} {found.path} that passes: {found.values[found.passing]}.", style="bold")
-        if found.passing == (0 if found.rising else len(found.values) - 1):
-            say(console, "The range begins with it; values beyond may pass, too.")
-    if found.failing is None:
-        say(console, f"None from {span} fails.")
-    else:
-        say(console, f"The {most} that fails: {found.values[found.failing]}.")
-    if found.opened:
-        say(console, f"Undecided: {', '.join(str(found.values[step]) for step in found.opened)}.")
-    if found.turns:
-        values = ", ".join(str(found.values[step]) for step in found.turns)
-        say(
-            console, f"The verdict turns more than once: {values} fails again. Choose from alula study with this range."
-        )
-    best = found.passing if found.passing is not None else _best(found)
-    for step in dict.fromkeys((best, found.failing)):
-        if step is not None and (sentence := _limited(found, step)):
-            say(console, sentence)
-
-
-def _best(found: "Sized") -> int | None:
-    """The undecided step on the passing side, where none passes."""
-    return max(found.opened, key=lambda step: step if found.rising else -step, default=None)
-
-
-def _limited(found: "Sized", step: int) -> str:
-    from alula.fea.study.margin import sense_of
-    from alula.reports.study.rows import number_text
-
-    limit, gain = found.limit(step), found.gain(step)
-    if limit is None:
-        return ""
-    told = f"At {found.values[step]} {number_text(limit)} limits it"
-    if gain is None or step == len(found.values) - 1:
-        return told + "."
-    other = found.values[step + (1 if found.rising else -1)]
-    verb = "raises" if sense_of(limit).value == "≥" else "lowers"
-    return f"{told}; {other} {verb} it by some {float(f'{100.0 * abs(gain):.2g}'):g} %."

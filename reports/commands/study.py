@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 import typer.core
 
-from alula.reports.commands.options import VariantsOption, WorkersOption, at_a_time, folder_option
+from alula.reports.commands.options import (
+    AccuracyOption,
+    LinkOption,
+    VariantsOption,
+    VaryOption,
+    WorkersOption,
+    at_a_time,
+    folder_option,
+)
 
 if TYPE_CHECKING:
     from alula.fea.study.study import Progress
@@ -45,19 +53,8 @@ def run(
         typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).", show_default=False),
     ],
     output: Annotated[Path, folder_option("Folder for study.sqlite, on a local disk.")],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--vary",
-            help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".',
-        ),
-    ] = None,
-    link: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'
-        ),
-    ] = None,
+    vary: VaryOption = None,
+    link: LinkOption = None,
     points: Annotated[
         str, typer.Option("--points", help="CSV file of points; entries in its first line.", show_default=False)
     ] = "",
@@ -75,9 +72,7 @@ def run(
     fidelity: Annotated[
         str | None, typer.Option(help="Model of a check: auto (default), beam or solid.", show_default=False)
     ] = None,
-    accuracy: Annotated[
-        str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
-    ] = None,
+    accuracy: AccuracyOption = None,
     mass: Annotated[
         bool | None, typer.Option("--mass/--no-mass", help="Weigh the links; default: where solids are built.")
     ] = None,

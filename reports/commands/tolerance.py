@@ -8,6 +8,7 @@ import typer
 
 from alula.reports.commands.ending import progress
 from alula.reports.commands.options import (
+    AccuracyOption,
     CaseArgument,
     JsonOption,
     MemoryOption,
@@ -42,10 +43,7 @@ def tolerance(
     seed: Annotated[int, typer.Option(min=0, help="Of the samples.")] = 0,
     threads: ThreadsOption = 2,
     memory: MemoryOption = None,
-    accuracy: Annotated[
-        str | None,
-        typer.Option(help='Discretisation error of the nominal solids, such as "5 %".', show_default=False),
-    ] = None,
+    accuracy: AccuracyOption = None,
 ) -> None:
     """Sample the tolerances of a case: how likely every check passes, and which tolerance matters."""
     from alula.fea.check.run import effort_of

@@ -14,7 +14,7 @@ from alula.reports.motion.friction import friction_over_motion, friction_texts
 from alula.reports.motion.linkage import linkage_over_motion, linkage_text
 from alula.reports.motion.play import drive_with_play, play_record
 from alula.reports.sections.section import Group, Number, Part, Section, Table, Text, say, words
-from alula.reports.words.wording import told_speed
+from alula.reports.sentences.verdicts import told_speed
 
 
 def drive_section(found: MotionFindings) -> Section:

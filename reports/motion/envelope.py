@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from alula.fea.common.verdict import by_nearness
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from alula.fea.outcomes.unchecked import caveats, unchecked
+from alula.fea.outcomes.unchecked import caveats
 from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record
 from alula.reports.motion.friction import friction_over_motion, friction_texts
@@ -35,9 +35,10 @@ from alula.reports.sections.section import (
     words,
 )
 from alula.reports.sentences import told
+from alula.reports.sentences.caveats import caveat, not_checked
+from alula.reports.sentences.verdicts import besides, decision
 from alula.reports.turnable.moving import ENVELOPE_CAPTION
 from alula.reports.words.numbers import fixed, sentence
-from alula.reports.words.wording import besides, decision
 
 UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
 
@@ -327,7 +328,7 @@ def _limits(result: EnvelopeResult) -> Section:
     found = caveats(result.case, over_motion=True)
     headings: Mapping[str, list[str]] = {one.heading: [] for one in found}
     for one in found:
-        headings[one.heading].append(str(one))
+        headings[one.heading].append(caveat(one))
     items = tuple((heading.capitalize(), f"{'; '.join(texts)}.") for heading, texts in headings.items())
     return Section(
         key="limits",
@@ -335,7 +336,7 @@ def _limits(result: EnvelopeResult) -> Section:
         short="Not covered",
         parts=(Items(items, "columns2 note"),) if items else (),
         data={
-            "not_checked": list(unchecked(result.case, over_motion=True)),
+            "not_checked": not_checked(caveats(result.case, over_motion=True)),
             "caveats": [entries(one, "heading topic what why") for one in found],
         },
     )

@@ -32,7 +32,7 @@ def linkage_over_motion(moved: CaseMotion, over: LinkageOverMotion) -> dict[str,
         "limit_load_at": told(over.limit_pose),
         "displacement": data(over.displacement),
         "displacement_at": told(over.displacement_pose),
-        "where": over.where or None,
+        "where": data(over.where) or None,
     }
 
 
@@ -56,7 +56,7 @@ def linkage_text(moved: CaseMotion, over: LinkageOverMotion) -> Text:
         told += f" at {moved.motion.coordinate} = {{limit_at}}"
         facts["limit_at"] = Number(record["limit_load_at"], unit, 5)
     if not over.displacement.unknowable:
-        told += f", largest displacement {{displacement}} ({over.where})"
+        told += f", largest displacement {{displacement}} ({record['where']})"
         facts["displacement"] = Number(over.displacement, "mm")
         if record["displacement_at"] is not None:
             told += f" at {moved.motion.coordinate} = {{displacement_at}}"

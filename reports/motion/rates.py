@@ -27,7 +27,7 @@ from alula.reports.sections.section import (
     Text,
     words,
 )
-from alula.reports.words.wording import told_speed
+from alula.reports.sentences.verdicts import told_speed
 
 _INERTIAL = ("momentum", "angular_momentum", "kinetic_energy")
 _LINK = ("angular_speed", "angular_acceleration", *_INERTIAL)

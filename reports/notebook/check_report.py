@@ -12,13 +12,12 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
-from alula.reports.check.links import worst_load_case
 from alula.reports.check.whole_check import check_sections
 from alula.reports.notebook.shown import Picture, Row, Table, Tabled, pick, summary, table_of
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
 from alula.reports.sentences import told
-from alula.reports.words.wording import checks_of, headline, inapplicable
+from alula.reports.sentences.verdicts import checks_of, headline, inapplicable
 
 RENAMED = {
     "checks": {
@@ -74,12 +73,12 @@ class CheckReport(Tabled):
     @property
     def safety_factors(self) -> Mapping[str, Band]:
         """Least safety factor of every link over the load cases [1], with its band: ``value``, ``low``, ``high``."""
-        return {link: worst_load_case(self.result, link).links[link].safety_factor.told for link in self._links}
+        return {link: self.result.governing(link).links[link].safety_factor.told for link in self._links}
 
     @property
     def stresses(self) -> Mapping[str, Band]:
         """Stress that decides the safety factor of every link [MPa]: von Mises, or largest principal if brittle."""
-        return {link: worst_load_case(self.result, link).links[link].decisive.told for link in self._links}
+        return {link: self.result.governing(link).links[link].decisive.told for link in self._links}
 
     @property
     def displacements(self) -> Mapping[str, Band]:
@@ -360,7 +359,7 @@ class CheckReport(Tabled):
 
     def _case(self, link: str, load_case: str | None) -> LoadCaseResult:
         if load_case is None:
-            return worst_load_case(self.result, link)
+            return self.result.governing(link)
         return pick(self.result.load_cases, load_case, "load case")
 
 

@@ -7,7 +7,7 @@ from html import escape
 
 from alula.fea.claims.audit import ClaimResult
 from alula.reports.notebook.shown import Table, Tabled
-from alula.reports.tables.claims import as_records, count
+from alula.reports.sections.published import claims_section, count
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class ClaimsReport(Tabled):
 
     def table(self) -> Table:
         """Return the figures: name, published value, ours, finding, source, note."""
-        return Table(tuple(dict(row) for row in as_records(self.result)))
+        return Table(tuple(claims_section(self.result).data["claims"]))
 
     def __str__(self) -> str:
         return self.headline

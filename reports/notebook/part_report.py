@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.exchange.part import part_entries
-from alula.reports.commands.inspect_part import GRAMS, Inspection
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled
+from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
+from alula.reports.tools.part import BORES, GRAMS, Inspection, part_section
 
 
 @dataclass(frozen=True)
@@ -37,17 +37,7 @@ class PartReport(Tabled):
 
     def table(self) -> Table:
         """Return one row a bore: diameter, length and centre [mm] in the frame of the file."""
-        rows: list[Row] = [
-            {
-                "bore": bore.name,
-                "diameter [mm]": float(bore.diameter),
-                "length [mm]": float(bore.length),
-                **{f"{axis} [mm]": float(value) for axis, value in zip("xyz", bore.centre, strict=True)},
-                "through": "yes" if bore.through else "no",
-            }
-            for bore in self.result.facts.bores
-        ]
-        return Table(tuple(rows))
+        return table_of([part_section(self.result)], BORES)
 
     def plot_part(self) -> Picture:
         """Draw the part from above and from below, with its bores and largest flat faces named.

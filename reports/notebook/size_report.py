@@ -6,9 +6,9 @@ from html import escape
 
 from alula.fea.sizing.least import Sized
 from alula.fea.sizing.lightest import Lightest
-from alula.fea.study.margin import margin, nearest
-from alula.fea.study.numbers import VariantResult
-from alula.reports.notebook.shown import Row, Table, Tabled
+from alula.reports.commands.telling import text_of
+from alula.reports.notebook.shown import Table, Tabled, table_of
+from alula.reports.study.size import SOLVED, size_section
 
 
 @dataclass(frozen=True)
@@ -47,33 +47,13 @@ class SizeReport(Tabled):
         Table
             ``margin`` is 1 where the worse end of that check's band is at its limit, and larger on the safe side.
         """
-        found = self.result
-        if isinstance(found, Lightest):
-            solved = [(found.point(place), result) for place, result in found.solved.items()]
-        else:
-            solved = [({found.path: found.values[step]}, result) for step, result in sorted(found.results.items())]
-        return Table(tuple(_row(values, result) for values, result in solved))
+        return table_of([size_section(self.result)], SOLVED)
 
     def __str__(self) -> str:
-        import io
-
-        from rich.console import Console
-
-        from alula.reports.commands.size import print_found
-
-        stream = io.StringIO()
-        print_found(self.result, Console(file=stream, width=120))
-        return stream.getvalue().rstrip()
+        return text_of([size_section(self.result)])
 
     def __repr__(self) -> str:
         return f"<size: {self.passing or 'nothing passes'}>"
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"
-
-
-def _row(values: Mapping[str, object], result: VariantResult) -> Row:
-    limit = nearest(result)
-    row: Row = {path: str(value) for path, value in values.items()}
-    row |= {"verdict": str(result.verdict or result.state), "margin": None, "nearest": ""}
-    return row if limit is None else row | {"margin": margin(limit), "nearest": f"{limit.quantity} of {limit.subject}"}

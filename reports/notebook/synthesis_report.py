@@ -5,8 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from alula.geometry.mechanisms.synthesis import Synthesis
-from alula.reports.commands.synthesis import draw_linkage, record
-from alula.reports.notebook.shown import Picture, Row, Table, Tabled
+from alula.reports.commands.synthesis import draw_linkage
+from alula.reports.notebook.shown import Picture, Table, Tabled, table_of
+from alula.reports.tools.synthesis import POINTS, synthesis_section
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class SynthesisReport(Tabled):
     @property
     def lengths(self) -> Mapping[str, float]:
         """Length of each link [mm]: ``"a"`` and ``"c"`` at the ground, ``"b"`` between them, ``"d"`` the ground."""
-        return {name: float(length) for name, length in record(self.result)["lengths"].items()}
+        return {name: float(getattr(self.result.four_bar, name)) for name in "abcd"}
 
     @property
     def findings(self) -> tuple[str, ...]:
@@ -33,16 +34,7 @@ class SynthesisReport(Tabled):
 
     def table(self) -> Table:
         """Return the precision points: directions of the links [degrees], and the branch as seen from each drive."""
-        rows: list[Row] = [
-            {
-                "theta, of b [deg]": point["theta"],
-                "psi, of c [deg]": point["psi"],
-                "phi, of a [deg]": point["phi"],
-                **{f"branch, {drive} driven": branch or "dead point" for drive, branch in point["branches"].items()},
-            }
-            for point in record(self.result)["points"]
-        ]
-        return Table(tuple(rows))
+        return table_of([synthesis_section(self.result)], POINTS)
 
     def plot_linkage(self) -> Picture:
         """Draw the linkage at the three precision points."""

@@ -45,7 +45,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
 def _environment() -> "Environment":
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    from alula.reports.page.compiled import CompiledTemplates
+    from alula.reports.renderers.compiled import CompiledTemplates
 
     environment = Environment(
         loader=PackageLoader("alula.reports"),

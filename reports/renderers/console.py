@@ -71,7 +71,13 @@ def print_table(table: Table, console: "Console") -> None:
     """Print a table, and below it what it says of some of its rows."""
     table = table.shown
     columns = [(as_plain(column.head), not column.text) for column in table.columns]
-    say_table(console, columns, [[_styled(cell) for cell in row] for row in table.rows], title=as_plain(table.caption))
+    say_table(
+        console,
+        columns,
+        [[_styled(cell) for cell in row] for row in table.rows],
+        title=as_plain(table.caption),
+        whole=table.kind == "whole",
+    )
     for text in dict.fromkeys(table.below.values()):
         say(console, as_plain(text))
 

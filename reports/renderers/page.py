@@ -94,12 +94,15 @@ def as_page(
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
+    from alula.reports.renderers.compiled import CompiledTemplates
+
     environment = Environment(
         loader=PackageLoader("alula.reports"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
     )
     environment.filters |= {
         "marked": lambda text: Markup(as_html(text)),
@@ -136,7 +139,7 @@ def _contents(page: Page) -> Iterator[tuple[str, str, bool]]:
 
 def _capital(head: str) -> str:
     """Return the head of a column with a capital, unless it begins with a symbol."""
-    return head[:1].upper() + head[1:] if head[:3].isalpha() and len(head.split(" ")[0]) > 2 else head
+    return head[:1].upper() + head[1:] if head[:3].replace("-", "").isalpha() and len(head.split(" ")[0]) > 2 else head
 
 
 def _beside(part: Beside, pictures: Mapping[str, Any], models: Mapping[str, str]) -> str:
@@ -170,7 +173,7 @@ def drawn(picture: Any, alt: str) -> str:
     Parameters
     ----------
     picture : object
-        A drawing, which is set as SVG, or the bytes of a PNG or WebP file.
+        A drawing, which knows its element of a page, or the bytes of a PNG or WebP file.
     alt : str
         What it shows.
 

@@ -15,8 +15,8 @@ from alula.fea.common.verdict import (
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, link
 from alula.reports.sections.section import Column, Folded, Items, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sentences.verdicts import inapplicable, named
 from alula.reports.words.numbers import joined, sentence
-from alula.reports.words.wording import inapplicable, named
 
 MOST = 8
 """Checks that the first screen of a page shows; the others stand below."""

@@ -20,7 +20,16 @@ def code(text: object) -> str:
 
 
 def entry(path: str) -> str:
-    """Return the path of an entry as code, of which a line may be broken after dots."""
+    """Return the path of an entry as code, of which a line may be broken after dots.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    str
+    """
     return code(path.replace(".", f".{_BREAK}"))
 
 

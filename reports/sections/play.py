@@ -6,7 +6,6 @@ from typing import Any
 
 from alula.fea.common.band import Band
 from alula.fea.common.source import play_source
-from alula.fea.outcomes.result import LoadCaseResult
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
@@ -14,19 +13,21 @@ from alula.reports.sections.data import data
 from alula.reports.sections.section import Column, Number, Part, Table, Text, say, words
 
 
-def play_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
+def play_parts(case: Case, name: str, play: Play | None) -> Iterator[Part]:
     """Yield what play does under a load case.
 
     Parameters
     ----------
-    stated : Case
-    case : LoadCaseResult
+    case : Case
+    name : str
+        Of the load case.
+    play : Play or None
+        None without any.
 
     Yields
     ------
     Part
     """
-    play = case.forces.play
     if play is None:
         return
     yield _told(play)
@@ -46,12 +47,12 @@ def play_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
                 Number(2.0 * free, "", 3, derived=True),
                 *(Number(at, "", 3, beside=free) for at in _at_rest(play, link, point) or (None, None)),
             )
-            for link, point in tips(stated)
+            for link, point in tips(case)
             for free in [play.free_motion(link, point)]
         ),
         caption="Play: how far points can move to either side, each joint standing worst in its hole, and where they "
         "rest under the load",
-        under=(("load case", case.name),),
+        under=(("load case", name),),
     )
     yield Table(
         key="joints with play",
@@ -61,7 +62,7 @@ def play_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
             for name, span in play.forces.items()
         ),
         caption="Joint forces in the undeformed pose, with play anywhere",
-        under=(("load case", case.name),),
+        under=(("load case", name),),
     )
 
 

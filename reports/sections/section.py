@@ -224,7 +224,7 @@ class Table:
         for i, (column, cell) in enumerate(zip(self.columns, row, strict=True)):
             name, every = as_name(column), [other[i] for other in self.rows]
             if column.text or not any(isinstance(one, Number) for one in every):
-                found[name] = str(cell)
+                found[name] = str(cell) if column.text or str(cell) else None
                 continue
             shown = cell.shown if isinstance(cell, Number) else None
             if any(isinstance(one, Number) and isinstance(one.value, Band) for one in every):

@@ -18,7 +18,7 @@ from alula.fea.common.reason import Reason
 from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, short
 
 Sentence = str | Callable[..., str]
-FILES = ("bands", "envelopes", "frames", "hand", "links", "linkage", "motion", "runs")
+FILES = ("bands", "caveats", "envelopes", "frames", "hand", "links", "linkage", "motion", "runs")
 """Of the sentences, each with a table ``SENTENCES``."""
 
 

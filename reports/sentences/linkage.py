@@ -29,16 +29,16 @@ def _play_lets_it_move(*, plane: float, across: float | None, without: str | Non
     return f"play of pins lets it move by up to {short(plane, 3)} mm to either side{tilted}{decides}"
 
 
-def _made_up_of(*, masses: tuple[tuple[str, float], ...], others: float | None, not_counted: tuple[str, ...]) -> str:
-    parts, left = ", ".join(f"{kind} {short(mass, 4)} g" for kind, mass in masses), ", ".join(not_counted)
+def _made_up_of(*, masses: tuple[tuple[str, float], ...], others: float | None, not_counted: tuple[Reason, ...]) -> str:
+    parts, left = ", ".join(f"{kind} {short(mass, 4)} g" for kind, mass in masses), ", ".join(map(told, not_counted))
     parts = parts or "no part weighs anything"
     if others is not None:
         return f"{parts}, others as stated {short(others, 4)} g{f', which stand for {left}' if left else ''}"
     return f"{parts}{f'; not counted: {left}' if left else ''}"
 
 
-def _from_side_to_side(*, first: Reason, last: Reason, not_counted: tuple[str, ...]) -> str:
-    left = f"; not counted: {', '.join(not_counted)}" if not_counted else ""
+def _from_side_to_side(*, first: Reason, last: Reason, not_counted: tuple[Reason, ...]) -> str:
+    left = f"; not counted: {', '.join(map(told, not_counted))}" if not_counted else ""
     return f"from {told(first)} to {told(last)}{left}"
 
 

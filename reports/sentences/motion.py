@@ -5,7 +5,7 @@ import math
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
 from alula.reports.sentences.catalogue import Sentence, told
-from alula.reports.words.numbers import ordinal
+from alula.reports.words.numbers import ordinal, short
 
 
 def _held(*, ways: tuple[Reason, ...], free: int) -> str:
@@ -101,6 +101,13 @@ def _harmonic_meets(*, harmonic: int, frequency: float, mode: int, at: Reason, e
     return f"{met} {told(at)}{' and elsewhere' if elsewhere else ''}"
 
 
+def _harmonic_in_pose(*, harmonic: int, rpm: float, ratio: float, frequency: Band) -> str:
+    return (
+        f"in this pose the {ordinal(harmonic)} harmonic of {short(rpm, 4)} rpm is at {short(ratio, 3)} of the lowest "
+        f"natural frequency, {_banded(frequency)} Hz"
+    )
+
+
 def _all_harmonics_below(*, highest: int, frequency: float) -> str:
     return f"all harmonics up to the {ordinal(highest)}, {_stated(frequency)} Hz, stay below it"
 
@@ -132,6 +139,7 @@ SENTENCES: dict[str, Sentence] = {
     "frequency_of_link": _frequency_of_link,
     "harmonics_may_meet": _harmonics_may_meet,
     "harmonic_meets": _harmonic_meets,
+    "harmonic_in_pose": _harmonic_in_pose,
     "harmonics_not_known": ("which harmonics meet a natural frequency is not known, since the lowest one has no band"),
     "all_harmonics_below": _all_harmonics_below,
     "nearest_harmonic": _nearest_harmonic,

@@ -1,7 +1,7 @@
 """Which pictures a study gets, by what varies in it, and how each is to be read."""
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -36,68 +36,62 @@ def picture_sections(study: StudyColumns) -> Iterator[Section]:
     few = len(quantities) <= 2 and len(panels) <= (MOST_PANELS if quantities else MOST_COMBINATIONS)
     for i, response in enumerate(study.responses):
         ending = "" if i == 0 else f"-{i + 1}"
-        if few:
-            yield from _over(study, quantities, named, panels, response, ending)
-        elif len(study.parameters) > 1:
+        if few and quantities:
+            yield _over(study, quantities, named, panels, response, ending)
+        elif few and named and len(study.outcome) == len(panels):
+            yield _by_words(study, named, panels, response, ending)
+        elif not few and len(study.parameters) > 1:
             yield _sensitivities(study, response, ending)
         if response is not study.margin:
-            caption = "Over all points that have the number."
-            drawn = _later("histogram", response.value, label=response.label, outcome=study.outcome)
-            yield _shown(f"histogram{ending}", f"Distribution: {response.label}", caption, drawn)
+            title, caption = f"Distribution: {response.label}", "Over all points that have the number."
+            facts: dict[str, Any] = {"label": response.label, "outcome": study.outcome}
+            yield _shown(f"histogram{ending}", title, caption, "histogram", response.value, **facts)
     if not few:
         yield _parallel(study)
     margin = study.margin
-    if margin is not None and margin.limit == 1.0 and np.isfinite(margin.value).any():
+    if margin is not None and np.isfinite(margin.value).any():
         caption = (
             "How often the nearest check keeps its limit by which factor. A bar left of the limit holds points whose "
             "value misses it; the verdict is decided on the whole band."
         )
-        drawn = _later("histogram", margin.value, margin.limit, label=margin.label, outcome=study.outcome)
-        yield _shown("margins", "Distribution of the least margin", caption, drawn)
-    yield from _pareto(study)
-    notes = []
-    if not study.responses:
-        notes.append("No number varies between the points that have one, so that nothing is drawn over the entries.")
+        facts = {"label": margin.label, "outcome": study.outcome}
+        title = "Distribution of the least margin"
+        yield _shown("margins", title, caption, "histogram", margin.value, margin.limit, **facts)
+        if study.mass is not None and _differ(study.mass[np.isfinite(margin.value)]):
+            yield _pareto(study, margin, study.mass)
+    notes = [] if study.responses else ["No number varies between the points that have one, so nothing is drawn."]
     if study.left_out:
         notes.append(f"{study.left_out} more numbers vary; --number with a part of a name draws others.")
     if notes:
         yield Section(key="not-drawn", title="Not drawn", parts=tuple(Text(note, "note") for note in notes))
 
 
-def _shown(name: str, title: str, caption: str, draw: Callable[[], Any], *above: Part) -> Section:
-    picture = Picture(name=name, alt=title, caption=caption, draw=draw)
-    return Section(key=name, title=title, short=title, parts=(*above, picture))
-
-
-def _later(figure: str, *args: Any, **options: Any) -> Callable[[], Any]:
-    """Return what draws a picture when it is wanted: what draws is imported then."""
+def _shown(
+    name: str, title: str, caption: str, figure: str, *args: Any, above: tuple[Part, ...] = (), **facts: Any
+) -> Section:
+    """Return the section of a picture; what draws it is imported when it is drawn."""
 
     def draw() -> Any:
         from alula.reports.figures.study import curves, many, maps, spread, style
 
-        drawing: dict[str, Callable[..., Any]] = {
-            "curve": curves.curves,
-            "map": maps.verdict_map,
-            "values": many.categories,
-            "parallel": many.parallel,
-            "pareto": many.pareto,
-            "histogram": spread.histogram,
-            "tornado": spread.tornado,
-        }
-        return style.chart(drawing[figure](*args, **options))
+        drawing = (
+            *(curves.curves, maps.verdict_map, many.categories, many.parallel, many.pareto),
+            *(spread.histogram, spread.tornado),
+        )
+        return style.chart({one.__name__: one for one in drawing}[figure](*args, **facts))
 
-    return draw
+    picture = Picture(name=name, alt=title, caption=caption, draw=draw)
+    return Section(key=name, title=title, short=title, parts=(*above, picture))
 
 
 def _panels(named: Sequence[Parameter], count: int) -> list[tuple[str, Any]]:
     """One panel for every combination of words that some point has: its title, and which points stand in it."""
     found = []
     for places in itertools.islice(itertools.product(*(range(len(one.words)) for one in named)), 10_000):
-        here = np.ones(count, dtype=bool)
-        for one, place in zip(named, places, strict=True):
-            here &= one.values == place
+        chosen = list(zip(named, places, strict=True))
+        here = np.all([np.ones(count, dtype=bool), *(one.values == place for one, place in chosen)], axis=0)
         if here.any():
-            found.append((", ".join(one.words[place] for one, place in zip(named, places, strict=True)), here))
+            found.append((", ".join(one.words[place] for one, place in chosen), here))
     return found
 
 
@@ -108,39 +102,38 @@ def _over(
     panels: list[tuple[str, Any]],
     response: Response,
     ending: str,
-) -> Iterator[Section]:
-    """The number over one or two quantities, or over words alone."""
-    together = " and ".join(one.path for one in named)
-    verdicts, lost = study.margin is not None, bool(np.isin(study.outcome, ("refused", "crashed")).any())
-    edge = " Points that were refused or crashed have a mark at the edge." if lost else ""
-    each = f" One panel for each value of {together}." if named else ""
+) -> Section:
+    """The number over one or two quantities, with a panel for each combination of words."""
+    each = f" One panel for each value of {' and '.join(one.path for one in named)}." if named else ""
     each += _marked(study)
-    if not quantities:
-        if not (named and len(study.outcome) == len(panels)):
-            return
-        order = np.array([int(np.flatnonzero(here)[0]) for _, here in panels])
-        shown = replace(response, value=response.value[order], low=response.low[order], high=response.high[order])
-        label = ", ".join(one.path for one in named)
-        drawn = _later("values", [name for name, _ in panels], shown, study.outcome[order], label=label)
-        caption = f"The bar is the band that may hold the value.{edge}"
-        yield _shown(f"values{ending}", f"{response.title} by {together}", caption, drawn)
-        return
     panels = [(name, marked(here, MOST_MARKS // len(panels))) for name, here in panels]
+    verdicts, known = study.margin is not None, np.isfinite(response.value).any()
     if len(quantities) == 1:
-        wide = bool(np.any(response.low < response.high))
-        band = " The shaded band may hold the value; bands that end far away are cut off." if wide else ""
-        caption = f"A mark is a point.{' Marks and colours are verdicts.' if verdicts else ''}{band}{edge}{each}"
-        drawn = _later("curve", quantities[0], response, study.outcome, panels)
-        yield _shown(f"curve{ending}", f"{response.title} over {quantities[0].path}", caption, drawn)
-        return
-    least = response is study.margin
+        caption = f"A mark is a point.{' Marks and colours are verdicts.' if verdicts else ''}"
+        if np.any(response.low < response.high):
+            caption += " The shaded band may hold the value; bands that end far away are cut off."
+        title = f"{response.title} over {quantities[0].path}"
+        caption += _edge(study) + each
+        return _shown(f"curve{ending}", title, caption, "curves", quantities[0], response, study.outcome, panels)
+    least, (first, second) = response is study.margin, quantities
     what = "the least margin (1 at the limit, a thick line)" if least else response.label
     lines = f" Lines are contours of {what}, interpolated linearly between the values of neighbouring points."
-    caption = f"A mark is a point{', its shape and colour the verdict' if verdicts else ''}."
-    caption += f"{lines if np.isfinite(response.value).any() else ''}{each}"
-    title = f"{'Verdict' if least else response.title} over {quantities[0].path} and {quantities[1].path}"
-    drawn = _later("map", (quantities[0], quantities[1]), response, study.outcome, panels)
-    yield _shown(f"map{ending}", title, caption, drawn)
+    caption = (
+        f"A mark is a point{', its shape and colour the verdict' if verdicts else ''}.{lines if known else ''}{each}"
+    )
+    title = f"{'Verdict' if least else response.title} over {first.path} and {second.path}"
+    return _shown(f"map{ending}", title, caption, "verdict_map", (first, second), response, study.outcome, panels)
+
+
+def _by_words(
+    study: StudyColumns, named: Sequence[Parameter], panels: list[tuple[str, Any]], response: Response, ending: str
+) -> Section:
+    order = np.array([int(np.flatnonzero(here)[0]) for _, here in panels])
+    shown = replace(response, value=response.value[order], low=response.low[order], high=response.high[order])
+    paths, names = [one.path for one in named], [name for name, _ in panels]
+    title, caption = f"{response.title} by {' and '.join(paths)}", "The bar is the band that may hold the value."
+    outcome, label = study.outcome[order], ", ".join(paths)
+    return _shown(f"values{ending}", title, caption + _edge(study), "categories", names, shown, outcome, label=label)
 
 
 def _sensitivities(study: StudyColumns, response: Response, ending: str) -> Section:
@@ -149,49 +142,42 @@ def _sensitivities(study: StudyColumns, response: Response, ending: str) -> Sect
     found = regression(study.parameters, response)
     if isinstance(found, str):
         return Section(key=name, title=title, parts=(Text(found),))
+    share = Number(found.r_squared, decimals=2, derived=True)
     fitted = say(
         "A linear model of {what}, fitted to {points} points, holds R² = {share} of its variance{doubt}",
         what="the logarithm of the number" if found.logarithm else "the number",
         points=found.points,
-        share=Number(found.r_squared, decimals=2),
+        share=share,
         doubt=", so that the coefficients say little" if found.r_squared < 0.5 else "",
     )
     sizes = found.coefficients.tolist()
     order = sorted(range(len(sizes)), key=lambda i: -abs(sizes[i]))
-    table = Table(
-        key=name,
-        columns=(words("entry"), Column("standardised coefficient")),
-        rows=tuple((found.names[i], Number(sizes[i], decimals=2)) for i in order),
-    )
+    rows = tuple((found.names[i], Number(sizes[i], decimals=2, derived=True)) for i in order)
+    table = Table(key=name, columns=(words("entry"), Column("standardised coefficient")), rows=rows)
     caption = (
         "A bar is the standardised coefficient: by how many standard deviations the number moves where the entry moves "
         "by one of its own. It speaks of the ranges of this study."
     )
     if any(found.unsigned):
         caption += " Entries that are words have dotted bars without direction."
-    label = f"standardised coefficient of {response.label.partition(' (')[0]} (linear, R² = {fitted.numbers[0]})"
-    drawn = _later("tornado", found.names, found.coefficients, label=label, unsigned=found.unsigned)
-    return _shown(name, title, caption, drawn, fitted, table)
+    label = f"standardised coefficient of {response.label.partition(' (')[0]} (linear, R² = {share})"
+    facts: dict[str, Any] = {"label": label, "unsigned": found.unsigned, "above": (fitted, table)}
+    return _shown(name, title, caption, "tornado", found.names, found.coefficients, **facts)
 
 
 def _parallel(study: StudyColumns) -> Section:
-    more, count = list(study.responses), len(study.outcome)
-    if study.mass is not None and _differ(study.mass):
-        more.append(Response(label="mass [g]", value=study.mass, low=study.mass, high=study.mass))
+    more, count, mass = list(study.responses), len(study.outcome), study.mass
+    if mass is not None and _differ(mass):
+        more.append(Response(label="mass [g]", value=mass, low=mass, high=mass))
     part = f" {MOST_LINES} of {count} points are drawn, evenly through the study." if count > MOST_LINES else ""
     limit = " The thick stroke is the limit." if study.margin is not None else ""
     caption = f"A line is a point; it ends where a number is not known.{limit}{part}"
-    drawn = _later("parallel", study.parameters, more, study.outcome)
-    return _shown("parallel", "All points in parallel coordinates", caption, drawn)
+    title = "All points in parallel coordinates"
+    return _shown("parallel", title, caption, "parallel", study.parameters, more, study.outcome)
 
 
-def _pareto(study: StudyColumns) -> Iterator[Section]:
-    over = study.safety_factor or study.margin
-    if study.mass is None or over is None:
-        return
-    known = np.isfinite(study.mass) & np.isfinite(over.value)
-    if not _differ(study.mass[known]):
-        return
+def _pareto(study: StudyColumns, margin: Response, mass: Real) -> Section:
+    known = np.isfinite(mass) & np.isfinite(margin.value)
     caption = (
         "Numbers are those of points on the front: no other point is lighter with as high a lower end of its band. "
         "Points that fail are left out of it."
@@ -199,8 +185,13 @@ def _pareto(study: StudyColumns) -> Iterator[Section]:
     if not (study.outcome[known] != Verdict.FAIL.value).any():
         caption = "Every point fails, so that there is no front."
     caption += _marked(study).replace("drawn,", "drawn besides the front,")
-    drawn = _later("pareto", study.mass, over, study.outcome, study.position)
-    yield _shown("pareto", f"Mass and {over.label.partition(' (')[0]}", caption, drawn)
+    title = "Mass and least margin"
+    return _shown("pareto", title, caption, "pareto", mass, margin, study.outcome, study.position)
+
+
+def _edge(study: StudyColumns) -> str:
+    lost = np.isin(study.outcome, ("refused", "crashed")).any()
+    return " Points that were refused or crashed have a mark at the edge." if lost else ""
 
 
 def _differ(values: Real) -> bool:

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import least_margin
-from alula.fea.study.numbers import VariantNumber
 from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
 from alula.loads.plans.axis import number_of
@@ -24,7 +23,6 @@ MOST_NUMBERS = 3
 MOST_ROWS = 40
 """Points in the table; of more, a third each of the best, the first undecided and the worst."""
 MARGIN = "least margin (1 at the limit)"
-SAFETY_FACTOR = "least safety factor"
 _Kept = dict[str, "array[float]"]
 """Name of a number -> place of a point, value, low and high, one point after another."""
 
@@ -49,8 +47,6 @@ class StudyColumns:
         Those that were asked for; without checks, the first that vary.
     left_out : int
         Numbers that vary and are not drawn, where nothing is checked.
-    safety_factor : Response or None
-        The least of all links and load cases.
     mass : ndarray, shape (n,), or None
         Of all links [g]; None where no point was weighed.
     limiting : mapping
@@ -72,7 +68,6 @@ class StudyColumns:
     margin: Response | None
     numbers: tuple[Response, ...]
     left_out: int
-    safety_factor: Response | None
     mass: Real | None
     limiting: Mapping[str, int]
     sentences: Mapping[tuple[str, str], Sequence[int]]
@@ -110,7 +105,7 @@ def read_study(store: Store, wanted: Sequence[str] = (), most: int = MOST_ROWS) 
     outcome, position, stated, merits = list[str](), list[int](), list[Mapping[str, object]](), list[Any]()
     numbers: _Kept = {}
     ours: _Kept = {}
-    limiting, sentences, limits = Counter[str](), dict[tuple[str, str], list[int]](), set[float]()
+    limiting, sentences = Counter[str](), dict[tuple[str, str], list[int]]()
     for point, row in enumerate(study_rows(store)):
         outcome.append(row.outcome)
         position.append(row.position)
@@ -126,10 +121,6 @@ def read_study(store: Store, wanted: Sequence[str] = (), most: int = MOST_ROWS) 
             continue
         limiting[f"{row.nearest.quantity} of {row.nearest.subject}"] += 1
         _add(ours, MARGIN, point, least_margin(row.answer))
-        factors = [one for one in row.answer.numbers if one.check and one.quantity == Quantity.SAFETY_FACTOR.value]
-        limits |= {one.limit for one in factors}
-        if factors:
-            _add(ours, SAFETY_FACTOR, point, _least(factors))
     count = len(outcome)
     margin, mass = _response(ours, MARGIN, count, 1.0), _response(ours, "mass", count)
     shown, left_out = _chosen(numbers, count, wanted, checked=margin is not None)
@@ -152,7 +143,6 @@ def read_study(store: Store, wanted: Sequence[str] = (), most: int = MOST_ROWS) 
         margin=margin,
         numbers=shown,
         left_out=left_out,
-        safety_factor=_response(ours, SAFETY_FACTOR, count, limits.pop() if len(limits) == 1 else np.nan),
         mass=None if mass is None else mass.value,
         limiting=dict(limiting.most_common()),
         sentences=dict(sorted(sentences.items(), key=lambda item: -len(item[1]))),
@@ -174,16 +164,6 @@ def _response(kept: _Kept, name: str, count: int, limit: float = np.nan) -> Resp
     ends, known = np.full((3, count), np.nan), np.frombuffer(kept[name]).reshape(-1, 4)
     ends[:, known[:, 0].astype(np.intp)] = known[:, 1:].T
     return Response(label=name.removesuffix(" [1]"), value=ends[0], low=ends[1], high=ends[2], limit=limit)
-
-
-def _least(found: Sequence[VariantNumber]) -> tuple[float, float, float]:
-    """Value, low and high of the least of several numbers; one that is not known may be anything from 0."""
-    ends = np.array([(one.value, one.low, one.high) for one in found])
-    known = ~np.isnan(ends).any(axis=1)
-    if not known.any():
-        return (np.nan, 0.0, np.inf)
-    value, low, high = ends[known].min(axis=0)
-    return float(value), float(low) if known.all() else 0.0, float(high)
 
 
 def _chosen(numbers: _Kept, count: int, wanted: Sequence[str], *, checked: bool) -> tuple[tuple[Response, ...], int]:

@@ -89,7 +89,16 @@ def study_page(study: StudyColumns, sections: Sequence[Section]) -> Page:
 
 
 def pictures_of(sections: Sequence[Section]) -> list[Picture]:
-    """Return the pictures of sections."""
+    """Return the pictures of sections.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+
+    Returns
+    -------
+    list of Picture
+    """
     return [part for section in sections for part in parts_of(section.parts) if isinstance(part, Picture)]
 
 

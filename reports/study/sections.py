@@ -106,7 +106,7 @@ def _varies(study: StudyColumns) -> tuple[Part, ...]:
     plan = study.facts["plan"]
     rows: list[tuple[Cell, ...]] = [(entry(one.path), *_values(one)) for one in study.parameters]
     rows += [(entry(path), f"= {expression}", "") for path, expression in plan["link"].items()]
-    rows += [(entry(path), str(value), Number(1.0, decimals=0)) for path, value in plan["set"].items()]
+    rows += [(entry(path), str(value), _count(1)) for path, value in plan["set"].items()]
     columns = (words("entry"), words("values", wraps=True), Column("how many"))
     model = f" with fidelity {plan['fidelity']}" if plan["analysis"] == "check" else ""
     method = (
@@ -129,7 +129,11 @@ def _values(one: Parameter) -> tuple[str, Number]:
         told = ", ".join(values)
     else:
         told = ", ".join(values[:_MOST_WORDS]) + " ..." if one.words else f"{values[0]} to {values[-1]}"
-    return f"{told} {one.unit}".rstrip(), Number(float(len(values)), decimals=0)
+    return f"{told} {one.unit}".rstrip(), _count(len(values))
+
+
+def _count(number: int) -> Number:
+    return Number(float(number), decimals=0, derived=True)
 
 
 def _limits(study: StudyColumns) -> tuple[Part, ...]:
@@ -139,7 +143,7 @@ def _limits(study: StudyColumns) -> tuple[Part, ...]:
         Table(
             key="limits",
             columns=(words("check"), Column("points")),
-            rows=tuple((name, Number(float(count), decimals=0)) for name, count in study.limiting.items()),
+            rows=tuple((name, _count(count)) for name, count in study.limiting.items()),
             caption="The check that is nearest to its limit, or farthest beyond, by the unfavourable end of its band",
         ),
     )

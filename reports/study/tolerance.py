@@ -12,8 +12,8 @@ from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceRe
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, say, words
 from alula.reports.sentences import told
+from alula.reports.sentences.verdicts import besides
 from alula.reports.words.numbers import sentence
-from alula.reports.words.wording import besides
 
 MOST = 8
 """Tolerances that a table names."""

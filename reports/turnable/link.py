@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult, VariantPeak
 from alula.fea.solid.stress import stress_field
-from alula.reports.check.links import worst_load_case
 from alula.reports.figures.figures import COLOURS, colour_range
 from alula.reports.figures.scene import Scene, scene_of
 from alula.reports.turnable.pack import data_block, indices, quantised
@@ -42,7 +41,7 @@ def link_models(result: CheckResult) -> dict[str, str]:
     dict
         ``link_name`` -> data block.
     """
-    worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
+    worst = {link: result.governing(link).links[link] for link in next(iter(result.load_cases.values())).links}
     return {
         link_name(link): data_block(link_model(link, found, result.case.links[link].points))
         for link, found in worst.items()

@@ -15,10 +15,9 @@ from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.check.links import worst_load_case
+from alula.reports.sentences.verdicts import checks_of
 from alula.reports.turnable.linkage import Along, Poses, Values, linkage_record
 from alula.reports.words.numbers import band, fixed, number
-from alula.reports.words.wording import checks_of
 
 Real = NDArray[np.float64]
 
@@ -52,7 +51,7 @@ def check_linkage(result: CheckResult) -> dict[str, Any]:
     """
     shares, texts = {}, {}
     for link in next(iter(result.load_cases.values())).links:
-        worst = worst_load_case(result, link)
+        worst = result.governing(link)
         found = worst.links[link]
         own = [check for check in worst.checks if check.subject == Subject.link(link)]
         verdict = overall(check.verdict for check in own)

@@ -91,7 +91,12 @@ def say_command(console: "Console", text: str, command: str) -> None:
 
 
 def say_table(
-    console: "Console", columns: Sequence[tuple[str, bool]], rows: Sequence[Sequence["str | Text"]], *, title: str = ""
+    console: "Console",
+    columns: Sequence[tuple[str, bool]],
+    rows: Sequence[Sequence["str | Text"]],
+    *,
+    title: str = "",
+    whole: bool = False,
 ) -> None:
     """Print a table.
 
@@ -104,12 +109,14 @@ def say_table(
         Cells.
     title : str, optional
         Printed above.
+    whole : bool, optional
+        True for rows that are as wide as they need to be on any terminal.
     """
     from rich.text import Text
 
     cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
     heads = [Text(head) for head, _ in columns]
-    room = console.width if console.is_terminal else None
+    room = console.width if console.is_terminal and not whole else None
     widths = _widths([heads, *cells], room)
     _put(console, Text())
     if title:

@@ -18,8 +18,10 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, read_companion, read_text, validate
 from alula.reports.check.folder import write_report
+from alula.reports.check.published import as_markdown
 from alula.reports.check.whole_check import check_page, check_pictures
-from alula.reports.tables.claims import as_markdown, as_text
+from alula.reports.commands.telling import text_of
+from alula.reports.sections.published import claims_section
 from alula.reports.turnable.pack import data_block
 
 OWL = "owl-wing-static"
@@ -185,7 +187,7 @@ def test_claims_show_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
     assert "<img" not in page
     rows = [line for line in page.splitlines() if line.startswith(("| a ", "| b "))]
     assert len(rows) == 2
-    assert as_text(results)
+    assert text_of([claims_section(results, HOSTILE)])
 
 
 def test_a_data_block_in_a_page_shows_hostile_text_as_text(checked: CheckResult) -> None:

@@ -210,7 +210,7 @@ def test_the_heaviest_wings_that_the_motor_drives(case) -> None:
     outcomes = motor_outcomes(case, "motor", case.checks["motor"])
     for load_case in ("wings-10", "wings-12"):
         reason = outcomes[load_case][0].reason
-        heaviest[load_case] = float(reason.partition("it can drive ")[2].partition(" g")[0])
+        heaviest[load_case] = float(in_words(reason).partition("it can drive ")[2].partition(" g")[0])
     assert heaviest["wings-12"] < heaviest["wings-10"]
     each = heaviest["wings-12"] / 2.0
     laden = read_case("ornithopter", [f'carried.{i}.mass="{each} g"' for i in (0, 1)])
@@ -228,7 +228,7 @@ def test_closed_form_agrees_on_the_heaviest_wings() -> None:
     power = closed_form_power(mass=1e-7, frequency=12.0)
     grams = 0.1 * 1e3 * case.checks["motor"].output_power / power.max()
     reason = motor_outcomes(case, "motor", case.checks["motor"])["wings-12"][0].reason
-    told = float(reason.partition("it can drive ")[2].partition(" g")[0])
+    told = float(in_words(reason).partition("it can drive ")[2].partition(" g")[0])
     assert told == pytest.approx(2.0 * grams, rel=0.005)  # the levers take their share
 
 

@@ -193,7 +193,7 @@ def test_what_pins_sink_is_told_beside_the_band():
         for pin, x in (("A", 0.0), ("B", 70.0))
     ]
     assert found.verdict == "pass"
-    told = re.search(r"could add up to (\S+) mm, .* and which would miss the limit", found.reason)
+    told = re.search(r"could add up to (\S+) mm, .* and which would miss the limit", in_words(found.reason))
     assert float(told.group(1)) == pytest.approx(2.0 * narrow.strain_energy / 850.0 - (means[1] - means[0]), abs=5e-4)
 
 

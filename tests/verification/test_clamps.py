@@ -21,13 +21,13 @@ from alula.fea.links.clamp_edge import EDGE, edge_stress
 from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.nonlinear.large_displacement import examine
-from alula.fea.outcomes.unchecked import unchecked
 from alula.fea.tolerance.analysis import tolerance_case
 from alula.fea.vibration.link_modes import link_modes
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.actions import acting_loads
 from alula.reports.sentences import told
+from alula.reports.sentences.caveats import not_checked
 from docs.extensions.examples import FOLDER
 
 FORCE, FREE, HELD = 100.0, 180.0, 20.0
@@ -165,7 +165,7 @@ def test_the_solid_moves_from_the_section_at_the_mouth(solid):
 
 
 def test_what_holds_is_told_and_no_pin_is(solid):
-    said = " ".join(unchecked(solid.case))
+    said = " ".join(not_checked(solid.caveats))
     assert "clamps O" in said
     assert "pin" not in said
 

@@ -101,7 +101,7 @@ def test_where_the_largest_friction_locks_the_linkage_bands_have_no_end() -> Non
     assert found["point", "point A of crank", "displacement"].value.high == math.inf
     assert found["limit", "the linkage", "limit-load factor"].value.low == 0.0
     [warning] = [told for told in result.warnings if "locks itself" in in_words(told)]
-    assert "with the largest friction that may be (0.175 to 0.325 at O2, A, B)" in warning
+    assert "with the largest friction that may be (0.175 to 0.325 at O2, A, B)" in in_words(warning)
     work = result.load_cases["push"].work
     assert sorted(np.abs(work.ends[:, 0])) == [pytest.approx(abs(with_least()), rel=1e-12), math.inf]
     assert math.copysign(1.0, work.ends[np.isinf(work.ends)][0]) == math.copysign(1.0, work.effort[0])

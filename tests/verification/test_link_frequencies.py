@@ -128,7 +128,7 @@ def on_pins(*turning, free=0):
         if turns
     ]
     points = {"A": (0.0, 0.0), "B": (20.0, 0.0), "T": (31.0, 0.0)}
-    holding = LinkHolding(places=tuple(places), free=free, words="")
+    holding = LinkHolding(places=tuple(places), free=free, how="")
     return replace(rocker(), holding=holding, points=points)
 
 

@@ -98,7 +98,7 @@ def test_a_beam_on_one_pin_turns_freely():
     data["load_cases"] = {"hangs": {"own_weight": True}}
     case = validate(data)
     modes = link_modes(case, "rocker", count=4)
-    assert modes.held == "on rigid pins at O4, a rigid motion of it left free"
+    assert told(modes.held) == "on rigid pins at O4, a rigid motion of it left free"
     bending = [mode.frequency.value for mode in modes.modes if mode.in_plane > 0.5]
     material = case.material_of("rocker")
     stiff = math.sqrt(material.youngs_modulus * 3.0**2 / 12.0 / material.density)
@@ -118,7 +118,7 @@ def test_a_slot_holds_its_link_where_the_pin_stands():
     case = quick_return()
     found = case_frequencies(case, count=1)
     lever = found.links["lever"]
-    assert lever.held == "on rigid pins at O and held across the slot at B"
+    assert told(lever.held) == "on rigid pins at O and held across the slot at B"
     [history] = found.histories.values()
     assert lever.modes[0].frequency.value == pytest.approx(history.frequencies[0, 0], rel=0.01)
 
@@ -130,7 +130,7 @@ def test_beams_leave_the_grounds_part_open_and_its_solid_tells():
     assert mode.frequency.unknowable
     assert "the frame takes the ground for rigid" in told(mode.frequency.without)
     found = link_modes(case, "bracket", count=1, solid=True, threads=1)
-    assert found.held == "built in at base"
+    assert told(found.held) == "built in at base"
     material, free = case.material_of("bracket"), L - 7.0
     ring = (math.pi * (6.0**2 - 1.5**2) - 12.0 * WIDTH) * THICKNESS
     tip = ring + 6.0 * WIDTH * THICKNESS  # beyond the pin there is no bar

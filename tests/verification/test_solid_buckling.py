@@ -73,7 +73,7 @@ FIXED = np.vstack([FIXED_AND_PINNED, conditions((1, TURN_Y), (1, TURN_Z))])
 def test_a_column_has_the_least_factor_of_all_ways_in_which_its_joints_may_move(alone):
     """At 40 N: on pins 1.85, fixed at one end 3.8, free at the other 0.46, and fixed at both 7.4 at its best."""
     solved, loads, places = pushed_box((60.0, 6.0, 3.0), (12, 2, 2), (-40.0, 0.0, 0.0))
-    holding = SimpleNamespace(places=places, value=ON_PINS, alone=alone, most=FIXED, words="on pins")
+    holding = SimpleNamespace(places=places, value=ON_PINS, alone=alone, most=FIXED, how="on pins")
     task = SimpleNamespace(holding=holding, loads=(loads,))
     found = link_buckling(solved, task, chord=0.0)["push"]
     expected = [euler_load(E, 6.0 * 27.0 / 12.0, 60.0, k) / 40.0 for k in (1.0, 2.0, 0.5)]

@@ -15,6 +15,7 @@ from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, State
 from alula.fea.nonlinear.large_displacement import examine
 from alula.fea.nonlinear.stability import linkage_factor
 from alula.loads.case.case_file import validate
+from alula.reports.sentences import told
 
 ARM = """
 schema_version = 1
@@ -260,4 +261,4 @@ def test_a_stop_that_would_have_to_pull_is_told(preload, leaves):
     assert bool(said) == leaves
     if leaves:
         lever = 200.0 + moved["tip"].points["arm", "P"][0]
-        assert f"pull there with {11900.0 - 60.0 * lever:.3g} N·mm" in said[0]
+        assert f"pull there with {11900.0 - 60.0 * lever:.3g} N·mm" in told(said[0])

@@ -23,6 +23,7 @@ from alula.fea.frame.sharing import choices, hinges_tried
 from alula.fea.frame.thrust import thrusts
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
+from alula.reports.sentences import told as in_words
 
 WIDTH, THICKNESS = 8.0, 4.0
 PRESSED = {"O2": ("crank",), "A": ("crank",), "B": ("rocker",), "O4": ("rocker",)}
@@ -97,7 +98,12 @@ def test_a_pin_that_is_tight_in_both_links_tilts_nowhere():
 def test_what_the_warning_recommends_decides_the_check():
     """Of two links whose checks sharing leaves open, each by its own entry; one whose eye opens it is not told of."""
     found = check_case(loaded(ALUMINIUM, ["0 N", "-20 N"]), fidelity="beam")
-    told = {link: text for link in ("crank", "coupler", "rocker") for text in found.warnings if f"of {link} " in text}
+    told = {
+        link: text
+        for link in ("crank", "coupler", "rocker")
+        for text in map(in_words, found.warnings)
+        if f"of {link} " in text
+    }
     assert told.keys() == {"crank", "coupler"}
     assert told["crank"].endswith("tight_in of joints O2, A, B, O4, in the first link of each, would decide its check")
     assert told["coupler"].endswith("tight_in of joints O2, A, B, O4, in both links, would decide its check")

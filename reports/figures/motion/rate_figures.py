@@ -14,7 +14,7 @@ from alula.reports.figures.motion.motion_figures import (
     legend,
     over_angle,
 )  # fmt: skip
-from alula.reports.words.wording import told_speed
+from alula.reports.sentences.verdicts import told_speed
 
 _SIZE = (8.0, 5.4)
 _NEAR = 1e-9

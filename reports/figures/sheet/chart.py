@@ -4,12 +4,16 @@ import io
 from collections.abc import Iterator
 from functools import cached_property
 from html import escape
+from threading import Lock
 from typing import Any
 
 import numpy as np
 
 from alula.reports.figures.sheet.drawing import Plotted, data_uri
 from alula.reports.figures.sheet.style import DPI, quiet_glyphs
+
+_ALONE = Lock()
+"""Matplotlib draws in one thread at a time: a file and a page ask for the same chart."""
 
 
 class Chart:
@@ -44,7 +48,8 @@ class Chart:
         -------
         bytes
         """
-        return self._png
+        with _ALONE:
+            return self._png
 
     @cached_property
     def _png(self) -> bytes:

@@ -121,10 +121,10 @@ class Axes:
         left, top, right, bottom = self.box
         places = ticks(*self.x, most=most)
         texts, power = numbers(places)
-        for value, text in zip(places, texts, strict=True):
-            x = float(self.at([value, self.y[0]])[0])
-            if grid:
-                sheet.line([(x, top), (x, bottom)], GRID, 0.5)
+        along = [float(self.at([value, self.y[0]])[0]) for value in places]
+        for x in along if grid else ():
+            sheet.line([(x, top), (x, bottom)], GRID, 0.5)
+        for x, text in zip(along, texts, strict=True):
             sheet.line([(x, bottom), (x, bottom + _TICK)], INK, 0.8)
             sheet.write(text, (x, bottom + _TICK + 3.0), anchor="center top")
         sheet.write(_with_power(label, power), ((left + right) / 2.0, bottom + _TICK + 17.0), anchor="center top")
@@ -151,10 +151,10 @@ class Axes:
         left, top, right, bottom = self.box
         places = ticks(*self.y, most=most)
         texts, power = numbers(places)
-        for value, text in zip(places, texts, strict=True):
-            y = float(self.at([self.x[0], value])[1])
-            if grid:
-                sheet.line([(left, y), (right, y)], GRID, 0.5)
+        up = [float(self.at([self.x[0], value])[1]) for value in places]
+        for y in up if grid else ():
+            sheet.line([(left, y), (right, y)], GRID, 0.5)
+        for y, text in zip(up, texts, strict=True):
             sheet.line([(left - _TICK, y), (left, y)], INK, 0.8)
             sheet.write(text, (left - _TICK - 3.0, y), anchor="right middle")
         sheet.write(_with_power(label, power), (label_at, (top + bottom) / 2.0), turned=True)

@@ -15,6 +15,7 @@ from alula.reports.figures.sheet.style import INK
 Real = NDArray[np.float64]
 _FONTS = "DejaVu Sans,Verdana,sans-serif"
 """Verdana is as wide as DejaVu Sans; whatever letters a reader has, they are set to the width that is reckoned with."""
+_ANCHORS = {"left": "", "center": ' text-anchor="middle"', "right": ' text-anchor="end"'}
 _PIXELS = 96.0 / 72.0
 """Of CSS for a point."""
 
@@ -43,7 +44,7 @@ def as_svg(width: float, height: float, marks: Sequence[Mark], texts: Iterable[T
     )
     named = f' aria-label="{escape(alt)}"' if alt else ""
     body = "".join(_painted(marks))
-    letters = "".join(_written(text) for text in texts)
+    letters = "".join(f"<g{style}>{''.join(map(_lines, group))}</g>" for style, group in groupby(texts, key=_style))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" {sides} role="img"{named}>'
         f'<path fill="#fff" d="M0 0h{_told(width)}v{_told(height)}h-{_told(width)}z"/>'
@@ -133,18 +134,21 @@ def _image(raster: Raster) -> str:
     )
 
 
-def _written(text: Text) -> str:
-    """Return the lines of a text, each set to the width that it has on the sheet."""
+def _style(text: Text) -> str:
+    """Return what neighbouring texts may share."""
     style = f' font-size="{_told(text.size)}"'
     style += "" if text.colour == INK else f' fill="{text.colour}"'
     style += ' font-weight="bold"' if text.bold else ""
     if text.halo > 0.0:
         style += f' stroke="#fff" stroke-width="{_told(text.halo)}" stroke-linejoin="round" paint-order="stroke"'
-    lines = []
+    return style + _ANCHORS["center" if text.turned else text.side]
+
+
+def _lines(text: Text) -> str:
+    """Return the lines of a text, each set to the width that it has on the sheet."""
+    found = []
     for line, (x, y), wide in text.lines():
         turn = f' transform="rotate(-90 {_told(x)} {_told(y)})"' if text.turned else ""
         fit = f' textLength="{_told(wide)}" lengthAdjust="spacingAndGlyphs"' if len(line) > 1 else ""
-        lines.append(f'<text x="{_told(x)}" y="{_told(y)}"{turn}{fit}>{escape(line, quote=False)}</text>')
-    anchor = {"left": "", "center": ' text-anchor="middle"', "right": ' text-anchor="end"'}[text.side]
-    anchor = ' text-anchor="middle"' if text.turned else anchor
-    return f"<g{style}{anchor}>{''.join(lines)}</g>"
+        found.append(f'<text x="{_told(x)}" y="{_told(y)}"{turn}{fit}>{escape(line, quote=False)}</text>')
+    return "".join(found)

@@ -107,7 +107,7 @@ def test_pins_are_as_warm_as_links(pin, verdict):
     entries += ['parts.bar.material="steel-s235"', 'checks={pins={type="pins"}}', 'conditions.temperature="90 degC"']
     result = check_case(edited(FOUR_BAR, entries), fidelity="beam")
     assert {c.verdict for c in of(result, Quantity.SAFETY_FACTOR)} == {verdict}
-    said = [one.what for one in caveats(result.case) if one.topic is Topic.TEMPERATURE]
+    said = [told(one.what) for one in caveats(result.case) if one.topic is Topic.TEMPERATURE]
     assert said == ["thermal expansion", *(["pins at 90 degC"] if pin == "steel-wire" else [])]
 
 

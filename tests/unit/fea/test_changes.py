@@ -21,7 +21,7 @@ from alula.geometry.materials.family import most_of_family
 from alula.geometry.materials.material import library
 from alula.loads.case.case_file import read_case
 from alula.reports.sentences import told as in_words
-from alula.reports.words.wording import headline, named
+from alula.reports.sentences.verdicts import headline, named
 
 THICK = {
     "parts.bar.thickness": "8 mm",

@@ -130,9 +130,10 @@ def test_one_point_gives_no_life_but_a_strength_up_to_it():
 
 
 def test_missing_data_is_named():
-    assert "no fatigue data" in missing_data(library()["steel-wire"])
-    assert "ultimate_strength" in missing_data(steel().model_copy(update={"ultimate_strength": None}))
-    assert missing_data(PVC) == missing_data(RESIN) == ""
+    assert "no fatigue data" in told(missing_data(library()["steel-wire"]))
+    assert "ultimate_strength" in told(missing_data(steel().model_copy(update={"ultimate_strength": None})))
+    assert missing_data(PVC) is None
+    assert missing_data(RESIN) is None
 
 
 def test_signed_stress_has_the_sign_of_the_largest_principal_stress():

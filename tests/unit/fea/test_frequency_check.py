@@ -34,7 +34,7 @@ from alula.loads.case.case_file import validate
 from alula.reports.check.changes import change_sentences
 from alula.reports.sentences import catalogue
 from alula.reports.sentences import told as in_words
-from alula.reports.words.wording import headline
+from alula.reports.sentences.verdicts import headline
 
 
 @cache

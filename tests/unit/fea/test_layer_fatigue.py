@@ -145,12 +145,12 @@ def test_without_data_it_is_undecided_where_it_is_asked_for():
         return _lacking(SimpleNamespace(material=material, evaluated=np.array(evaluated)), repetitions)
 
     rigid = CARD.model_copy(update={"fatigue": None})
-    assert lacking(rigid) == ""
+    assert lacking(rigid) is None
     assert outcome(None, rigid) == []
     assert lacking(rigid, 1e5) == lacking(CARD)
-    assert "fatigue_across_layers" in lacking(CARD)
+    assert "fatigue_across_layers" in told(lacking(CARD))
     [found] = outcome(None, CARD, lacking(CARD))
     assert (found.verdict, found.reason) == (Verdict.UNDECIDED, lacking(CARD))
     known = CARD.model_copy(update={"fatigue_across_layers": data()})
-    assert lacking(known) == ""
-    assert "not closed" in lacking(known, evaluated=(True, False))
+    assert lacking(known) is None
+    assert "not closed" in told(lacking(known, evaluated=(True, False)))

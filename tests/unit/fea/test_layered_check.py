@@ -56,7 +56,7 @@ def test_the_report_says_which_tight_pins_would_decide_an_open_check() -> None:
     ]
     free, held = (checked(*more).load_cases["weight"].links["GF"].safety_factor for more in ((), tuple(tight)))
     asked = f"checks.strength.minimum={(free.low + held.low) / 2.0}"
-    [text] = [text for text in checked(asked).warnings if "stress of GF" in in_words(text)]
+    [text] = [text for text in map(in_words, checked(asked).warnings) if "stress of GF" in text]
     assert text.endswith("tight_in of joints F, G, in both links, would decide its check")
     assert not any("stress of GF" in in_words(text) for text in checked(asked, *tight).warnings)
     assert not any("stress of GF" in in_words(text) for text in checked().warnings)  # where it passes all the same
@@ -66,7 +66,8 @@ def test_the_report_says_which_tight_pins_would_decide_an_open_check() -> None:
 def test_no_tight_pins_are_recommended_where_none_decides() -> None:
     """The limit lies in the band of hand calculation itself."""
     value = checked().load_cases["weight"].links["GF"].safety_factor.value
-    [text] = [text for text in checked(f"checks.strength.minimum={value}").warnings if "stress of GF" in in_words(text)]
+    warnings = map(in_words, checked(f"checks.strength.minimum={value}").warnings)
+    [text] = [text for text in warnings if "stress of GF" in text]
     assert text.endswith("no tight_in of joints would decide its check")
 
 
@@ -76,7 +77,7 @@ def test_what_would_narrow_them_is_said_once_of_each_link() -> None:
     case = edited("owl-wing-static", [*LAYERS, f"checks.strength.minimum={value}"], bare=True)
     two = dict.fromkeys(("weight", "again"), case.load_cases["weight"])
     result = check_case(case.model_copy(update={"load_cases": two}), name="owl-wing-static", fidelity="beam")
-    told = [text for text in result.warnings if "how pins share the couples" in in_words(text)]
+    told = [text for text in map(in_words, result.warnings) if "how pins share the couples" in text]
     links = [link for text in told for link in re.findall(r"stress of (\S+) ", text)]
     assert "GF" in links
     assert len(links) == len(set(links))

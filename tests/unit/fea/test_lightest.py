@@ -1,13 +1,11 @@
 """The lightest combination that passes: against rules whose optimum is known in closed form or by trying all."""
 
-import io
 import math
 from concurrent.futures import Future
 from itertools import product
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 from alula.fea.common.verdict import Verdict
 from alula.fea.sizing.candidates import Objective
@@ -19,7 +17,9 @@ from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
 from alula.loads.plans.axis import axis
 from alula.loads.plans.plan import plan_of
-from alula.reports.commands.lightest import print_lightest, record_of, status_of
+from alula.reports.commands.size import exit_status
+from alula.reports.commands.telling import text_of
+from alula.reports.study.size import size_section
 
 B, H = "parts.tube.inner_diameter", "parts.tube.outer_diameter"
 
@@ -115,13 +115,12 @@ def test_what_limits_the_answer_is_named_with_the_gains_of_each_entry(tmp_path):
     assert by_path[B].cost == pytest.approx(0.1 / b, rel=1e-9)
     assert by_path[H].share < 0.0
     assert found.gains[0].path == B
-    console = Console(file=io.StringIO(), width=400)
-    print_lightest(found, console)
-    told = console.file.getvalue()
+    section = size_section(found)
+    told = text_of([section], width=400)
     assert f"Least mass that passes: 6.300 g with {B} = 0.7 mm, {H} = 9 mm." in told
     assert f"{B} = 0.8 mm changes it by +14.3 % and the mass by +14.3 %" in told  # 8/7
-    assert record_of(found)["best"] == {B: "0.7 mm", H: "9 mm"}
-    assert status_of(found) == 0
+    assert section.data["best"] == {B: "0.7 mm", H: "9 mm"}
+    assert exit_status(found) == 0
 
 
 def test_equal_seeds_give_equal_searches_and_what_was_computed_stands(tmp_path):

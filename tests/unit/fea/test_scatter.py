@@ -15,6 +15,7 @@ from pydantic_core import PydanticCustomError
 from alula.fea.buckling.linkage import linkage_outcomes
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
+from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Verdict
@@ -88,7 +89,7 @@ def test_scatter_does_not_hide_that_a_band_covers_no_error_of_the_model():
     load = Scatter(low=0.5, high=3.0, sources=(Source(kind=SourceKind.LOAD),))
     bare = load.on(Band.exact(2.0, "beam theory alone"))
     assert (bare.low, bare.high, bare.without) == (1.0, 6.0, "beam theory alone")
-    assert bare.texts == ("scatter of the load", "no error of the model: beam theory alone")
+    assert tuple(map(told, bare.texts)) == ("scatter of the load", "no error of the model: beam theory alone")
 
 
 def test_strength_and_modulus_ranges_widen_factor_and_displacement(path):
@@ -100,7 +101,7 @@ def test_strength_and_modulus_ranges_widen_factor_and_displacement(path):
     assert ours.high / ours.value == pytest.approx(
         plain.displacement_max.high / plain.displacement_max.value * PLA.youngs_modulus / 2000, rel=1e-3
     )
-    assert Source(kind=SourceKind.STRENGTH, detail="23 to 65 MPa") in ranged.safety_factor.sources
+    assert "scatter of the strength (23 to 65 MPa)" in {told(one.text) for one in ranged.safety_factor.sources}
     assert any(source.kind is SourceKind.MODULUS for source in ours.sources)
 
 
@@ -120,7 +121,7 @@ def test_all_effects_of_a_load_scatter_with_it(path):
         low, high = (0.8, 1.2) if ours.quantity in rising else (1 / 1.2, 1 / 0.8)
         assert ours.value.low == pytest.approx(theirs.value.low * low), ours
         assert ours.value.high == pytest.approx(theirs.value.high * high), ours
-        assert Source(kind=SourceKind.LOAD, detail="80% to 120%") in ours.value.sources
+        assert "scatter of the load (80% to 120%)" in {told(one.text) for one in ours.value.sources}
 
 
 def test_hand_calculation_decides_on_the_whole_band():
@@ -130,7 +131,7 @@ def test_hand_calculation_decides_on_the_whole_band():
     ranged = replace(what, stress_limits=((0.5 * hand.von_mises.low, 1000.0),))
     decision, why = decided_by_hand(ranged, [hand])
     assert decision is None
-    assert "(with stated scatter)" in why
+    assert "(with stated scatter)" in told(why)
 
 
 def test_hand_calculation_without_calibration_neither_passes_nor_fails(path):
@@ -212,7 +213,7 @@ def test_the_share_that_is_held_covers_load_over_least_stiffness(monkeypatch, st
         eyes=eyes,
         points={},
         links={},
-        sentence="",
+        reason=reason("large_displacement_off"),
         frame=object(),
     )
     band = found.held_share

@@ -12,14 +12,15 @@ from told import result_record
 from alula.fea.buckling.wall import wall_stress
 from alula.fea.check.run import check_case
 from alula.fea.findings.of_check import with_harmonic
-from alula.fea.outcomes.unchecked import caveats, unchecked
+from alula.fea.outcomes.unchecked import caveats
 from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.fea.vibration.over_motion import pose_frequencies
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import SustainedCheck
 from alula.loads.text.caveat import Topic
 from alula.reports.sentences import told as in_words
-from alula.reports.words.wording import headline
+from alula.reports.sentences.caveats import caveat, not_checked
+from alula.reports.sentences.verdicts import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}
@@ -48,6 +49,11 @@ def in_layers(checks, *bare, transfer="eye-faces"):
     data["load_cases"]["lift"]["own_weight"] = False
     data["drive"]["transfer"] = transfer
     return validate(data | {"layer_spacing": "5 mm", "checks": checks})
+
+
+def unchecked(case, **over):
+    """What is not checked of a case, as it is told."""
+    return tuple(not_checked(caveats(case, **over)))
 
 
 def left(case, **over):
@@ -142,7 +148,7 @@ def told(**tables):
         data[name] = data.get(name, {}) | more if isinstance(more, dict) else more
     found = caveats(validate(data))
     known = ("stress", "pins", "shaft", "collisions", "fatigue", "creep")
-    return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in known}
+    return {(one.heading.value, one.topic.value): caveat(one) for one in found if one.topic not in known}
 
 
 FAST = {"turn": True, "speed": "600 rpm"}
@@ -173,7 +179,8 @@ def test_weight_that_is_left_out_is_told_with_its_load_cases():
     mass = {"link": "rocker", "at": "P", "mass": "50 kg"}
     light = {"light": {"own_weight": False}, "bare": {"own_weight": False, "carried": False}}
     assert told(carried=[mass], load_cases=light) == {
-        ("not checked", "weight"): "weight of what links carry (no own_weight in light)"
+        ("not checked", "weight"): "weight of what links carry (no own_weight in light; "
+        "under [load_cases.light]: own_weight = true)"
     }
     assert told(load_cases=light) == {}
     bare = {name: {"own_weight": True, "carried": False} for name in ("lift", "held")}
@@ -213,7 +220,7 @@ def test_limits_of_cards_below_one_are_told_where_they_decide():
     own = "materials.steel-wire.minimum_safety_factor = 0.5 (below 1 it lets pass what the load breaks)"
     case = starter({"a": STRENGTH | {"minimum": 2.0}, "b": {"type": "pins"}})
     weak = case.all_materials["steel-wire"].model_copy(update={"minimum_safety_factor": 0.5})
-    assert own in [str(one) for one in caveats(with_material(case, "steel-wire", weak))]
+    assert own in [caveat(one) for one in caveats(with_material(case, "steel-wire", weak))]
     stated = starter({"a": STRENGTH | {"minimum": 2.0}, "b": PINS | {"minimum": 2.0}})
     assert own not in [str(one) for one in caveats(with_material(stated, "steel-wire", weak))]
 
@@ -266,10 +273,14 @@ def test_what_a_case_states_and_no_check_looks_at_is_told(tables, key, text):
 
 def test_a_guide_that_rubs_without_a_length_is_told():
     data = tomllib.loads((files("alula.loads") / "cases" / "slider-crank.toml").read_text(encoding="utf-8"))
-    guide = ("assumed", "friction", "no couple on guide (no guide_length stated)")
+    guide = (
+        "assumed",
+        "friction",
+        'no couple on guide (no guide_length; under [joints.guide]: guide_length = "20 mm")',
+    )
     for length, is_told in (({}, True), ({"guide_length": "30 mm"}, False)):
         joints = data["joints"] | {"guide": data["joints"]["guide"] | length}
-        found = [(x.heading.value, x.topic.value, str(x)) for x in caveats(validate(data | {"joints": joints}))]
+        found = [(x.heading.value, x.topic.value, caveat(x)) for x in caveats(validate(data | {"joints": joints}))]
         assert (guide in found) is is_told
 
 
@@ -277,7 +288,8 @@ def test_a_guide_that_rubs_without_a_length_is_told():
 def test_poses_far_apart_are_told_of_the_motion_alone(poses, found):
     data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     case = validate(data | {"motion": {"turn": True, "poses": poses}})
-    assert [one.why for one in caveats(case, over_motion=True) if one.topic == "motion"] == ([found] if found else [])
+    why = [in_words(one.why) for one in caveats(case, over_motion=True) if one.topic == "motion"]
+    assert why == ([found] if found else [])
     assert not [one for one in caveats(case) if one.topic == "motion"]
 
 
@@ -296,24 +308,23 @@ def test_the_harmonic_that_comes_nearest_to_the_lowest_natural_frequency_is_told
     near = 1.02 * lowest / 3.0
     for loads in ({"near": near, "far": 0.7 * lowest}, {"far": 0.7 * lowest, "near": near}):
         own = float(pose_frequencies(driven(near=near))["near"].frequencies[0, 0])
-        told = nearest_harmonic(driven(**loads))
-        assert told.startswith(
+        assert in_words(nearest_harmonic(driven(**loads))).startswith(
             f"in this pose the 3rd harmonic of {60.0 * near:.4g} rpm is at {3.0 * near / own:.3g} of "
         )
-    assert nearest_harmonic(driven(slow=1e-3 * lowest)).startswith("in this pose the 10th harmonic of ")
-    assert nearest_harmonic(driven(still=0.0)) == nearest_harmonic(lever()) == ""
+    assert nearest_harmonic(driven(slow=1e-3 * lowest))["harmonic"] == 10
+    assert nearest_harmonic(driven(still=0.0)) is nearest_harmonic(lever()) is None
 
 
 def test_the_verdict_tells_the_nearest_harmonic_where_no_check_asks_for_frequencies():
     result = with_harmonic(check_case(driven(turning=10.0), fidelity="beam"))
-    said = f'vibration (no check of type "frequency"; {nearest_harmonic(result.case)})'
+    said = f'vibration (no check of type "frequency"; {in_words(nearest_harmonic(result.case))})'
     assert "harmonic of 600 rpm" in said
     assert said in headline(result)
     assert said in result_record(result)["not_checked"]
 
 
 def of_topic(case, topic, *, over_motion=False):
-    return [str(one) for one in caveats(case, over_motion=over_motion) if one.topic is topic]
+    return [caveat(one) for one in caveats(case, over_motion=over_motion) if one.topic is topic]
 
 
 def of_material(material, **tables):
@@ -375,7 +386,7 @@ def test_a_wall_that_may_buckle_before_it_yields_is_told(wall, told):
     inner = f"{12.0 - 2.0 * float(wall.split()[0]):g} mm"
     tube = {"shape": "tube", "material": "aluminium-7075-t6", "outer_diameter": "12 mm", "inner_diameter": inner}
     case = validate(data | {"parts": {"bar": tube | {"eyes": "none"}}})
-    found = [one.what for one in caveats(case) if one.topic is Topic.BUCKLING]
+    found = [in_words(one.what) for one in caveats(case) if one.topic is Topic.BUCKLING]
     assert found == [f"buckling of the wall of {links}" for links in told]
 
 
@@ -395,6 +406,10 @@ def test_a_drive_and_joints_without_what_their_checks_need_are_told():
     motor = {"type": "motor", "voltage": "6 V", "current": "1 A", "efficiency": 0.5}
     tables = {"motion": {"turn": True, "speed": "60 rpm"}, "checks": {"m": motor, "f": SPRING}}
     case = of_material("pvc-u", **tables)
-    assert of_topic(case, Topic.DRIVE) == ["a drive that does not give (no drive.stiffness)"]
-    assert of_topic(case, Topic.FRICTION) == ["joints without friction (none states any)"]
+    assert of_topic(case, Topic.DRIVE) == [
+        'a drive that does not give (no drive.stiffness; under [drive]: stiffness = "2 N*m/rad")'
+    ]
+    assert of_topic(case, Topic.FRICTION) == [
+        f"joints without friction (none states any; under [joints.{case.pinned_joints[0]}]: friction = 0.15)"
+    ]
     assert of_topic(of_material("pvc-u"), Topic.DRIVE) == of_topic(of_material("pvc-u"), Topic.FRICTION) == []

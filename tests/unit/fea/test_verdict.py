@@ -6,6 +6,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
 from alula.reports.sections.data import data
+from alula.reports.sentences import told
 
 
 def band(low: float, value: float, high: float) -> Band:
@@ -91,7 +92,7 @@ def test_a_subject_in_a_table_and_in_a_sentence(subject: Subject, short: str, lo
 
 def test_an_outcome_is_decided_by_its_quantity_and_stays_open_where_told() -> None:
     stress = CheckOutcome.of("creep", Subject.link("CH"), "rain", Quantity.SUSTAINED_STRESS, band(2.0, 2.5, 3.0), 4.0)
-    assert (stress.verdict, stress.unit, stress.reason) == (
+    assert (stress.verdict, stress.unit, told(stress.reason)) == (
         Verdict.PASS, "MPa", "its band 2 to 3 lies wholly on the safe side of the limit 4",
     )  # fmt: skip
     factor = CheckOutcome.of("strength", LINKAGE, "rain", Quantity.SAFETY_FACTOR, band(2.0, 2.5, 3.0), 4.0, "too thin")

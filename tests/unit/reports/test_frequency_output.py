@@ -224,3 +224,24 @@ def test_a_linkage_that_departs_still_has_a_diagram():
         )
         assert_legible(sheet)
         assert "In the stated pose" in written(sheet)
+
+
+def test_campbells_diagram_tells_frequencies_in_hertz_and_speeds_in_revolutions_per_minute():
+    one = history()
+    sheet = campbell_diagram(one, coordinate="crank", unit="deg", load_case="flapping")
+    assert {curve.unit for curve in sheet.plotted} == {"Hz"}
+    over = [curve for curve in sheet.plotted if curve.x_label == "crank [deg]"]
+    for k, name in enumerate(("1st", "2nd")):
+        for told, values in ((name, one.frequencies), (f"{name}, band", one.low), (f"{name}, band", one.high)):
+            assert any(
+                curve.name == told and len(curve.y) == len(one.at) and np.allclose(curve.y, values[:, k])
+                for curve in over
+            )
+        np.testing.assert_allclose(next(c for c in over if c.name == name).x, np.degrees(one.at), atol=1e-9)
+    levels = {curve.name: curve.y for curve in over if curve.name.endswith("×")}
+    assert levels["2×"] == pytest.approx([6.0, 6.0])
+    speeds = [curve for curve in sheet.plotted if curve.x_label == "speed of the drive [rpm]"]
+    rays = {curve.name: curve for curve in speeds if curve.name.endswith("×")}
+    assert rays["3×"].y[1] / rays["3×"].x[1] == pytest.approx(3.0 / 60.0)
+    [stated] = [curve for curve in speeds if curve.name == "stated speed"]
+    assert stated.x == pytest.approx([180.0, 180.0])

@@ -8,13 +8,11 @@ from told import not_covered, render
 from alula.fea.claims import sources
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, worst_of_each
+from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.figures.sheet.canvas import Canvas
-from alula.reports.page import claims_page
-from alula.reports.page.claims_page import CLAIMS
-from alula.reports.page.pictures import diagram_name, linkage_name, stress_name
-from alula.reports.words.wording import checks_of
+from alula.reports.sentences.verdicts import checks_of
 
-NAMES = (linkage_name("weight"), diagram_name("AE"), stress_name("GF"))
+NAMES = ("linkage-weight", "diagram-AE", "stress-GF")
 PICTURES = {name: Canvas(90.0 - 10.0 * k, 60.0) for k, name in enumerate(NAMES)}
 
 
@@ -118,20 +116,20 @@ def test_no_zero_has_a_sign(page):
     assert not re.search(r"−0(\.0+)?(?![.\d])", page.words)
 
 
-def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypatch, tmp_path) -> None:
+def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypatch) -> None:
     """The report has their number and the address; a case of which nothing was published has no such page."""
     monkeypatch.setattr(sources, "built_in_cases", lambda: ("owl-wing-static",))
     named = replace(result, name="owl-wing-static")
-    told = claims_page.write_claims(named, sources.claims_of(named), tmp_path, "report.html")
-    page = Page((tmp_path / CLAIMS).read_text(encoding="utf-8"))
+    text, told = published_page(named, sources.claims_of(named), "report.html")
+    page = Page(text)
     stands_alone(page, beside=("report.html",))
-    assert "3 of the equations are not equilibrium equations" in page.words
+    assert "3 of 15 equations are not equilibrium equations" in page.words
     assert "CH 0.7327 0.0000 −56.03" in page.words
     assert page.source.index("<details open>") < page.source.index("do not hold or do not follow (")
     assert "<details><summary>Figures that hold (" in page.source
     assert re.match(r"Published figures: \d+ claims: .* Published statics: 3 of 15 equations are not equ", told)
     plain = replace(result, name="elsewhere.toml", audit=None)
-    assert claims_page.write_claims(plain, sources.claims_of(plain), tmp_path / "none", "report.html") == ""
+    assert published_page(plain, sources.claims_of(plain), "report.html") == ("", "")
     assert CLAIMS not in render(plain, {})
 
 

@@ -21,8 +21,9 @@ from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.page.template import fill
 from alula.reports.sections.checks import check_records
+from alula.reports.sentences import told as in_words
+from alula.reports.sentences.verdicts import checks_of, decision, inapplicable
 from alula.reports.tables.console import say_checks
-from alula.reports.words.wording import checks_of, decision, inapplicable
 
 ENTRIES = (
     PLANAR,
@@ -78,7 +79,7 @@ def test_what_passes_in_a_pose_that_is_not_held_does_not_apply(wing):
 def test_the_record_keeps_the_verdict_and_has_the_mark():
     kept, lost = outcome("AE"), outcome("CF").not_applicable("the linkage gives way")
     assert [(r["verdict"], r["applies"], r["reason"]) for r in check_records([kept, lost])] == [
-        ("pass", True, kept.reason),
+        ("pass", True, in_words(kept.reason)),
         ("undecided", False, "the linkage gives way"),
     ]
 
@@ -115,7 +116,7 @@ def test_the_console_tells_them_below_the_table(wing):
         [*told] = inapplicable(load_case.checks)
         assert len(told) == (load_case.name != "light")
         assert all(re.sub(r"\s+", " ", line) in text for line in told)
-    assert text.count(NO_EQUILIBRIUM + ". Safety factor of") == 2
+    assert text.count(in_words(NO_EQUILIBRIUM) + ". Safety factor of") == 2
     assert "Displacement of point H of CH: the linkage gives way" not in text
     console = Console(width=100, record=True, file=io.StringIO())
     say_checks([outcome("AE", Verdict.FAIL), outcome("CF").not_applicable("gone")], console)
@@ -129,13 +130,13 @@ def test_the_page_has_one_group_at_the_end_and_none_of_it_among_the_nearest(wing
     source = render(wing, {})
     first, rest = (source.split(f'<section id="{name}">')[1].split("</section>")[0] for name in ("nearest", "checks"))
     count = sum(not c.applies for c in checks_of(wing))
-    assert f"<b>Not applicable</b>, {count} checks: {NO_EQUILIBRIUM}." in first
+    assert f"<b>Not applicable</b>, {count} checks: {in_words(NO_EQUILIBRIUM)}." in first
     assert first.count('<td class="what">') == 8
     assert ">not applicable<" not in first
-    head, _, group = rest.partition(f"<b>Not applicable</b>, {count} checks: {NO_EQUILIBRIUM}.")
+    head, _, group = rest.partition(f"<b>Not applicable</b>, {count} checks: {in_words(NO_EQUILIBRIUM)}.")
     assert "not applicable" not in head
     assert group.count(">not applicable<") == group.count('<td class="what">') == count
-    assert NO_EQUILIBRIUM not in group
+    assert in_words(NO_EQUILIBRIUM) not in group
 
 
 def test_the_page_of_an_envelope_has_the_same_group():

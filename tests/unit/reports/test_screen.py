@@ -11,7 +11,7 @@ from told import print_result, print_screen
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, deciding, worst_of_each
 from alula.reports.check.screen import MATTER, SCREEN
-from alula.reports.words.wording import BRIEF, brief, checks_of, decision
+from alula.reports.sentences.verdicts import BRIEF, brief, checks_of, decision
 
 CASES = ("owl-wing-static", "owl-wing-braking", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
 

@@ -1,5 +1,9 @@
 """Reasons and their sentences."""
 
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
 import pytest
 
 from alula.fea.common.band import Band
@@ -35,3 +39,26 @@ def test_reasons_of_one_kind_with_the_same_facts_are_one() -> None:
 def test_a_fact_that_is_missing_is_an_error() -> None:
     with pytest.raises(KeyError):
         catalogue.told(reason("plain"))
+
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def kinds() -> Iterator[str]:
+    """Yield the kinds that reasons are given in so many words."""
+    for folder in ("geometry", "loads", "fea"):
+        for file in (ROOT / folder).rglob("*.py"):
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+                match node:
+                    case ast.Call(func=ast.Name(id="reason"), args=[ast.Constant(value=str(kind))]):
+                        yield kind
+
+
+def test_every_kind_has_a_sentence() -> None:
+    assert sorted(set(kinds()) - catalogue.sentences().keys()) == []
+
+
+def test_every_sentence_is_of_a_kind_that_something_gives() -> None:
+    files = [file for folder in ("loads", "fea") for file in (ROOT / folder).rglob("*.py")]
+    texts = "".join(file.read_text(encoding="utf-8") for file in files)
+    assert [kind for kind in catalogue.sentences() if f'"{kind}"' not in texts] == []

@@ -13,6 +13,7 @@ import pytest
 from edited_cases import PLANAR
 from html_pages import Page, stands_alone
 from rich.console import Console
+from told import ends_of, values_of
 
 from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import least_margin, margin, margin_band, nearest
@@ -26,13 +27,15 @@ from alula.reports.figures.study.maps import verdict_map
 from alula.reports.figures.study.points import OUTCOMES, Parameter, Response
 from alula.reports.figures.study.spread import histogram, tornado
 from alula.reports.figures.study.style import LOOKS
+from alula.reports.notebook.study_report import StudyReport
 from alula.reports.renderers.console import print_sections
+from alula.reports.renderers.record import as_record
 from alula.reports.sections.section import Command, numbers_of, parts_of, tables_of
 from alula.reports.study.choice import picture_sections
 from alula.reports.study.columns import read_study
 from alula.reports.study.page import pictures_of, write_study
 from alula.reports.study.regression import regression
-from alula.reports.study.rows import study_rows
+from alula.reports.study.rows import results_section, study_rows
 from alula.reports.study.sections import ALIKE, points_table, study_sections
 
 CSS = Path(__file__).resolve().parents[3] / "reports" / "templates" / "report.css"
@@ -163,7 +166,7 @@ def test_a_study_is_read_into_columns(tmp_path):
     assert study.margin.value == pytest.approx([1.5, 0.5, math.nan], nan_ok=True)
     assert study.margin.low == pytest.approx([1.35, 0.45, math.nan], nan_ok=True)
     assert study.mass == pytest.approx([10.0, 12.0, math.nan], nan_ok=True)
-    assert (study.safety_factor.limit, list(study.outcome)) == (2.0, ["pass", "fail", "refused"])
+    assert list(study.outcome) == ["pass", "fail", "refused"]
     assert (study.extremes["best"].position, study.extremes["worst"].position) == (0, 1)
     assert study.sentences == {("refused", refused.sentence): [2]}
 
@@ -389,7 +392,7 @@ def test_console_page_notebook_and_store_tell_the_same_of_a_study(tmp_path):
     ]
     folder = store_of(tmp_path / "study", [*points, (points[0][0], refused)], link={"pin": "a + 1 mm"})
     with Store.reading(folder) as store:
-        study, rows = read_study(store), list(study_rows(store))
+        study, rows, record = read_study(store), list(study_rows(store)), as_record([results_section(store)])
     sections = study_sections(study)
     with Console(file=StringIO(), width=300, color_system=None) as console:
         print_sections(sections, console)
@@ -399,6 +402,8 @@ def test_console_page_notebook_and_store_tell_the_same_of_a_study(tmp_path):
     for text in (*map(str, numbers_of(parts)), "Refused, point 18: it must be positive", "= a + 1 mm"):
         assert " ".join(text.split()) in printed, text
         assert " ".join(text.split()) in " ".join(page.split()), text
+    known = set(values_of(record))
+    assert all(known.issuperset(ends_of(number)) for number in numbers_of(parts) if not number.derived)
     tables = tables_of(sections)
     assert set(tables) == {"entries", "sensitivity", "limits", "points"}
     assert [row["how many"] for row in tables["entries"]] == [3.0, 2.0, 3.0, None]
@@ -415,6 +420,12 @@ def test_console_page_notebook_and_store_tell_the_same_of_a_study(tmp_path):
     assert "--set 'a=3 mm' --set 'b=2 mm' --set 'c=1 mm'" in command
     asked = points_table(rows, ["mass of the linkage [g]"]).records
     assert [row["mass of the linkage [g]"] for row in asked] == [row.mass for row in rows]
+    report = StudyReport(folder, {})
+    assert (len(report.table()), report.table("limits").rows[0]["points"]) == (19, 18.0)
+    assert [row["margin"] for row in report.table()][-1] is None
+    with pytest.warns(DeprecationWarning, match="nearest to its limit"):
+        assert report.table()[0]["nearest"] == "safety factor of AE"
+    assert {row["mass [g]"] for row in points_table(rows[-1:]).records} == {None}
 
 
 def test_a_study_without_a_result_yet_is_told_so(tmp_path):

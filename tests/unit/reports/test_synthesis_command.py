@@ -14,11 +14,11 @@ from alula.reports.commands.synthesis import (
     PUBLISHED_GROUND,
     PUBLISHED_POINTS,
     joints_at,
-    print_synthesis,
     read_synthesis,
-    record,
     write_synthesis,
 )
+from alula.reports.commands.telling import json_of, text_of
+from alula.reports.tools.synthesis import synthesis_section
 
 
 @pytest.fixture(scope="module")
@@ -26,24 +26,20 @@ def found():
     return read_synthesis(PUBLISHED_POINTS, PUBLISHED_GROUND)
 
 
-def test_lengths_are_told_in_the_unit_of_the_ground(found, capsys) -> None:
-    print_synthesis(found, json=False)
-    text = capsys.readouterr().out
+def test_lengths_are_told_in_the_unit_of_the_ground(found) -> None:
+    text = text_of([synthesis_section(found)])
     for line in ("K1 = 0.966752, K2 = 5.005281, K3 = 5.034075", "a = 1.708728038 m", "d = 10 m"):
         assert line in text
     assert "12.05263932 m" in text
     assert "Non-Grashof" in text
 
 
-def test_small_linkages_are_told_in_mm(capsys) -> None:
-    print_synthesis(read_synthesis(PUBLISHED_POINTS, "100 mm"), json=False)
-    assert "a = 17.08728038 mm" in capsys.readouterr().out
+def test_small_linkages_are_told_in_mm() -> None:
+    assert "a = 17.08728038 mm" in text_of([synthesis_section(read_synthesis(PUBLISHED_POINTS, "100 mm"))])
 
 
-def test_the_record_holds_points_branches_and_lock_ups(found, capsys) -> None:
-    print_synthesis(found, json=True)
-    data = json.loads(capsys.readouterr().out)
-    assert data == json.loads(json.dumps(record(found)))
+def test_the_record_holds_points_branches_and_lock_ups(found) -> None:
+    data = json.loads(json_of([synthesis_section(found)]))
     assert data["lengths"]["b"] == pytest.approx(10343.91129, abs=5e-6)
     assert [point["branches"]["c"] for point in data["points"]] == ["open", "crossed", "open"]
     assert {lock["drive"] for lock in data["lock_ups"]} == {"a", "b", "c"}

@@ -8,6 +8,7 @@ import numpy as np
 import programs
 import pytest
 from rich.console import Console
+from told import ends_of, values_of
 
 import alula
 from alula.reports.renderers.console import print_sections
@@ -87,6 +88,8 @@ def test_console_record_and_notebook_tell_the_same_of_samples() -> None:
     printed = console.file.getvalue().replace("\xa0", " ")
     parts = [part for section in sections for part in parts_of(section.parts)]
     assert all(str(number).replace("\xa0", " ") in printed for number in numbers_of(parts))
+    known = set(values_of(record)) | {0.0}
+    assert all(known.issuperset(ends_of(number)) for number in numbers_of(parts))
     assert str(Number(0.99999, probable=True)) == "> 99.99 %"
     assert [str(Number(share, probable=True)) for share in (0.0, 1e-6, 0.5, 1.0)] == [
         "0 %",

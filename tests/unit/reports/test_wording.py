@@ -5,7 +5,9 @@ import pytest
 
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
-from alula.reports.words import numbers, wording
+from alula.reports.sentences import told
+from alula.reports.sentences import verdicts as wording
+from alula.reports.words import numbers
 
 
 @pytest.mark.parametrize(
@@ -170,7 +172,7 @@ def test_what_is_not_known_has_no_unit(result, changed):
     ("ends", "limit", "verdict", "text"),
     [
         ((0.116, math.inf), 2.0, Verdict.UNDECIDED, "its band 0.116 to ∞ holds the limit 2, so it may pass or fail"),
-        ((-math.inf, 1.0), 0.0, Verdict.UNDECIDED, "its band -∞ to 1 holds the limit 0, so it may pass or fail"),
+        ((-math.inf, 1.0), 0.0, Verdict.UNDECIDED, "its band −∞ to 1 holds the limit 0, so it may pass or fail"),
         ((3.0, math.inf), 2.0, Verdict.PASS, "its band 3 to ∞ lies wholly on the safe side of the limit 2"),
         ((0.1, 0.2), 2.0, Verdict.FAIL, "its band 0.1 to 0.2 lies wholly on the wrong side of the limit 2"),
     ],
@@ -179,7 +181,7 @@ def test_why_a_band_gives_its_verdict(ends, limit, verdict, text):
     """It said "inf straddles"."""
     low, high = ends
     value = high if math.isinf(low) else low
-    assert reason_for(Band(value=value, low=low, high=high), limit, verdict) == text
+    assert told(reason_for(Band(value=value, low=low, high=high), limit, verdict)) == text
 
 
 def test_a_number_that_is_not_known_is_open_for_its_reason():

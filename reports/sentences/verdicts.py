@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from alula.loads.text.caveat import Caveat, Heading
 from alula.reports.sentences import told
+from alula.reports.sentences.caveats import caveat
 from alula.reports.words.numbers import joined, measured, number, plain, sentence
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ def besides(found: Iterable[Caveat]) -> str:
     """
     every = list(found)
     told = {
-        heading: [one.short for one in every if one.heading is heading]
+        heading: [caveat(one, short=True) for one in every if one.heading is heading]
         for heading in (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
     }
     return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)

@@ -1,0 +1,192 @@
+"""Joint forces of a load case, what drives or holds its pose, springs, friction: of a check and of statics alone."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from alula.fea.frame.joint_forces import JointForces
+from alula.fea.frame.thrust import thrusts
+from alula.loads.records.applied import Load
+from alula.loads.states.drive_work import DriveWork
+from alula.loads.states.standing import Standing
+from alula.loads.statics.friction import friction_wrenches
+from alula.loads.statics.rounding import rounded, size_of, without_rounding
+from alula.loads.statics.statics import Reactions
+from alula.reports.sections.data import entries
+from alula.reports.sections.friction import friction_sentence
+from alula.reports.sections.markup import bold, sub
+from alula.reports.sections.section import Column, Number, Part, Table, Text, say, words
+from alula.reports.sections.springs import holding_sentence, spring_sentences
+from alula.reports.words.numbers import turning
+
+Loads = Sequence[Load]
+AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+_ROUNDING = 1e-9
+
+
+def reaction_parts(
+    name: str, reactions: Reactions, forces: JointForces, standing: Standing, work: DriveWork | None, loads: Loads
+) -> Iterator[Part]:
+    """Yield joint forces, what drives or holds the pose, springs and friction under a load case.
+
+    Parameters
+    ----------
+    name : str
+        Of the load case.
+    reactions : Reactions
+    forces : JointForces
+    standing : Standing
+    work : DriveWork or None
+        None without friction.
+    loads : sequence of Load
+        All of the load case, friction among them.
+
+    Yields
+    ------
+    Part
+    """
+    told, linkage, shown = without_rounding(reactions), reactions.pose.linkage, shown_components(reactions)
+    yield joint_table(told, shown, name)
+    if "Mz" not in shown:
+        for joint in told.joints.values():
+            if linkage.joints[joint.joint].type == "slider":
+                moment = Number(float(joint.wrench[5]), "N·mm")
+                yield say(
+                    "The guide {joint} also exerts a moment of {moment} ({turns}) on {on}",
+                    joint=joint.joint, moment=moment, turns=turning(joint.wrench[5]), on=joint.on,
+                )  # fmt: skip
+    if found := thrusts(forces):
+        facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
+        places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
+        yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
+    for line in spring_sentences(standing):
+        yield Text(f"{line}.")
+    yield from _driving(reactions, told, standing)
+    yield say("Residual of the equilibrium: {share} of the load", "note", share=Number(reactions.residual, "", 2))
+    if work is not None:
+        yield Text(f"{friction_sentence(work, reactions)}.")
+        rubbed = {joint: rounded(wrench, size_of(reactions)) for joint, wrench in friction_wrenches(loads).items()}
+        yield Table(
+            key="friction",
+            columns=(
+                words("joint"),
+                words("by → on"),
+                Column(f"F{sub('x')}", "N"),
+                Column(f"F{sub('y')}", "N"),
+                Column(f"M{sub('z')}", "N·mm"),
+            ),
+            rows=tuple(
+                (
+                    joint,
+                    f"{reactions.joints[joint].by} → {reactions.joints[joint].on}",
+                    *(Number(float(wrench[i])) for i in (0, 1, 5)),
+                )
+                for joint, wrench in rubbed.items()
+            ),
+            caption="Friction, part of the joint forces",
+            under=(("load case", name),),
+        )
+
+
+def _driving(reactions: Reactions, told: Reactions, standing: Standing) -> Iterator[Text]:
+    """Yield what drives or holds the pose."""
+    drive = reactions.drive
+    if held := holding_sentence(standing):
+        yield Text(bold(f"{held}."))
+    elif drive is not None and drive.pushes(reactions.pose.linkage):
+        yield say(
+            "Drive force on {link} along {joint}: {force}, already included in the guide reaction above",
+            link=drive.link, joint=drive.joint, force=Number(told.drive_force, "N"),
+        )  # fmt: skip
+    elif drive is not None:
+        torque = Number(told.drive_torque, "N·mm")
+        yield say(
+            "Drive torque on {link} about {joint}: {torque} ({turns}; counter-clockwise is positive)",
+            link=drive.link, joint=drive.joint, torque=torque, turns=turning(told.drive_torque),
+        )  # fmt: skip
+
+
+def shown_components(reactions: Reactions) -> tuple[str, ...]:
+    """Return the components of the joint forces that a table shows.
+
+    Fx and Fy always; Fz, Mx and My with loads out of the plane; Mz with bonded joints.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    tuple of str
+        Of ``AXES``.
+    """
+    wrenches = np.array([joint.wrench for joint in reactions.joints.values()]).reshape(-1, 6)
+    sizes = np.abs(wrenches).max(axis=0, initial=0.0)
+    force, arm = sizes[:3].max(), reactions.pose.linkage.longest
+    acts = sizes > _ROUNDING * np.array([force] * 3 + [force * arm] * 3)
+    revolute = [reactions.pose.linkage.joints[name].type == "revolute" for name in reactions.joints]
+    turned = np.abs(wrenches[revolute, 5]).max(initial=0.0) > _ROUNDING * force * arm
+    spatial = bool(acts[2:5].any())
+    shown = {"Fx": True, "Fy": True, "Fz": spatial, "Mx": spatial, "My": spatial, "Mz": bool(turned)}
+    return tuple(axis for axis in AXES if shown[axis])
+
+
+def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
+    """Return the reaction of every joint as plain data: force in the plane, magnitude, and the whole wrench.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    list of dict
+        One entry per joint.
+    """
+    return [
+        entries(joint, "joint on by magnitude wrench") | {"force": joint.force[:2].tolist()}
+        for joint in reactions.joints.values()
+    ]
+
+
+def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Table:
+    """Return a table of joint forces.
+
+    Parameters
+    ----------
+    told : Reactions
+        Without rounding errors.
+    shown : tuple of str
+        Components, of ``AXES``.
+    load_case : str
+
+    Returns
+    -------
+    Table
+    """
+    forces, moments = ([axis for axis in shown if axis[0] == kind] for kind in "FM")
+    size = size_of(told)
+    return Table.of(
+        (
+            words("joint"),
+            words("by → on"),
+            *(Column(f"F{sub(axis[1])}", "N") for axis in forces),
+            Column("size", "N"),
+            *(Column(f"M{sub(axis[1])}", "N·mm") for axis in moments),
+        ),
+        [
+            (
+                name,
+                f"{joint.by} → {joint.on}",
+                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in forces),
+                Number(float(joint.magnitude), beside=float(size[0])),
+                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in moments),
+            )
+            for name, joint in told.joints.items()
+        ],
+        key="joints",
+        caption=f"Joint forces{' and moments about the joint' if moments else ''}, global axes",
+        under=(("load case", load_case),),
+        kind="keep",
+    )
