@@ -36,7 +36,7 @@ _GRAMS, _MILLI = 1e6, 1e3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Series:
+class Rates:
     """Rates at every pose of a motion that has a speed, in the units of ``QUANTITIES``; rounding is zero.
 
     Attributes
@@ -66,7 +66,7 @@ class Series:
     whole: Mapping[str, Values]
 
 
-def series(result: CaseMotion, load_case: str | None = None) -> Series | None:
+def series(result: CaseMotion, load_case: str | None = None) -> Rates | None:
     """Return the rates of a motion at the speed of a load case.
 
     Parameters
@@ -77,7 +77,7 @@ def series(result: CaseMotion, load_case: str | None = None) -> Series | None:
 
     Returns
     -------
-    Series or None
+    Rates or None
         None without a speed.
     """
     motion = result.motion if load_case is None else result.moved[load_case]
@@ -102,7 +102,7 @@ def series(result: CaseMotion, load_case: str | None = None) -> Series | None:
         return {key: _clean(found, _ROUNDING * sizes.get(key, 0.0)) for key, found in values.items()}
 
     about, place = result.moment_point
-    return Series(
+    return Rates(
         motion=motion,
         about=about,
         place=place,

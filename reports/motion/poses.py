@@ -6,7 +6,7 @@ from typing import Any
 
 from alula.fea.findings.joint_paths import moving_points, path_length
 from alula.fea.findings.of_motion import MotionFindings
-from alula.fea.findings.rates import Series
+from alula.fea.findings.rates import Rates
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.charts import chart
 from alula.reports.motion.extremes import every_extreme, finite_or_none
@@ -14,13 +14,13 @@ from alula.reports.sections.section import Column, Number, Part, Section, Table,
 from alula.reports.sections.springs import motion_springs
 
 
-def motion_section(found: MotionFindings, own: Series | None) -> Section:
+def motion_section(found: MotionFindings, own: Rates | None) -> Section:
     """Return range, directions of the links, paths, springs and dead points.
 
     Parameters
     ----------
     found : MotionFindings
-    own : Series or None
+    own : Rates or None
         Rates at the motion's own speed; None without one.
 
     Returns
@@ -123,7 +123,7 @@ def _ends(angles: Any) -> dict[str, float]:
     return {key: math.degrees(float(value)) for key, value in ends.items()}
 
 
-def _motion(moved: CaseMotion, own: Series | None) -> dict[str, Any]:
+def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
     motion = moved.motion
 
     def rates(of: Mapping[str, Any], *quantities: str) -> dict[str, Any]:
