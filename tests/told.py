@@ -10,7 +10,8 @@ from alula.fea.findings.of_check import with_findings
 from alula.reports.check import screen
 from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
 from alula.reports.renderers.page import as_page
-from alula.reports.sections.section import parts_of
+from alula.reports.sections.markup import as_plain
+from alula.reports.sections.section import Folded, Text, parts_of
 
 _FOUND = {}
 
@@ -67,6 +68,10 @@ def not_covered(result):
     return tuple(entry for one in sections(result) for entry in one.not_covered)
 
 
+def flat(text):
+    return " ".join(as_plain(text).split())
+
+
 def values_of(data):
     """All numbers of a record, however deep."""
     if isinstance(data, dict):
@@ -84,3 +89,15 @@ def ends_of(number):
     value = number.value
     found = (value.told.value, value.told.low, value.told.high) if isinstance(value, Band) else (value,)
     return [float(one) for one in found if one is not None and math.isfinite(one)]
+
+
+def console_parts(parts):
+    """Parts that a console tells."""
+    for part in parts:
+        if isinstance(part, Folded) and not part.told:
+            continue
+        if isinstance(part, Text) and "note" in part.kind:
+            continue
+        yield part
+        if hasattr(part, "parts"):
+            yield from console_parts(part.parts)

@@ -36,7 +36,7 @@ _GRAMS, _MILLI = 1e6, 1e3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RateSeries:
+class Rates:
     """Rates at every pose of a motion that has a speed, in the units of ``QUANTITIES``; rounding is zero.
 
     Attributes
@@ -66,7 +66,7 @@ class RateSeries:
     whole: Mapping[str, Values]
 
 
-def series(result: CaseMotion, load_case: str | None = None) -> RateSeries | None:
+def series(result: CaseMotion, load_case: str | None = None) -> Rates | None:
     """Return the rates of a motion at the speed of a load case.
 
     Parameters
@@ -77,7 +77,7 @@ def series(result: CaseMotion, load_case: str | None = None) -> RateSeries | Non
 
     Returns
     -------
-    RateSeries or None
+    Rates or None
         None without a speed.
     """
     motion = result.motion if load_case is None else result.moved[load_case]
@@ -102,7 +102,7 @@ def series(result: CaseMotion, load_case: str | None = None) -> RateSeries | Non
         return {key: _clean(found, _ROUNDING * sizes.get(key, 0.0)) for key, found in values.items()}
 
     about, place = result.moment_point
-    return RateSeries(
+    return Rates(
         motion=motion,
         about=about,
         place=place,

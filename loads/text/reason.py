@@ -16,7 +16,7 @@ class Reason:
     kind : str
         The name of its sentence in ``alula.reports.sentences``.
     facts : tuple of (str, object)
-        What the sentence names: numbers in mm, N, MPa, bands, names, tuples of names, further reasons.
+        What the sentence names: numbers in mm, N, MPa, bands, names, several names, further reasons.
     """
 
     kind: str
@@ -42,7 +42,7 @@ def reason(kind: str, /, **facts: Any) -> Reason:
     ----------
     kind : str
     **facts
-        Lists become tuples, so that the reason can be a key.
+        A list becomes a tuple, so that the reason can be a key.
 
     Returns
     -------

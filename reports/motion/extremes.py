@@ -86,7 +86,17 @@ def every_extreme(motion: Motion, values: Mapping[str, Values]) -> dict[str, Any
 
 
 def finite_or_none(value: float) -> float | None:
-    """Return a number as JSON takes it: None where it is infinite or unknown."""
+    """Return a number as JSON takes it.
+
+    Parameters
+    ----------
+    value : float
+
+    Returns
+    -------
+    float or None
+        None where it is infinite or unknown.
+    """
     return float(value) if np.isfinite(value) else None
 
 

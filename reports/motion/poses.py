@@ -6,7 +6,7 @@ from typing import Any
 
 from alula.fea.findings.joint_paths import moving_points, path_length
 from alula.fea.findings.of_motion import MotionFindings
-from alula.fea.findings.rates import RateSeries
+from alula.fea.findings.rates import Rates
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.charts import chart
 from alula.reports.motion.extremes import every_extreme, finite_or_none
@@ -14,13 +14,13 @@ from alula.reports.sections.section import Column, Number, Part, Section, Table,
 from alula.reports.sections.springs import motion_springs
 
 
-def motion_section(found: MotionFindings, own: RateSeries | None) -> Section:
+def motion_section(found: MotionFindings, own: Rates | None) -> Section:
     """Return range, directions of the links, paths, springs and dead points.
 
     Parameters
     ----------
     found : MotionFindings
-    own : RateSeries or None
+    own : Rates or None
         Rates at the motion's own speed; None without one.
 
     Returns
@@ -109,16 +109,12 @@ def _dead_points(found: MotionFindings) -> Iterator[Text]:
             at=Number(float(motion.told(at)), motion.unit, decimals=4),
         )
     if not moved.dead_points:
-        way, least = (
-            finite_or_none(float(motion.told(found.way_to_dead_point))),
-            Number(found.dead_point_distance, "", 3),
-        )
-        beyond = "none was met beyond" if way is None else "the nearest is {way} beyond"
-        yield say(
-            f"No dead point of {link} in the range, {beyond}; least distance (a ratio) {{least}}",
-            way=Number(way, motion.unit),
-            least=least,
-        )
+        way = finite_or_none(float(motion.told(found.way_to_dead_point)))
+        facts: dict[str, object] = {"least": Number(found.dead_point_distance, "", 3)}
+        beyond = "none was met beyond"
+        if way is not None:
+            beyond, facts["way"] = "the nearest is {way} beyond", Number(way, motion.unit)
+        yield say(f"No dead point of {link} in the range, {beyond}; least distance (a ratio) {{least}}", **facts)
 
 
 def _ends(angles: Any) -> dict[str, float]:
@@ -127,7 +123,7 @@ def _ends(angles: Any) -> dict[str, float]:
     return {key: math.degrees(float(value)) for key, value in ends.items()}
 
 
-def _motion(moved: CaseMotion, own: RateSeries | None) -> dict[str, Any]:
+def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
     motion = moved.motion
 
     def rates(of: Mapping[str, Any], *quantities: str) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from alula.fea.findings.rates import QUANTITIES, RateSeries
+from alula.fea.findings.rates import QUANTITIES, Rates
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.charts import chart
 from alula.reports.motion.extremes import (
@@ -43,13 +43,13 @@ _WHOLE = {
 }
 
 
-def rates_section(moved: CaseMotion, rates: Mapping[str, RateSeries]) -> Section:
+def rates_section(moved: CaseMotion, rates: Mapping[str, Rates]) -> Section:
     """Return speeds, momentum and energy.
 
     Parameters
     ----------
     moved : CaseMotion
-    rates : mapping of str to RateSeries
+    rates : mapping of str to Rates
         Load case -> at its speed; those with a speed.
 
     Returns
@@ -67,12 +67,12 @@ def rates_section(moved: CaseMotion, rates: Mapping[str, RateSeries]) -> Section
     )
 
 
-def rates_record(found: RateSeries) -> dict[str, Any]:
+def rates_record(found: Rates) -> dict[str, Any]:
     """Return the rates of a motion at the speed of a load case as an entry of ``result.json``.
 
     Parameters
     ----------
-    found : RateSeries
+    found : Rates
 
     Returns
     -------
@@ -90,9 +90,7 @@ def rates_record(found: RateSeries) -> dict[str, Any]:
     }
 
 
-def _parts(
-    moved: CaseMotion, rates: Mapping[str, RateSeries], records: Mapping[str, Mapping[str, Any]]
-) -> Iterator[Part]:
+def _parts(moved: CaseMotion, rates: Mapping[str, Rates], records: Mapping[str, Mapping[str, Any]]) -> Iterator[Part]:
     yield Text(
         "Of all poses: the smallest and the largest value, of a vector its largest size. Angular momentum of a link is "
         "about its own centroid. The shaking force and moment are what inertia alone does to the ground. N·mm is mJ, "
@@ -163,7 +161,7 @@ def _energy(moved: CaseMotion, load_case: str, record: Mapping[str, Any]) -> Tab
     )
 
 
-def _speeds(rates: RateSeries, title: str) -> Iterator[Picture]:
+def _speeds(rates: Rates, title: str) -> Iterator[Picture]:
     """Yield what moves at a speed: links and points."""
 
     def draw(of: str) -> Any:
@@ -175,7 +173,7 @@ def _speeds(rates: RateSeries, title: str) -> Iterator[Picture]:
     yield chart("point-speeds", "Speeds and accelerations of the points, as sizes", lambda: draw("points"))
 
 
-def _energy_picture(moved: CaseMotion, load_case: str, rates: RateSeries, name: str) -> Picture:
+def _energy_picture(moved: CaseMotion, load_case: str, rates: Rates, name: str) -> Picture:
     def draw() -> Any:
         from alula.reports.figures.motion.rate_figures import energy_figure
 

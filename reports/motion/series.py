@@ -7,12 +7,11 @@ from numpy.typing import NDArray
 
 from alula.fea.findings.joint_paths import moving_points, owners
 from alula.fea.findings.of_motion import MotionFindings
-from alula.fea.findings.rates import QUANTITIES, RateSeries, Values
+from alula.fea.findings.rates import QUANTITIES, Rates, Values
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.play import drive_play, point_play
-from alula.reports.sections.section import Section
-from alula.reports.sections.section import Series as File
+from alula.reports.sections.section import Section, Series
 from alula.reports.sections.springs import motion_springs
 
 Real = NDArray[np.float64]
@@ -20,7 +19,7 @@ ANGULAR = ("angular_speed", "angular_acceleration")
 """Quantities of a link whose columns have shorter names in ``links.csv``."""
 
 
-def motion_series(found: MotionFindings, rates: Mapping[str, RateSeries], own: RateSeries | None) -> Section:
+def motion_series(found: MotionFindings, rates: Mapping[str, Rates], own: Rates | None) -> Section:
     """Return every pose, for ``links.csv``, ``points.csv``, ``torque.csv`` and more.
 
     Torques and joint forces have one load case below the other. So have rates, where load cases have a speed: speeds,
@@ -29,9 +28,9 @@ def motion_series(found: MotionFindings, rates: Mapping[str, RateSeries], own: R
     Parameters
     ----------
     found : MotionFindings
-    rates : mapping of str to RateSeries
+    rates : mapping of str to Rates
         Load case -> at its speed; those with a speed.
-    own : RateSeries or None
+    own : Rates or None
         Rates at the motion's own speed; None without one.
 
     Returns
@@ -52,12 +51,12 @@ def motion_series(found: MotionFindings, rates: Mapping[str, RateSeries], own: R
         "joint-forces": {name: _force_columns(result, name) for name in result.forces},
     }
     files = [
-        File(file=f"{file}.csv", columns={**_base(motion), **columns}, digits=12)
+        Series(file=f"{file}.csv", columns={**_base(motion), **columns}, digits=12)
         for file, columns in whole.items()
         if columns
     ]
     files += [
-        File.below(f"{file}.csv", {name: {**_base(result.moved[name]), **columns} for name, columns in cases.items()})
+        Series.below(f"{file}.csv", {name: {**_base(result.moved[name]), **columns} for name, columns in cases.items()})
         for file, cases in below.items()
         if cases
     ]
@@ -71,7 +70,7 @@ def _base(motion: Motion) -> dict[str, Real]:
     return columns if motion.times is None else columns | {"time [s]": motion.times}
 
 
-def _link_columns(result: CaseMotion, own: RateSeries | None) -> dict[str, Real]:
+def _link_columns(result: CaseMotion, own: Rates | None) -> dict[str, Real]:
     motion, columns = result.motion, dict[str, Real]()
     for i, link in enumerate(motion.linkage.moving):
         if motion.slides or link != motion.coordinate:
@@ -91,7 +90,7 @@ def _link_columns(result: CaseMotion, own: RateSeries | None) -> dict[str, Real]
     return columns
 
 
-def _rate_columns(found: RateSeries) -> dict[str, Real]:
+def _rate_columns(found: Rates) -> dict[str, Real]:
     """Columns of all rates of a load case."""
     columns: dict[str, Real] = {}
     for of in (found.links, found.points, {"linkage": found.whole}):

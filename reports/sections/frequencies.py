@@ -166,7 +166,7 @@ def _table(found: CaseFrequencies) -> Table:
 
     for name, history in found.histories.items():
         for k, mode in enumerate(history.lowest.modes):
-            ratio = Number(mode.frequency.times(1.0 / history.driving) if history.driving else None, derived=k > 0)
+            ratio = Number(mode.frequency.times(1.0 / history.driving) if history.driving else None, derived=True)
             moves = (directions(mode.in_plane), most_moved(history.lowest, mode))
             rows.append(row(k, name, "the linkage", Number(mode.frequency), ratio, *moves))
     for link, own in found.links.items():

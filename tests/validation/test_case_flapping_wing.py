@@ -17,7 +17,8 @@ from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.statics.statics import solve_statics
-from alula.reports.tables.mechanism import design_lines, design_of
+from alula.reports.sections.design import design_section
+from alula.reports.sections.section import tables_of
 
 PUBLISHED = {
     "flapping-wing-reference": (1.9474, 39.085, 21.962),
@@ -49,9 +50,8 @@ def test_ten_links_and_thirteen_pins_move_with_one_freedom(case) -> None:
 
 
 def test_published_figures_follow_by_the_source_definitions(case, name) -> None:
-    design = design_of(case)
-    assert design is not None
-    found = {figure.name: figure.published for figure in design.figures}
+    figures = design_section(case).data["design"]["figures"]
+    found = {figure["name"]: figure["published_definition"] for figure in figures}
     lag, oscillation, asymmetry = PUBLISHED[name]
     assert found["phase lag"] == pytest.approx(lag, abs=5.1e-5)
     assert found["oscillation"] == pytest.approx(oscillation, abs=5.1e-4)
@@ -60,14 +60,12 @@ def test_published_figures_follow_by_the_source_definitions(case, name) -> None:
 
 def test_the_published_phase_lag_is_no_phase(case) -> None:
     """It is the sides' difference at crank angle 0; the reversals of the sides lie several degrees apart."""
-    design = design_of(case)
-    assert design is not None
-    lag = next(figure for figure in design.figures if figure.name == "phase lag")
-    assert lag.published is not None
-    assert lag.proper > 5.0 * lag.published
-    text = "\n".join(design_lines(case))
-    assert f"{lag.published:.4f}" in text
-    assert f"{lag.proper:.4f}" in text
+    lag = design_section(case).data["design"]["figures"][0]
+    assert lag["name"] == "phase lag"
+    assert lag["proper"] > 5.0 * lag["published_definition"]
+    [row] = [row for row in tables_of([design_section(case)])["design"] if row["figure"] == "phase lag"]
+    assert row["as the source defines it [deg]"] == lag["published_definition"]
+    assert row["as its name means [deg]"] == lag["proper"]
 
 
 def test_general_solver_and_closed_form_move_alike(case, moved) -> None:

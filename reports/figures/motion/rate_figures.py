@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from alula.fea.findings.rates import QUANTITIES, RateSeries, Values
+from alula.fea.findings.rates import QUANTITIES, Rates, Values
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.figures.motion.motion_figures import (
     COLOURS,
@@ -20,12 +20,12 @@ _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
-def speeds_figure(rates: RateSeries, of: str, title: str) -> Figure:
+def speeds_figure(rates: Rates, of: str, title: str) -> Figure:
     """Draw two rates of links or points below each other, of vectors their sizes; rows that are equal share a line.
 
     Parameters
     ----------
-    rates : RateSeries
+    rates : Rates
     of : str
         ``links`` or ``points``.
     title : str
@@ -49,14 +49,14 @@ def speeds_figure(rates: RateSeries, of: str, title: str) -> Figure:
     return figure
 
 
-def energy_figure(result: CaseMotion, load_case: str, rates: RateSeries) -> Figure:
+def energy_figure(result: CaseMotion, load_case: str, rates: Rates) -> Figure:
     """Draw energies, the power of the drive, and what shakes the ground, below each other.
 
     Parameters
     ----------
     result : CaseMotion
     load_case : str
-    rates : RateSeries
+    rates : Rates
         Of this load case.
 
     Returns
@@ -103,7 +103,7 @@ def _equal(one: Values, other: Values) -> bool:
     return np.allclose(_size(one), _size(other), rtol=_NEAR, atol=_NEAR * float(np.max(np.abs(one))))
 
 
-def _line(axes: Any, rates: RateSeries, values: Values, label: str, index: int) -> None:
+def _line(axes: Any, rates: Rates, values: Values, label: str, index: int) -> None:
     style = {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index // len(COLOURS) % len(DASHES)]}
     axes.plot(rates.motion.told(rates.motion.angles), values, label=label, linewidth=1.8, **style)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)

@@ -8,14 +8,13 @@ from html import unescape
 import pytest
 import told
 from solved import by_hand
-from told import ends_of, values_of
+from told import console_parts, ends_of, flat, values_of
 
 from alula.fea.common.band import Band
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.sections.markup import as_html, as_plain, bold, code, link, sub
 from alula.reports.sections.section import (
     Column,
-    Folded,
     Number,
     Section,
     Series,
@@ -35,22 +34,6 @@ CASES = (
     ("slider-crank",),
     ("finger",),
 )
-
-
-def flat(text):
-    return " ".join(as_plain(text).split())
-
-
-def console_parts(parts):
-    """Parts that a console tells."""
-    for part in parts:
-        if isinstance(part, Folded) and not part.told:
-            continue
-        if isinstance(part, Text) and "note" in part.kind:
-            continue
-        yield part
-        if hasattr(part, "parts"):
-            yield from console_parts(part.parts)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case[0])
