@@ -56,7 +56,16 @@ def published_page(result: CheckResult, found: Sequence[ClaimResult], report: st
 
 
 def as_json(results: Sequence[ClaimResult]) -> str:
-    """Return the findings as a JSON list."""
+    """Return the findings as a JSON list.
+
+    Parameters
+    ----------
+    results : Sequence[ClaimResult]
+
+    Returns
+    -------
+    str
+    """
     return json.dumps(claims_section(results).data["claims"], indent=2, ensure_ascii=False)
 
 

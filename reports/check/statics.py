@@ -204,7 +204,16 @@ def _wrench(values: NDArray[np.float64]) -> dict[str, list[float]]:
 
 
 def friction_left_out(case: Case) -> str:
-    """Return at which joints friction is left out, in words; "" where none is."""
+    """Return at which joints friction is left out, in words; "" where none is.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    str
+    """
     rubbing = rubbing_joints(case)
     smooth = [name for name in case.joints if name not in rubbing]
     return "friction" if not rubbing else f"friction at {joined(smooth)}" if smooth else ""

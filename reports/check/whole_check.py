@@ -102,7 +102,17 @@ def check_record(result: CheckResult, sections: Sequence[Section]) -> dict[str, 
 
 
 def check_json(result: CheckResult, sections: Sequence[Section]) -> str:
-    """Return ``check_record`` as the text of ``result.json``; strict JSON, without NaN or infinity."""
+    """Return ``check_record`` as the text of ``result.json``; strict JSON, without NaN or infinity.
+
+    Parameters
+    ----------
+    result : CheckResult
+    sections : Sequence[Section]
+
+    Returns
+    -------
+    str
+    """
     return text_of.dumps(check_record(result, sections), indent=2, ensure_ascii=False, allow_nan=False)
 
 

@@ -27,7 +27,16 @@ def tell(sections: "Sequence[Section]", *, json: bool = False) -> None:
 
 
 def json_of(sections: "Iterable[Section]") -> str:
-    """Return the entries of sections, of a result that states its units itself, as JSON."""
+    """Return the entries of sections, of a result that states its units itself, as JSON.
+
+    Parameters
+    ----------
+    sections : Iterable[Section]
+
+    Returns
+    -------
+    str
+    """
     from alula.geometry.base.version import result_stamp
     from alula.reports.renderers.record import as_json, finite
     from alula.reports.sections.section import merged

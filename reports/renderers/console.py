@@ -47,7 +47,13 @@ def print_sections(sections: Iterable[Section], console: "Console") -> None:
 
 
 def print_parts(parts: Iterable[Part], console: "Console") -> None:
-    """Print parts of a section."""
+    """Print parts of a section.
+
+    Parameters
+    ----------
+    parts : Iterable[Part]
+    console : Console
+    """
     for part in parts:
         if isinstance(part, Text) and "note" not in part.kind:
             say(console, as_plain(part.text), style="yellow" if part.kind == "apart" else "")
@@ -68,7 +74,13 @@ def print_parts(parts: Iterable[Part], console: "Console") -> None:
 
 
 def print_table(table: Table, console: "Console") -> None:
-    """Print a table, and below it what it says of some of its rows."""
+    """Print a table, and below it what it says of some of its rows.
+
+    Parameters
+    ----------
+    table : Table
+    console : Console
+    """
     table = table.shown
     columns = [(as_plain(column.head), not column.text) for column in table.columns]
     say_table(

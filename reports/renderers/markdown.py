@@ -23,6 +23,15 @@ def table_lines(table: Table) -> list[str]:
 
 
 def cell(text: str) -> str:
-    """Return a text as it stands in a table or a heading of Markdown."""
+    """Return a text as it stands in a table or a heading of Markdown.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
     plain = " ".join(as_plain(text).split()).replace("&", "&amp;").replace("<", "&lt;")
     return plain.replace("|", "\\|").replace("*", "\\*")

@@ -187,6 +187,15 @@ def drawn(picture: Any, alt: str) -> str:
 
 
 def data_uri(picture: bytes) -> str:
-    """Return the bytes of a PNG, WebP or GIF file as a data URI."""
+    """Return the bytes of a PNG, WebP or GIF file as a data URI.
+
+    Parameters
+    ----------
+    picture : bytes
+
+    Returns
+    -------
+    str
+    """
     kind = "webp" if picture.startswith(b"RIFF") else "gif" if picture.startswith(b"GIF") else "png"
     return f"data:image/{kind};base64," + base64.b64encode(picture).decode("ascii")

@@ -58,7 +58,16 @@ def as_brief_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
 
 
 def as_json(record: Mapping[str, Any]) -> str:
-    """Return a record as strict JSON, without NaN or infinity."""
+    """Return a record as strict JSON, without NaN or infinity.
+
+    Parameters
+    ----------
+    record : Mapping[str, Any]
+
+    Returns
+    -------
+    str
+    """
     return json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False)
 
 

@@ -198,7 +198,16 @@ def checks_section(checks: Sequence[CheckOutcome], verdict: Verdict, where: str,
 
 
 def has_all(checks: Sequence[CheckOutcome]) -> bool:
-    """Return True where the table of all checks says more than that of the first screen."""
+    """Return True where the table of all checks says more than that of the first screen.
+
+    Parameters
+    ----------
+    checks : Sequence[CheckOutcome]
+
+    Returns
+    -------
+    bool
+    """
     return len(checks) > MOST or any(_reasons(checks))
 
 

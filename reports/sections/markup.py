@@ -10,12 +10,30 @@ _LINK = re.compile("\ue006([^\ue007]*)\ue007([^\ue008]*)\ue008")
 
 
 def bold(text: object) -> str:
-    """Return a text in bold letters."""
+    """Return a text in bold letters.
+
+    Parameters
+    ----------
+    text : object
+
+    Returns
+    -------
+    str
+    """
     return _within("b", text)
 
 
 def code(text: object) -> str:
-    """Return a text in letters of equal width: a command, an entry of a file."""
+    """Return a text in letters of equal width: a command, an entry of a file.
+
+    Parameters
+    ----------
+    text : object
+
+    Returns
+    -------
+    str
+    """
     return _within("code", text)
 
 
@@ -34,12 +52,31 @@ def entry(path: str) -> str:
 
 
 def sub(text: object) -> str:
-    """Return a text as a subscript."""
+    """Return a text as a subscript.
+
+    Parameters
+    ----------
+    text : object
+
+    Returns
+    -------
+    str
+    """
     return _within("sub", text)
 
 
 def link(text: str, address: str) -> str:
-    """Return a text that leads to another place of a page, or to a file beside it."""
+    """Return a text that leads to another place of a page, or to a file beside it.
+
+    Parameters
+    ----------
+    text : str
+    address : str
+
+    Returns
+    -------
+    str
+    """
     return f"\ue006{address}\ue007{text}\ue008"
 
 

@@ -162,7 +162,16 @@ def _no_choice(several: bool) -> str:
 
 
 def statics_count(audit: StaticsAudit) -> str:
-    """Return how many of the published equations are none of equilibrium, in one sentence."""
+    """Return how many of the published equations are none of equilibrium, in one sentence.
+
+    Parameters
+    ----------
+    audit : StaticsAudit
+
+    Returns
+    -------
+    str
+    """
     wrong = sum(not row.valid for row in audit.rows)
     verb = "is not an equilibrium equation" if wrong == 1 else "are not equilibrium equations"
     return f"{wrong} of {len(audit.rows)} equations {verb}."

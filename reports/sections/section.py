@@ -151,7 +151,19 @@ class Column:
 
 
 def words(title: str, *, role: str = "", wraps: bool = False, hidden: bool = False) -> Column:
-    """Return a column of text."""
+    """Return a column of text.
+
+    Parameters
+    ----------
+    title : str
+    role : str
+    wraps : bool
+    hidden : bool
+
+    Returns
+    -------
+    Column
+    """
     return Column(title, text=True, role=role, wraps=wraps, hidden=hidden)
 
 
@@ -243,7 +255,16 @@ class Table:
 
 
 def as_name(column: Column) -> str:
-    """Return the name of a column for a script: without marks, without what its cells show anyway."""
+    """Return the name of a column for a script: without marks, without what its cells show anyway.
+
+    Parameters
+    ----------
+    column : Column
+
+    Returns
+    -------
+    str
+    """
     from alula.reports.sections.markup import as_plain
 
     return as_plain(column.head).replace(" (band)", "")

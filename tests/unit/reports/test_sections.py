@@ -70,7 +70,7 @@ def test_every_sentence_of_a_section_is_on_the_page_and_none_is_there_twice():
         flat(part.text)
         for section in told.sections(result)
         for part in parts_of(section.parts)
-        if isinstance(part, Text) and len(part.text) > 120
+        if isinstance(part, Text) and len(part.text) > 120 and not part.text.startswith("Not applicable")
     ]
     assert len(texts) > 5
     for text in texts:
