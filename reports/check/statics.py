@@ -67,7 +67,8 @@ _SPRINGS = (
 
 def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield Text(f"{weight_sentence(result.case, case.name)}.")
-    yield from reaction_parts(case.name, case.reactions, case.forces, case.standing, case.work, case.loads)
+    deformed = case.large_displacement.reactions
+    yield from reaction_parts(case.name, case.reactions, case.forces, case.standing, case.work, case.loads, deformed)
 
 
 def _method(result: CheckResult, first: LoadCaseResult) -> Text:

@@ -26,7 +26,13 @@ _ROUNDING = 1e-9
 
 
 def reaction_parts(
-    name: str, reactions: Reactions, forces: JointForces, standing: Standing, work: DriveWork | None, loads: Loads
+    name: str,
+    reactions: Reactions,
+    forces: JointForces,
+    standing: Standing,
+    work: DriveWork | None,
+    loads: Loads,
+    deformed: Reactions | None = None,
 ) -> Iterator[Part]:
     """Yield joint forces, what drives or holds the pose, springs and friction under a load case.
 
@@ -41,6 +47,8 @@ def reaction_parts(
         None without friction.
     loads : sequence of Load
         All of the load case, friction among them.
+    deformed : Reactions, optional
+        Those of the deformed shape, where that counts: thrusts along pins are theirs.
 
     Yields
     ------
@@ -56,7 +64,7 @@ def reaction_parts(
                     "The guide {joint} also exerts a moment of {moment} ({turns}) on {on}",
                     joint=joint.joint, moment=moment, turns=turning(joint.wrench[5]), on=joint.on,
                 )  # fmt: skip
-    if found := thrusts(forces):
+    if found := thrusts(forces, deformed):
         facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
         places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
         yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
