@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 
 from alula.fea.frame.case_statics import solve_case_statics
 from alula.loads.case.case_file import read_case
-from alula.reports.sections.reactions import shown_components, weight_sentence
+from alula.reports.check.statics import weight_sentence
+from alula.reports.sections.reactions import shown_components
 
 WING, FLIGHT = "owl-wing-static", "owl-wing-flight"
 BONDED = 'joint_model="bonded"'
