@@ -7,6 +7,15 @@ from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.reports.sentences.catalogue import Sentence, told
 
 
+_ENTRIES = {
+    "no_guide_length": 'under [joints.{joint}]: guide_length = "20 mm"',
+    "none_states_friction": "under [joints.{joint}]: friction = 0.15",
+    "no_drive_stiffness": 'under [drive]: stiffness = "{usual}"',
+    "no_own_weight": "under [load_cases.{first}]: own_weight = true",
+}
+"""The line that a case may lack, and the table in which it stands, by the kind of the reason."""
+
+
 def caveat(found: Caveat, *, short: bool = False) -> str:
     """Return a caveat in words, such as ``thigh (no part)``.
 
@@ -14,7 +23,7 @@ def caveat(found: Caveat, *, short: bool = False) -> str:
     ----------
     found : Caveat
     short : bool, optional
-        True for a headline: without the reason where most cases have the same.
+        True for a headline: without the reason where most cases have the same, and without the line to paste.
 
     Returns
     -------
@@ -22,7 +31,10 @@ def caveat(found: Caveat, *, short: bool = False) -> str:
     """
     if not found.why or (short and found.topic in (Topic.SHAFT, Topic.COLLISIONS)):
         return told(found.what)
-    return f"{told(found.what)} ({told(found.why)})"
+    why = told(found.why)
+    if not short and isinstance(found.why, Reason) and found.why.kind in _ENTRIES:
+        why += f"; {_ENTRIES[found.why.kind].format(**dict(found.why.facts))}"
+    return f"{told(found.what)} ({why})"
 
 
 def not_checked(found: Iterable[Caveat]) -> list[str]:
@@ -80,19 +92,19 @@ SENTENCES: dict[str, Sentence] = {
     "clamps": "clamps {joints}",
     "not_judged_what_holds": "what holds them is not judged",
     "no_couple_on": "no couple on {joints}",
-    "no_guide_length": 'no guide_length; under [joints.{joint}]: guide_length = "20 mm"',
+    "no_guide_length": "no guide_length",
     "joints_without_friction": "joints without friction",
-    "none_states_friction": "none states any; under [joints.{joint}]: friction = 0.15",
+    "none_states_friction": "none states any",
     "large_play": "play of {play:plain} mm at {joint}",
     "diameter_of_pin": "its pin has {diameter:plain} mm",
     "rigid_drive": "a drive that does not give",
     "stiffness_for_frequencies": "its stiffness counts for natural frequencies alone",
-    "no_drive_stiffness": 'no drive.stiffness; under [drive]: stiffness = "{usual}"',
+    "no_drive_stiffness": "no drive.stiffness",
     "collisions_and_couples": "collisions of links and couples of their pins",
     "no_layer_stated": "no link states a layer",
     # Loads, mass and size.
     "weight_of_carried": "weight of what links carry",
-    "no_own_weight": "no own_weight in {load_cases}; under [load_cases.{first}]: own_weight = true",
+    "no_own_weight": "no own_weight in {load_cases}",
     "what_links_carry": _what_links_carry,
     "carried_is_false": "carried is false in every load case",
     "forces_on_pins": lambda places: f"force{'s' if len(places) > 1 else ''} at {', '.join(places)}",
