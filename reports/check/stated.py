@@ -10,7 +10,7 @@ from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold, code, link
 from alula.reports.sections.section import Column, Group, Items, Number, Part, Section, Table, Text, say, words
 from alula.reports.sentences import told
-from alula.reports.sentences.caveats import not_checked
+from alula.reports.sentences.caveats import by_heading, not_checked
 from alula.reports.words.numbers import joined, sentence
 
 _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
@@ -50,6 +50,8 @@ def case_section(result: CheckResult, published: str = "") -> Section:
     if published:
         page = link("claims.html", "claims.html")
         parts.append(Text(f"{published} They stand on a page of their own, {page} in the same folder.", "note"))
+    if result.caveats:
+        parts.append(Items(by_heading(result.caveats)))
     if result.warnings:
         parts.append(Items(tuple(f"Warning: {told(warning)}" for warning in result.warnings), "warnings"))
     envelope = code("alula envelope")

@@ -1,7 +1,7 @@
 """The least safety factor of each link over a motion, fatigue, and the checks over all poses."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,7 @@ from alula.reports.sections.section import (
     words,
 )
 from alula.reports.sentences import told
-from alula.reports.sentences.caveats import caveat, not_checked
+from alula.reports.sentences.caveats import by_heading, not_checked
 from alula.reports.sentences.verdicts import besides, decision
 from alula.reports.turnable.moving import ENVELOPE_CAPTION
 from alula.reports.words.numbers import fixed, sentence
@@ -326,10 +326,7 @@ def _linkage(result: EnvelopeResult) -> Section:
 def _limits(result: EnvelopeResult) -> Section:
     """Return what the verdict stands on besides, which the headline tells too."""
     found = caveats(result.case, over_motion=True)
-    headings: Mapping[str, list[str]] = {one.heading: [] for one in found}
-    for one in found:
-        headings[one.heading].append(caveat(one))
-    items = tuple((heading.capitalize(), f"{'; '.join(texts)}.") for heading, texts in headings.items())
+    items = by_heading(found)
     return Section(
         key="limits",
         title="What the verdict does not cover",

@@ -6,7 +6,6 @@ from alula.fea.common.reason import Reason
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.reports.sentences.catalogue import Sentence, told
 
-
 _ENTRIES = {
     "no_guide_length": 'under [joints.{joint}]: guide_length = "20 mm"',
     "none_states_friction": "under [joints.{joint}]: friction = 0.15",
@@ -50,6 +49,24 @@ def not_checked(found: Iterable[Caveat]) -> list[str]:
     list of str
     """
     return [caveat(one) for one in found if one.heading is Heading.NOT_CHECKED]
+
+
+def by_heading(found: Iterable[Caveat]) -> tuple[tuple[str, str], ...]:
+    """Return caveats in words under their headings, with the lines to paste.
+
+    Parameters
+    ----------
+    found : iterable of Caveat
+
+    Returns
+    -------
+    tuple of (str, str)
+        Heading, and its caveats as one sentence.
+    """
+    headings: dict[Heading, list[str]] = {}
+    for one in found:
+        headings.setdefault(one.heading, []).append(caveat(one))
+    return tuple((heading.capitalize(), f"{'; '.join(texts)}.") for heading, texts in headings.items())
 
 
 def _some(one: str, names: tuple[str, ...]) -> str:
