@@ -84,7 +84,8 @@ def write_report(
         told, (beside_it, published) = result, published_page(result, claims, REPORT)
         if beside_it:
             (folder / CLAIMS).write_text(beside_it, encoding="utf-8")
-        page = check_page(told, check_sections(told, published))
+        sections = check_sections(told, published)
+        page = check_page(told, sections)
         with ThreadPoolExecutor(1) as beside:
             drawn = beside.submit(check_pictures, result, page, progress)
             _write_fields(result, folder / FIELDS)
@@ -95,8 +96,9 @@ def write_report(
                 for warning in warnings:
                     progress(f"Warning: {warning}")
                 told = replace(result, warnings=(*result.warnings, *warnings))
-            sections = check_sections(told, published)
-            (folder / REPORT).write_text(as_page(check_page(told, sections), pictures, models), encoding="utf-8")
+                sections = check_sections(told, published)
+                page = check_page(told, sections)
+            (folder / REPORT).write_text(as_page(page, pictures, models), encoding="utf-8")
             (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
             files.result()
         if decks is not None and result.second_opinions:

@@ -3,14 +3,18 @@
 import base64
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from alula.geometry.base.version import alula_version
 from alula.reports.page.policy import sealed
 from alula.reports.sections.markup import as_html, code
 from alula.reports.sections.section import Beside, Cell, Column, Folded, Group, Mark, Part, Picture, Section, parts_of
 from alula.reports.turnable.script import viewer
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 STYLES = ("report.css", "turnable.css")
 
@@ -91,6 +95,25 @@ def as_page(
     -------
     str
     """
+    every = [part for section in page.every for part in parts_of(section.parts)]
+    return (
+        _environment()
+        .get_template("page.html.jinja")
+        .render(
+            page=page,
+            images=pictures,
+            models=models,
+            contents=list(_contents(page)),
+            folded=any(isinstance(part, Folded) for part in every),
+            version=alula_version(),
+            **sealed(*STYLES, script=viewer() if models else ""),
+        )
+    )
+
+
+@cache
+def _environment() -> "Environment":
+    """Return the templates and what they call; compiled once, however many pages there are."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -111,19 +134,10 @@ def as_page(
         "classes": lambda cell, column: Markup(_classes(cell, column)),
         "capital": _capital,
         "part_kind": lambda part: type(part).__name__,
-        "beside": lambda part: _beside(part, pictures, models),
+        "beside": _beside,
         "model_name": lambda name: name.removeprefix("link-"),
     }
-    every = [part for section in page.every for part in parts_of(section.parts)]
-    return environment.get_template("page.html.jinja").render(
-        page=page,
-        images=pictures,
-        models=models,
-        contents=list(_contents(page)),
-        folded=any(isinstance(part, Folded) for part in every),
-        version=alula_version(),
-        **sealed(*STYLES, script=viewer() if models else ""),
-    )
+    return environment
 
 
 def _contents(page: Page) -> Iterator[tuple[str, str, bool]]:
