@@ -60,7 +60,8 @@ def linkage_picture(result: CheckResult, name: str, kind: str = "") -> Picture:
     ]
     acts = [what for what, there in (("own weight", stated.own_weight), ("inertia", stated.speed)) if there]
     if acts:
-        told.append(f"{' and '.join(acts).capitalize()} of the links act as well and are not drawn.")
+        verbs = ("acts", "is") if len(acts) == 1 else ("act", "are")
+        told.append(f"{' and '.join(acts).capitalize()} of the links {verbs[0]} as well and {verbs[1]} not drawn.")
     if len(shown_components(result.load_cases[name].reactions)) > 3:
         told.append("Forces and moments out of the plane are not drawn.")
     if stated.air:

@@ -15,6 +15,7 @@ from alula.fea.common.verdict import (
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, link
 from alula.reports.sections.section import Column, Folded, Items, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import inapplicable, named
 from alula.reports.words.numbers import joined, sentence
 
@@ -224,9 +225,7 @@ def _held(checks: Sequence[CheckOutcome]) -> tuple[str, ...]:
     for check in checks:
         texts = [str(source.kind) for source in check.value.sources] if check.name in wide else []
         if check.value.without:
-            why = say("{why}", why=check.value.without).text[:-1]
-            why = f"{why[:1].lower()}{why[1:]}"
-            texts.append(f"{'no error of the model' if texts else 'nothing'} ({why})")
+            texts.append(f"{'no error of the model' if texts else 'nothing'} ({told(check.value.without)})")
         for text in texts:
             found.setdefault(check.name, {})[text] = None
     return tuple(f"{name}: {joined(list(texts))}." for name, texts in found.items())

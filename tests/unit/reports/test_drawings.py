@@ -241,7 +241,12 @@ def test_the_worst_load_case_is_drawn(result):
 
     assert governing_load_cases(result) == ("weight",)
     turned = {name: result.load_cases[name] for name in ("idle", "weight")}
-    assert governing_load_cases(replace(result, load_cases=turned)) == ("idle", "weight")
+    assert governing_load_cases(replace(result, load_cases=turned)) == (
+        "weight",
+        "idle",
+    )  # that of the nearest check first
+    unchecked = {name: replace(load_case, checks=()) for name, load_case in turned.items()}
+    assert governing_load_cases(replace(result, load_cases=unchecked)) == ("idle", "weight")
 
 
 def test_a_slider_runs_in_its_guide(slider):

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 from html_pages import Page, stands_alone
-from told import not_covered, render
+from told import flat, not_covered, render
 
 from alula.fea.claims import sources
 from alula.fea.common.band import Band
@@ -60,9 +60,9 @@ def test_it_stands_without_pictures(result):
         "Young's modulus E 2.4 GPa handbook Paredes (2018), table 1, after Shigley",
         "density 1450 kg/m³",
         "Poisson's ratio ν 0.38 assumed",
-        "Sources of error in the band of each check: strength: pin pressure",
+        "Sources of error in the band of each check strength: pin pressure",
         "2 elements were straightened",
-        "The pose is close to a dead point",
+        "Warning: the pose is close to a dead point",
         "The load at H enters over the last 5 mm of the tube.",
         "solid models 1.5 s",
         "right-hand sides: small enough for a factorisation), relative error below 1e-09",
@@ -75,7 +75,7 @@ def test_what_a_reader_needs_is_there(page, words):
 def test_what_is_not_covered_is_said(page, result):
     for title, text in not_covered(result):
         assert title in page.words
-        assert text in page.words
+        assert flat(text) in page.words
 
 
 def test_every_link_has_a_section(page, result):
@@ -155,4 +155,4 @@ def test_the_first_page_holds_verdict_picture_and_the_checks_nearest_to_their_li
 
     page = render(changed(change), {})
     shown = [re.sub("<.*?>", "", row) for row in re.findall(r'<td class="what">(.*?)</td>', page)[:3]]
-    assert [row.split()[3] for row in shown] == ["GF", "CH", "CF"]
+    assert shown == [f"Safety factor of {link}, weight" for link in ("GF", "CH", "CF")]
