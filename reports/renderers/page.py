@@ -92,7 +92,6 @@ def as_page(
     str
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
-    from markupsafe import Markup
 
     from alula.reports.renderers.compiled import CompiledTemplates
 
@@ -104,11 +103,12 @@ def as_page(
         lstrip_blocks=True,
         bytecode_cache=CompiledTemplates(),
     )
+    safe = environment.filters["safe"]
     environment.filters |= {
-        "marked": lambda text: Markup(as_html(text)),
-        "drawn": lambda picture, alt: Markup(drawn(picture, alt)),
-        "shown": lambda cell: Markup(_shown(cell)),
-        "classes": lambda cell, column: Markup(_classes(cell, column)),
+        "marked": lambda text: safe(as_html(text)),
+        "drawn": lambda picture, alt: safe(drawn(picture, alt)),
+        "shown": lambda cell: safe(_shown(cell)),
+        "classes": lambda cell, column: safe(_classes(cell, column)),
         "capital": _capital,
         "part_kind": lambda part: type(part).__name__,
         "beside": lambda part: _beside(part, pictures, models),
