@@ -51,9 +51,9 @@ def test_numbers_of_the_tutorial_are_printed_there() -> None:
 def test_a_wrong_number_is_found(tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.sh("alula new four-bar.toml\nalula statics four-bar.toml\n")
-    reader.text("Load case lift\n...\ndrive torque on crank: 92.612 N·mm\n")
+    reader.text("Load case lift\n...\nDrive torque on crank about O2: 92.61 N·mm\n")
     with pytest.raises(AssertionError, match="is not in"):
-        reader.text("drive torque on crank: 92.613 N·mm\n")
+        reader.text("Drive torque on crank about O2: 92.62 N·mm\n")
 
 
 def test_lines_are_changed_or_added_under_their_headings() -> None:

@@ -96,11 +96,11 @@ def _table(rows: Sequence[tuple[LoadCaseResult, LinkResult]], *, several: bool, 
     return Table.of(
         (
             words("link"),
-            words("load case") if several else None,
+            words("load case", hidden=not several),
             words("model"),
             words("stress"),
             Column("stress (band)", "MPa"),
-            Column("safety factor n (band)"),
+            Column("safety factor (band)"),
             Column("displacement (band)", "mm"),
             Column("largest at x", "mm"),
         ),

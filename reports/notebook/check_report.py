@@ -28,9 +28,8 @@ RENAMED = {
         "sense": "limit sense",
     },
     "links": {
-        "low": "safety factor n low",
-        "high": "safety factor n high",
-        "safety factor": "safety factor n",
+        "low": "safety factor low",
+        "high": "safety factor high",
         "worst at x [mm]": "largest at x [mm]",
     },
     "joints": {},

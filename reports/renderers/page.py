@@ -115,7 +115,6 @@ def as_page(
 def _environment() -> "Environment":
     """Return the templates and what they call; compiled once, however many pages there are."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
-    from markupsafe import Markup
 
     from alula.reports.renderers.compiled import CompiledTemplates
 
@@ -127,11 +126,12 @@ def _environment() -> "Environment":
         lstrip_blocks=True,
         bytecode_cache=CompiledTemplates(),
     )
+    safe = environment.filters["safe"]
     environment.filters |= {
-        "marked": lambda text: Markup(as_html(text)),
-        "drawn": lambda picture, alt: Markup(drawn(picture, alt)),
-        "shown": lambda cell: Markup(_shown(cell)),
-        "classes": lambda cell, column: Markup(_classes(cell, column)),
+        "marked": lambda text: safe(as_html(text)),
+        "drawn": lambda picture, alt: safe(drawn(picture, alt)),
+        "shown": lambda cell: safe(_shown(cell)),
+        "classes": lambda cell, column: safe(_classes(cell, column)),
         "capital": _capital,
         "part_kind": lambda part: type(part).__name__,
         "beside": _beside,

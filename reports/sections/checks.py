@@ -80,7 +80,7 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
             words("check", hidden=True),
             words("quantity", role="what"),
             words("link", role="who"),
-            words("load case", role="under") if several else None,
+            words("load case", role="under", hidden=not several),
             Column("value (band)", role="value"),
             Column("limit", role="limit"),
             words("verdict", role="found"),

@@ -178,6 +178,8 @@ def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Tabl
     return Table.of(
         (
             words("joint"),
+            words("by", hidden=True),
+            words("on", hidden=True),
             words("by → on"),
             *(Column(f"F{sub(axis[1])}", "N") for axis in forces),
             Column("size", "N"),
@@ -186,6 +188,8 @@ def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Tabl
         [
             (
                 name,
+                joint.by,
+                joint.on,
                 f"{joint.by} → {joint.on}",
                 *(Number(float(joint.wrench[AXES.index(axis)])) for axis in forces),
                 Number(float(joint.magnitude), beside=float(size[0])),

@@ -72,6 +72,16 @@ def test_tables_have_a_row_each(report):
         report.table("check")
 
 
+def test_rows_name_their_load_case_and_bodies_though_a_page_does_not():
+    """With one load case, pages and consoles leave its column out; a script that reads it goes on."""
+    found = alula.check("four-bar", fidelity="beam")
+    assert {row["load case"] for of in ("checks", "links") for row in found.table(of)} == {"lift"}
+    assert {(row["by"], row["on"]) for row in found.table("joints")} >= {("base", "crank"), ("coupler", "rocker")}
+    assert "load case" not in str(found.table("links"))
+    crank = found.table("links")[0]
+    assert crank["safety factor low"] < crank["safety factor"] < crank["safety factor high"]
+
+
 def test_a_table_as_text_keeps_its_columns():
     text = str(ShownTable(({"name": "a", "x [mm]": 3.0, "of": None}, {"name": "long", "x [mm]": math.inf, "of": None})))
     assert text.splitlines() == ["name  x [mm]  of", "a          3", "long       ∞"]
