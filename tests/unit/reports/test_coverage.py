@@ -141,6 +141,13 @@ def test_kinds_of_sources_are_told_without_particulars(result):
     assert ": energy that a flywheel stores and discretisation." in page
 
 
+def test_a_reason_for_no_band_begins_as_it_was_written(result):
+    case = result.load_cases["weight"]
+    checks = tuple(replace(check, value=Band.exact(2.0, "GF has no eyes")) for check in case.checks)
+    page = render(replace(result, load_cases={"weight": replace(case, checks=checks)}), {})
+    assert ": nothing (GF has no eyes)." in page
+
+
 def test_shafts_slots_and_wings_are_said_where_the_case_has_them():
     ornithopter, starter = solved.by_hand("ornithopter"), solved.by_hand("four-bar-synthesis")
     found = told(ornithopter)
