@@ -38,8 +38,9 @@ def print_result(result: CheckResult, sections: Sequence[Section], console: "Con
         On a narrow one, lines break at spaces.
     """
     verdict_line(result.verdict, result.case.title, console)
-    say(console, headline(result))
-    print_sections(sections, console)
+    why = headline(result)
+    say(console, why)
+    print_sections(sections, console, said=[why])
 
 
 def print_screen(result: CheckResult, sections: Sequence[Section], console: "Console") -> None:

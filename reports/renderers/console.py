@@ -30,7 +30,7 @@ def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
     say(console, Styled.assemble(badge, f" {title}"))
 
 
-def print_sections(sections: Iterable[Section], console: "Console") -> None:
+def print_sections(sections: Iterable[Section], console: "Console", *, said: Iterable[str] = ()) -> None:
     """Print sections.
 
     Parameters
@@ -38,48 +38,68 @@ def print_sections(sections: Iterable[Section], console: "Console") -> None:
     sections : iterable of Section
     console : rich.console.Console
         On a narrow one, lines break at spaces.
+    said : iterable of str, optional
+        Paragraphs that were told before; reasons in them are not told again.
     """
+    said = list(said)
     for section in sections:
         if section.title and any(_told(part) for part in section.parts):
             say(console, "")
             say(console, section.title, style="bold")
-            print_parts(section.parts, console)
+            print_parts(section.parts, console, said)
 
 
-def print_parts(parts: Iterable[Part], console: "Console") -> None:
-    """Print parts of a section.
+def print_parts(parts: Iterable[Part], console: "Console", said: list[str] | None = None) -> None:
+    """Print parts of a section; a table of which another of them has every row is left out.
 
     Parameters
     ----------
     parts : Iterable[Part]
     console : Console
+    said : list of str, optional
+        Paragraphs that were told before, and will be here: no table tells them again below its rows.
     """
+    parts, said = tuple(parts), [] if said is None else said
+    whole = [one for part in parts if isinstance(part, Folded) and part.told for one in part.parts]
     for part in parts:
+        if isinstance(part, Table) and any(_holds(one, part) for one in whole):
+            continue
         if isinstance(part, Text) and "note" not in part.kind:
-            say(console, as_plain(part.text), style="yellow" if part.kind == "apart" else "")
+            said.append(as_plain(part.text))
+            say(console, said[-1], style="yellow" if part.kind == "apart" else "")
         elif isinstance(part, Items) and "note" not in part.kind:
             style = "yellow" if part.kind == "warnings" else ""
             for item in part.items:
-                say(console, as_plain(f"- {item}" if isinstance(item, str) else f"{item[0]}: {item[1]}"), style=style)
+                title, text = ("-", item) if isinstance(item, str) else (f"{item[0]}:", item[1])
+                again = not isinstance(item, str) and _said(as_plain(text), said)
+                said.append(as_plain(f"{title} {'as told above.' if again else text}"))
+                say(console, said[-1], style=style)
         elif isinstance(part, Table):
-            print_table(part, console)
+            print_table(part, console, said)
         elif isinstance(part, Command):
             say_command(console, part.text, part.command)
         elif isinstance(part, Beside) or (isinstance(part, Folded) and part.told):
-            print_parts(part.parts, console)
+            print_parts(part.parts, console, said)
         elif isinstance(part, Group) and any(map(_told, part.parts)):
             say(console, "")
             say(console, as_plain(f"{part.title} {part.remark}".rstrip()), style="italic")
-            print_parts(part.parts, console)
+            print_parts(part.parts, console, said)
 
 
-def print_table(table: Table, console: "Console") -> None:
+def _holds(whole: Part, table: Table) -> bool:
+    """Whether a part is a table that has all rows of another one."""
+    return isinstance(whole, Table) and whole.columns == table.columns and all(row in whole.rows for row in table.rows)
+
+
+def print_table(table: Table, console: "Console", said: list[str] | None = None) -> None:
     """Print a table, and below it what it says of some of its rows.
 
     Parameters
     ----------
     table : Table
     console : Console
+    said : list of str, optional
+        What was told before, and will be here: it is not told again.
     """
     table = table.shown
     columns = [(as_plain(column.head), not column.text) for column in table.columns]
@@ -90,8 +110,16 @@ def print_table(table: Table, console: "Console") -> None:
         title=as_plain(table.caption),
         whole=table.kind == "whole",
     )
-    for text in dict.fromkeys(table.below.values()):
-        say(console, as_plain(text))
+    said = [] if said is None else said
+    for text in map(as_plain, table.below.values()):
+        if not _said(text, said):
+            said.append(text)
+            say(console, text)
+
+
+def _said(text: str, said: Iterable[str]) -> bool:
+    """Whether a text was told before, with or without a capital."""
+    return any(text[1:] in one for one in said)
 
 
 def _styled(cell: Cell) -> "str | Styled":

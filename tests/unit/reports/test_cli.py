@@ -31,7 +31,7 @@ def test_statics_prints_the_published_system(tmp_path: Path) -> None:
     done = programs.inside("statics", "owl-wing-static", "--matrix", folder=tmp_path)
     assert done.returncode == 0
     assert "15×15" in done.stdout
-    assert "-130.58 N·mm" in done.stdout
+    assert "Drive torque on AE about A: −130.6 N·mm" in done.stdout
     assert "AE Mz" in done.stdout
     record = json.loads(programs.inside("statics", "owl-wing-static", "--matrix", "--json").stdout)
     system = record["load_cases"]["weight"]["system"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from legible import assert_legible, written
 from PIL import Image
+from solved import by_hand
 
 from alula.fea.beam.loads import BeamLoads, PointLoad
 from alula.fea.beam.theory import check_beam
@@ -247,6 +248,19 @@ def test_the_worst_load_case_is_drawn(result):
     )  # that of the nearest check first
     unchecked = {name: replace(load_case, checks=()) for name, load_case in turned.items()}
     assert governing_load_cases(replace(result, load_cases=unchecked)) == ("idle", "weight")
+
+
+@pytest.mark.parametrize(
+    ("load_case", "words"),
+    [
+        ("held", "Own weight of the links acts as well and is not drawn."),
+        ("flapping", "Own weight and inertia of the links act as well and are not drawn."),
+    ],
+)
+def test_a_picture_says_what_acts_and_is_not_drawn(load_case, words):
+    from alula.reports.check.linkage import linkage_picture
+
+    assert words in linkage_picture(by_hand("flapping-wing-chosen"), load_case).caption
 
 
 def test_a_slider_runs_in_its_guide(slider):

@@ -9,25 +9,25 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from told_motion import pictures
 
 from alula.fea.beam.loads import BeamLoads, PointLoad
 from alula.fea.beam.theory import check_beam
 from alula.fea.common.band import Band
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject
+from alula.fea.findings.rates import series
 from alula.fea.tolerance.result import ToleranceNumber
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.figures.diagrams import internal_force_diagram
 from alula.reports.figures.motion.envelope_figures import envelope_figure
-from alula.reports.figures.motion.rate_figures import motion_pictures
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.chart import Chart
 from alula.reports.figures.sheet.plot import Axes
 from alula.reports.figures.study.curves import curves
 from alula.reports.figures.study.style import chart
 from alula.reports.figures.study.tolerance_pictures import spread_picture
-from alula.reports.motion.rates import series
 from alula.reports.study.columns import Parameter, Response
 
 SPEED = 60.0
@@ -41,7 +41,7 @@ def moved():
 
 @pytest.fixture(scope="module")
 def drawn(moved):
-    return motion_pictures(moved)
+    return pictures(moved)
 
 
 def curve(picture, name, label):
