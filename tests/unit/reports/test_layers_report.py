@@ -7,16 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from html_pages import Page
 from programs import ROOT
 from rich.console import Console
-from told import as_json, not_covered, print_result, render
+from told import as_json, flat, not_covered, print_result, render
 
 from alula.fea.common.band import Band
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.solid.layers import Layers, best_directions, build_directions
 from alula.fea.whole.build_directions import build_directions_of
 from alula.reports.figures.build_map import _project, build_map
-from alula.reports.page.pictures import layers_name
+from alula.reports.sections.layers import layer_text
 from alula.reports.words.numbers import direction
 
 LINK = "GF"
@@ -41,6 +42,10 @@ def with_layers(result, **changed):
     return replace(result, load_cases=dict(result.load_cases) | {"weight": replace(weight, links=links)})
 
 
+def sentence_of(found):
+    return flat(layer_text(found).text)
+
+
 def printed(result):
     stream = io.StringIO()
     print_result(result, Console(file=stream, width=2000, color_system=None))
@@ -63,10 +68,10 @@ def test_the_sentence_is_on_console_and_page(result):
     assert found.layers.across / Layers(normal=way, across=12.0, between=6.0).stress(
         marked.load_cases["weight"].links[LINK].stress.nodal
     ).max() == pytest.approx(factor)
-    assert f"built along {direction(way)} it would be" in found.sentence
-    assert f"Layers of {found.sentence}." in printed(marked)
-    page = render(marked, {layers_name(LINK): build_map(found)})
-    assert found.sentence in page
+    assert f"built along {direction(way)} it would be" in sentence_of(found)
+    assert sentence_of(found) in flat(printed(marked))
+    page = render(marked, {f"layers-{LINK}": build_map(found)})
+    assert sentence_of(found) in flat(Page(page).words)
     assert "over the direction of building" in page
     assert "over the direction of building" not in render(result, {})
 
@@ -74,8 +79,8 @@ def test_the_sentence_is_on_console_and_page(result):
 def test_no_direction_is_proposed_where_none_is_better_or_known(result):
     [found] = build_directions_of(with_layers(result)).values()
     even = replace(found, scan=np.full_like(found.scan, 1.04 * found.safety_factor.value))
-    assert even.sentence.endswith("no direction of building holds noticeably more")
-    assert replace(found, scan=None).sentence.endswith("since the card has no shear strength")
+    assert sentence_of(even).endswith("no direction of building holds noticeably more.")
+    assert sentence_of(replace(found, scan=None)).endswith("since the card has no shear strength.")
 
 
 def test_the_record_has_what_the_document_says(result):

@@ -19,11 +19,11 @@ from alula.fea.sizing.changes import changes
 from alula.fea.study.margin import least_margin, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.notebook.check_report import CheckReport
-from alula.reports.page.template import fill
-from alula.reports.sections.checks import check_records
+from alula.reports.renderers.console import print_sections
+from alula.reports.sections.checks import check_records, checks_section
+from alula.reports.sections.section import Folded, Text
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.verdicts import checks_of, decision, inapplicable
-from alula.reports.tables.console import say_checks
 
 ENTRIES = (
     PLANAR,
@@ -118,34 +118,42 @@ def test_the_console_tells_them_below_the_table(wing):
         assert all(re.sub(r"\s+", " ", line) in text for line in told)
     assert text.count(in_words(NO_EQUILIBRIUM) + ". Safety factor of") == 2
     assert "Displacement of point H of CH: the linkage gives way" not in text
+
+
+def test_the_console_tells_them_once_and_lists_them_last():
     console = Console(width=100, record=True, file=io.StringIO())
-    say_checks([outcome("AE", Verdict.FAIL), outcome("CF").not_applicable("gone")], console)
-    rows, _, below = console.export_text().partition("Not applicable")
+    checks = [outcome("AE", Verdict.FAIL), outcome("CF").not_applicable("gone")]
+    print_sections([checks_section(checks, Verdict.FAIL, "In this pose", several=False)], console)
+    rows, _, below = console.export_text().partition("Not applicable, 1 check: gone.")
     assert "AE" in rows
     assert "CF" not in rows
-    assert "CF" in below
+    assert below.index("AE") < below.index("CF")
 
 
 def test_the_page_has_one_group_at_the_end_and_none_of_it_among_the_nearest(wing):
     source = render(wing, {})
     first, rest = (source.split(f'<section id="{name}">')[1].split("</section>")[0] for name in ("nearest", "checks"))
+    [line] = inapplicable(checks_of(wing))
     count = sum(not c.applies for c in checks_of(wing))
-    assert f"<b>Not applicable</b>, {count} checks: {in_words(NO_EQUILIBRIUM)}." in first
+    assert line.startswith(f"Not applicable, {count} checks: {in_words(NO_EQUILIBRIUM)}. ")
+    assert line in first
     assert first.count('<td class="what">') == 8
     assert ">not applicable<" not in first
-    head, _, group = rest.partition(f"<b>Not applicable</b>, {count} checks: {in_words(NO_EQUILIBRIUM)}.")
-    assert "not applicable" not in head
-    assert group.count(">not applicable<") == group.count('<td class="what">') == count
-    assert in_words(NO_EQUILIBRIUM) not in group
+    head, _, group = rest.partition("<details")
+    assert line in head
+    assert ">not applicable<" not in head
+    assert group.count(">not applicable<") == count
+    assert group.rindex(">pass<") < group.index(">not applicable<")
 
 
-def test_the_page_of_an_envelope_has_the_same_group():
-    """Its rows are those of the other page; where no reasons are told, that of the group is."""
+def test_a_section_of_checks_has_one_line_and_then_all_in_order():
     checks = by_nearness([outcome("AE").not_applicable("gone"), outcome("CF"), outcome("CH").not_applicable("gone")])
-    text = Page(fill("check_rows.html.jinja", checks=checks, several=False, reasons=())).words
-    assert re.search(
-        r"CF .* pass Not applicable , 2 checks: gone\. .*AE .* not applicable .*CH .* not applicable", text
-    )
+    parts = checks_section(checks, Verdict.UNDECIDED, "In this pose", several=False).parts
+    assert Text("Not applicable, 2 checks: gone. Safety factor of AE and CH.", "small") in parts
+    [every] = [part.parts[0] for part in parts if isinstance(part, Folded) and part.told]
+    assert [(row[2], str(row[-1])) for row in every.rows] == [
+        ("CF", "pass"), ("AE", "not applicable"), ("CH", "not applicable")
+    ]  # fmt: skip
 
 
 def test_a_notebook_tells_them_below_the_table(wing):

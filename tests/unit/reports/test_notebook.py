@@ -12,10 +12,12 @@ from rocker_case import TOML
 from told import result_record
 
 import alula
+from alula.fea.common.verdict import by_nearness
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.notebook.shown import ShownPicture, ShownTable
+from alula.reports.sentences.verdicts import checks_of
 
 HOSTILE = "<script>alert('&')</script>"
 
@@ -58,8 +60,10 @@ def test_numbers_are_those_of_result_json(report):
 
 def test_tables_have_a_row_each(report):
     record = result_record(report.result)
-    assert [(row["link"], row["verdict"]) for row in report.table()] == [
-        (check["link"], check["verdict"]) for check in record["checks"]
+    ordered = by_nearness(checks_of(report.result))
+    assert len(ordered) == len(record["checks"])
+    assert [(row["link"], row["value"], row["verdict"]) for row in report.table()] == [
+        (check.link, check.value.value, check.verdict) for check in ordered
     ]
     links = report.table("links")
     assert len(links) == sum(len(case["links"]) for case in record["load_cases"].values())
