@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
-from told import print_result, render, result_record
+from told import print_result, render, result_record, tables
 from typer.testing import CliRunner
 
 import alula.fea.check.run
@@ -43,11 +43,15 @@ def test_values_stand_beside_ours(unanswered):
     console = Console(width=100)
     with console.capture() as shown:
         print_result(told, console)
-    assert "0.40%" in shown.get()
-    assert "0.020%" in shown.get()
+    [table] = tables(told, "second-opinion")
+    [row] = [dict(zip([column.head for column in table.columns], map(str, row), strict=True)) for row in table.rows]
+    assert row["difference of von Mises [%]"] == "0.40"
+    assert row["difference of displacement [%]"] == "0.020"
+    assert (row["von Mises, CalculiX [MPa]"], row["displacement, CalculiX [mm]"]) == ("1.250", "0.01250")
     page = render(told, {})
-    assert "0.40 %" in page
-    assert "0.020 %" in page
+    for text in (shown.get(), page):
+        assert all(figures in text for figures in row.values())
+        assert "Second opinion" in text
     record = result_record(told)["second_opinions"]["GF"]
     assert record["calculix"]["agrees"] is True
     assert record["calculix"]["von_mises"] == 1.25
@@ -68,7 +72,7 @@ def test_a_result_of_beams_alone_has_nothing_to_ask_about(result, tmp_path):
 def test_the_command_writes_the_decks_into_the_folder(result, tmp_path, monkeypatch):
     monkeypatch.setattr(calculix, "installed", lambda: None)
     monkeypatch.setattr(alula.fea.check.run, "check_case", lambda *a, **k: result)
-    monkeypatch.setattr("alula.reports.page.pictures.draw_pictures", lambda *a: ({}, ()))
+    monkeypatch.setattr("alula.reports.check.folder.check_pictures", lambda *a: ({}, ()))
     out = tmp_path / "out"
     ran = CliRunner().invoke(app, ["check", result.name, "--second-opinion", "--json", "-o", str(out)])
     assert ran.exit_code == result.verdict.exit_status

@@ -1,15 +1,19 @@
 """No table cuts a name or a number, however narrow the terminal is."""
 
 import io
-from dataclasses import replace
+import re
+import tomllib
 
 import pytest
 from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
+from rocker_case import TOML
 from told import print_result
 
-from alula.fea.common.verdict import Subject, Verdict
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Verdict
+from alula.loads.case.case_file import validate
 from alula.reports.words.terminal import KEPT, say, say_table
 
 LONG = "wing-of-the-left-side-outer-section"
@@ -77,17 +81,21 @@ def test_lines_that_the_text_has_stay_and_keep_their_indent():
     assert out.file.getvalue().splitlines() == ["On the ground:", "  A: 1.000, 2.000,", "3.000"]
 
 
+@pytest.fixture(scope="module")
+def long_named():
+    text = re.sub(
+        r"\b(crank|coupler|rocker)\b", rf"{LONG}-\1", TOML.replace("coupler = {", 'coupler = { part = "bar",', 1)
+    )
+    return check_case(validate(tomllib.loads(text)), name="long", fidelity="beam")
+
+
 @pytest.mark.parametrize("width", [40, 80])
-def test_a_check_is_told_in_full(result, width):
+def test_a_check_is_told_in_full(long_named, width):
     """The names of two links that begin alike were once cut to the same few letters, a number to its zeros."""
-    case = result.load_cases["weight"]
-    links = dict(case.links)
-    links = {f"{LONG}-{name}": replace(link, link=f"{LONG}-{name}") for name, link in links.items()}
-    checks = tuple(replace(check, subject=Subject.link(f"{LONG}-{check.link}")) for check in case.checks)
-    told = replace(result, load_cases={"weight": replace(case, links=links, checks=checks)})
+    links = [f"{LONG}-coupler", f"{LONG}-rocker"]
     for terminal in (True, False):
         out = console(width, terminal=terminal)
-        print_result(told, out)
+        print_result(long_named, out)
         found = words(out.file.getvalue())
         assert all(found.count(name) >= 2 for name in links)
         assert "…" not in out.file.getvalue()

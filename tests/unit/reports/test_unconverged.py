@@ -5,7 +5,7 @@ from typing import get_args
 
 import pytest
 from mesh_states import state
-from rich.console import Console
+from told import flat, printed, result_record, tables
 
 import alula.fea.claims.data
 from alula.fea.claims.data import case_tree
@@ -13,7 +13,6 @@ from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.refine.discretisation import MeshStatus
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.case.case_file import read_case
-from alula.reports.check.opinion import opinion_records, say_opinions
 from alula.reports.figures import figures
 from alula.reports.sentences import told
 
@@ -59,16 +58,16 @@ def test_what_meshes_leave_open_says_nothing_of_a_verdict(status):
     assert "verdict" not in told(state(status, 0.5 if status == "singular" else None).reason)
 
 
-def test_a_second_opinion_on_one_mesh_says_that_its_peak_is_no_result():
+def test_a_second_opinion_on_one_mesh_says_that_its_peak_is_no_result(result):
     opinion = SecondOpinion(
         link="AE", load_case="hover", variant="", deck="AE.inp", von_mises=9.0, von_mises_nodal=9.0, displacement=1.0,
         known=False, answer=None, reason="none",
     )  # fmt: skip
-    console = Console(width=100)
-    with console.capture() as shown:
-        say_opinions((opinion,), console)
-    assert "AE (no result)" in shown.get()
-    assert opinion_records((opinion,))["AE"]["known"] is False
+    told_of = replace(result, second_opinions=(opinion,))
+    [table] = tables(told_of, "second-opinion")
+    assert [row[0] for row in table.rows] == ["AE (no result)"]
+    assert "AE (no result)" in flat(printed(told_of, 200))
+    assert result_record(told_of)["second_opinions"]["AE"]["known"] is False
 
 
 @pytest.mark.parametrize("status", ["far", "decided", "not reached", "edge", "unresolved"])
