@@ -29,11 +29,8 @@ def opinion_section(result: CheckResult) -> Section:
         for what, unit in (("von Mises", "MPa"), ("displacement", "mm"))
         for whose, unit in (("alula", unit), ("CalculiX", unit), ("", ""))
     ]
-    table = Table(
-        key="second opinions",
-        columns=(words("link"), words("load case"), *numbers, words("reason", wraps=True)),
-        rows=tuple(map(_row, found)),
-    )
+    reason = words("reason", wraps=True) if any(one.reason for one in found) else None
+    table = Table.of((words("link"), words("load case"), *numbers, reason), map(_row, found), key="second opinions")
     text = (
         "CalculiX solved the same mesh with the same material, supports and nodal loads. The table compares the "
         "largest von Mises stress at the integration points and the largest displacement. A difference is the "
