@@ -64,10 +64,7 @@ def reaction_parts(
                     "The guide {joint} also exerts a moment of {moment} ({turns}) on {on}",
                     joint=joint.joint, moment=moment, turns=turning(joint.wrench[5]), on=joint.on,
                 )  # fmt: skip
-    if found := thrusts(forces, deformed):
-        facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
-        places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
-        yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
+    yield from thrust_texts(forces, deformed)
     for line in spring_sentences(standing):
         yield Text(f"{line}.")
     yield from _driving(reactions, told, standing)
@@ -95,6 +92,25 @@ def reaction_parts(
             caption="Friction, part of the joint forces",
             under=(("load case", name),),
         )
+
+
+def thrust_texts(forces: JointForces, deformed: Reactions | None = None) -> Iterator[Text]:
+    """Yield the thrusts along pins as one sentence, where there are any.
+
+    Parameters
+    ----------
+    forces : JointForces
+    deformed : Reactions, optional
+        Those of the deformed shape, where that counts.
+
+    Yields
+    ------
+    Text
+    """
+    if found := thrusts(forces, deformed):
+        facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
+        places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
+        yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
 
 
 def _driving(reactions: Reactions, told: Reactions, standing: Standing) -> Iterator[Text]:

@@ -11,7 +11,7 @@ from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.thrust import thrusts
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
-from alula.reports.tables.frames import thrust_line
+from alula.reports.sections.reactions import thrust_texts
 
 LEVER = """
 schema_version = 1
@@ -69,8 +69,10 @@ def test_pins_on_either_side_of_a_bar_are_pushed_by_its_couple_over_its_length()
         assert told[name].value == pytest.approx(alone)
         every = [abs(float(one.reactions.joints[name].wrench[2])) for one in forces.sharings]
         assert told[name].high == pytest.approx(max(alone, *every), rel=1e-12)
-    assert thrust_line(forces).startswith("Thrust along the pins [N], which heads, washers or rings must hold: ")
-    assert "C " in thrust_line(forces)
+    [sentence] = thrust_texts(forces)
+    assert sentence.text.startswith("Thrust along the pins [N], which heads, washers or rings must hold: ")
+    assert [number.value for number in sentence.numbers] == list(told.values())
+    assert f"C {sentence.numbers[list(told).index('C')]}" in sentence.text
 
 
 def test_a_load_out_of_the_plane_pushes_the_pin() -> None:
@@ -82,7 +84,7 @@ def test_a_load_out_of_the_plane_pushes_the_pin() -> None:
 def test_without_thrust_nothing_is_told() -> None:
     flat = forces_of(parallel_bars().in_one_plane())
     assert thrusts(flat) == {}
-    assert thrust_line(flat) == ""
+    assert list(thrust_texts(flat)) == []
     bonded = validate(tomllib.loads(LEVER.replace('"4 mm" }', '"4 mm", bonded = true }').split("[drive]")[0]
                                     + "[parts.bar]" + LEVER.split("[parts.bar]")[1]))  # fmt: skip
     assert thrusts(forces_of(bonded)) == {}
