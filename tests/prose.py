@@ -85,7 +85,7 @@ def texts() -> Iterator[tuple[Path, int, str]]:
         yield file, 1, without_code(file.read_text(encoding="utf-8"))
     for file in [
         *(ROOT / "alula").glob("*.py"),
-        *(file for package in PACKAGES for file in (ROOT / package).rglob("*")),
+        *(file for package in PACKAGES for file in (ROOT / package).rglob("*") if "__pycache__" not in file.parts),
     ]:
         read = _of_module if file.suffix == ".py" else _of_case if ".toml" in file.name else None
         if read:

@@ -93,13 +93,16 @@ sys.path.insert(0, TESTS)
 import programs
 from alula.fea.check.run import check_case
 from alula.loads.case.case_file import read_case
-from alula.reports.page import html
-from alula.reports.page import pictures
+from alula.fea.findings.of_check import with_findings
+from alula.reports.check import folder
 from alula.reports.check.folder import write_report
-result = check_case(read_case("four-bar-synthesis"), name="starter", fidelity="beam")
-drawn = pictures.draw_pictures(result)
-page = html.render(result, drawn[0])
-pictures.draw_pictures, html.render = lambda *arguments: drawn, lambda *arguments: page
+result = with_findings(check_case(read_case("four-bar-synthesis"), name="starter", fidelity="beam"))
+sections = folder.check_sections(result)
+whole_page = folder.check_page(result, sections)
+drawn = folder.check_pictures(result, whole_page)
+page = folder.as_page(whole_page, drawn[0])
+folder.check_sections, folder.check_page = lambda *arguments: sections, lambda *arguments: whole_page
+folder.check_pictures, folder.as_page = lambda *arguments: drawn, lambda *arguments: page
 target = Path(sys.argv[1])
 write_report(result, target)
 stamp = (target / "result.json").stat().st_mtime_ns

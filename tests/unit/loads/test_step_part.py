@@ -10,6 +10,7 @@ from alula.fea.beam.cut_beam import beam_sections, cut_remark
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
 from alula.loads.case.case_file import read_case
+from alula.reports.sentences import told
 
 FROM_PART = '"from-part"'
 NAMED = 'bores = { O4 = "bore 1", B = "bore 2" }'
@@ -67,7 +68,7 @@ def test_sections_are_those_of_the_plate(case):
 def test_a_plate_says_that_it_is_no_beam(case):
     """Its pins are 40 mm apart, and it is 20 mm wide."""
     assert beam_sections(case.body("rocker")) == ()
-    assert cut_remark(case.body("rocker")).startswith("the part is no beam")
+    assert told(cut_remark(case.body("rocker"))).startswith("the part is no beam")
 
 
 @pytest.mark.parametrize(
