@@ -23,8 +23,8 @@ from alula.loads.case.case_file import built_in_cases, read_text
 FOLDER = Path(__file__).parent / "regression" / "golden"
 EXACT, ITERATED, MESHED = 1e-9, 2e-6, 2e-6
 """Relative tolerances: of what no iteration and no mesh has a part in; of hand calculation, whose frames have iterated
-eigenvalues that repeat to 1.4e-9 on a busy machine, and limit loads that another processor's rounding moves by 6e-7; and
-of what goes through a mesh."""
+eigenvalues that repeat to 1.4e-9 on a busy machine, and limit loads that another processor's rounding moves by 6e-7;
+and of what goes through a mesh."""
 FLOORS = {"residual": 1e-12, "imbalance": 1e-12, "moment": 1e-12, "solver_error": 1e-8, "support_reaction": 1e-8}
 FLOORS |= {f"displacement_max.{end}": 1e-12 for end in ("value", "low", "high")} | {"first": 1e-9, "smallest": 1e-9}
 """Differences that are allowed however small the number is, by the end of an entry's path. Residuals and imbalances,
