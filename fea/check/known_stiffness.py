@@ -71,12 +71,7 @@ def with_known_stiffness(
     def known_of(one: LargeDisplacement) -> LargeDisplacement:
         return replace(one, softness=soft, alone=alone, blind="")
 
-    return replace(
-        known_of(moved),
-        shaken=tuple(map(known_of, moved.shaken)),
-        airs=tuple((c, known_of(one)) for c, one in moved.airs),
-        rubbed=tuple(map(known_of, moved.rubbed)),
-    )
+    return replace(known_of(moved), causes=tuple(cause.told_by(known_of) for cause in moved.causes))
 
 
 def _tells(case: Case, link: str, result: SolidResult) -> bool:

@@ -24,11 +24,12 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
 from alula.fea.common.verdict import CheckOutcome, overall
+from alula.fea.doubts.air_doubt import air_doubt, air_warnings
 from alula.fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
+from alula.fea.doubts.friction_doubt import friction_doubt, friction_warnings
 from alula.fea.doubts.load_growth import Growths, growths
-from alula.fea.doubts.other_case import Doubt, Plates, widened
+from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
 from alula.fea.doubts.play_doubt import play_doubt, play_warnings, shaken
-from alula.fea.doubts.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from alula.fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
@@ -368,10 +369,12 @@ def check_case(
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
     }
-    airs = {x: AirDoubt.of(statics, x, one) for x, one in moved.items()}
-    rubs = {x: FrictionDoubt.of(statics, x, one) for x, one in moved.items()}
+    doubts = {
+        x: [found for doubt in (air_doubt, friction_doubt) if (found := doubt(statics, x, one))]
+        for x, one in moved.items()
+    }
     moved = {
-        x: rubs[x].on_shape(airs[x].on_shape(shaken(statics.standing[x].case, x, statics.forces[x], one)))
+        x: reduce(on_shape, doubts[x], shaken(statics.standing[x].case, x, statics.forces[x], one))
         for x, one in moved.items()
     }
     clock("frames")
@@ -380,7 +383,7 @@ def check_case(
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {x: _LoadCase.of(statics, x, what, (airs[x], rubs[x]), tilting) for x, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what, doubts[x], tilting) for x, what in moved.items()}
     clock("hand calculations")
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:

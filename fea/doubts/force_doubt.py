@@ -10,9 +10,9 @@ in the frame, whose pins keep its angles: the answers of sharing hold that growt
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
-from alula.fea.common.convex import outermost
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
 from alula.fea.common.scatter import Scatter
@@ -26,6 +26,10 @@ from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
 from alula.loads.records.applied import Load
 
+FLAT = 1e-4
+"""Extent of points in a direction, over their largest, below which they have none."""
+MOST_DIRECTIONS = 6
+"""Beyond so many nearly all points are corners of their convex hull, and finding it takes long."""
 _Around = Callable[[float, Sequence[float]], Scatter]
 """From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
 
@@ -129,6 +133,35 @@ def ways_borne(
     chosen = {*outermost(across).tolist(), int(np.argmin(np.linalg.norm(across, axis=1)))}
     borne = [_borne(case, link, others[i], tilts=True) for i in sorted(chosen)]
     return (_borne(case, link, tight, tilts=grown), *borne)
+
+
+def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the corners of the convex hull of points: at one of them a convex function is largest.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, d)
+
+    Returns
+    -------
+    ndarray of int
+        Their numbers, rising; of points in more than ``MOST_DIRECTIONS`` directions, and where no hull is found, all.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    place, extent, _ = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    place = place[:, extent > FLAT * extent[0]]  # the hull has the same corners however it is stretched
+    count, directions = place.shape
+    if directions == 0:
+        return np.array([0])
+    if directions == 1:
+        return np.unique([place.argmin(), place.argmax()])
+    if directions > MOST_DIRECTIONS or count <= directions + 1:
+        return np.arange(count)
+    try:
+        return np.sort(ConvexHull(place).vertices).astype(np.int64)
+    except QhullError:  # points that are corners but for rounding
+        return np.arange(count)
 
 
 def _joints(forces: JointForces, changes: Sequence[Deviation], around: _Around) -> dict[str, Scatter]:

@@ -1,14 +1,16 @@
 """A load case once more under another condition that may be: in other air, with other friction; and what it changes."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 from alula.fea.buckling.buckling import least_factor
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.doubts.load_growth import LEAST, Growths
 from alula.fea.frame.case_statics import CaseStatics
@@ -154,45 +156,62 @@ def widened(outcome: CheckOutcome, spread: Scatter) -> CheckOutcome:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Doubt(ABC):
-    """A load case as stated and under other conditions that may be.
+class Doubt:
+    """A load case as stated, and under other conditions that a cause may put in its place.
 
     Attributes
     ----------
-    stated : OtherCase or None
-        As stated; None where there is no doubt.
-    others : tuple of OtherCase
-        Under other conditions.
+    stated : OtherCase
+    cause : Alternatives of OtherCase
     """
 
-    stated: OtherCase | None = None
-    others: tuple[OtherCase, ...] = ()
+    stated: OtherCase
+    cause: Alternatives[OtherCase]
 
-    @abstractmethod
-    def scatter(self, number: Callable[[OtherCase], float]) -> Scatter:
-        """Return what the doubt makes of a number that is not negative.
+    @classmethod
+    def over(
+        cls,
+        statics: CaseStatics,
+        load_case: str,
+        moved: LargeDisplacement,
+        source: Source,
+        others: Sequence[CaseStatics],
+        *,
+        coefficients: tuple[float, ...] = (),
+        endless: bool = False,
+    ) -> Self:
+        """Calculate a load case by hand as stated and under other conditions.
 
         Parameters
         ----------
-        number : callable
-            Returns it of a load case.
+        statics : CaseStatics
+            As stated.
+        load_case : str
+            Its name.
+        moved : LargeDisplacement
+            What became of it as stated.
+        source, coefficients, endless
+            As of ``Alternatives``.
+        others : sequence of CaseStatics
+            Under the other conditions.
 
         Returns
         -------
-        Scatter
+        Doubt
         """
+        found = tuple(OtherCase.of(one, load_case, shape_of(statics, one, load_case, moved)) for one in others)
+        cause = Alternatives(source=source, others=found, coefficients=coefficients, endless=endless)
+        return cls(stated=OtherCase.of(statics, load_case, moved), cause=cause)
 
     @property
     def growths(self) -> Growths:
         """By how much stress, displacement of links and joint forces may differ."""
-        if self.stated is None:
-            return Growths()
 
         def of_link(link: str, i: int) -> Scatter:
-            return self.scatter(lambda one: one.numbers[link][i])
+            return self.cause.scatter(self.stated, lambda one: one.numbers[link][i])
 
         def of_joint(name: str) -> Scatter:
-            return self.scatter(lambda one: one.reactions.joints[name].magnitude)
+            return self.cause.scatter(self.stated, lambda one: one.reactions.joints[name].magnitude)
 
         stress, displacement = ({link: of_link(link, i) for link in self.stated.plates} for i in (0, 1))
         joints = {name: of_joint(name) for name in self.stated.reactions.joints}
@@ -212,8 +231,8 @@ class Doubt(ABC):
         -------
         sequence of tuple of (LinkLoads, LinkByHand)
         """
-        buckles = not self.others or any(least_factor(case, link, hand.check) < float("inf") for _, hand in plates)
-        return plates if buckles else (*plates, *(plate for one in self.others for plate in one.plates[link]))
+        buckles = any(least_factor(case, link, hand.check) < float("inf") for _, hand in plates)
+        return plates if buckles else (*plates, *(plate for one in self.cause.others for plate in one.plates[link]))
 
     def on_buckling(self, outcome: CheckOutcome) -> CheckOutcome:
         """Return an outcome with the doubt in its band, where it is a buckling factor of a link or the linkage.
@@ -226,16 +245,30 @@ class Doubt(ABC):
         -------
         CheckOutcome
         """
-        if self.stated is None or outcome.quantity is not Quantity.BUCKLING_FACTOR or outcome.value.unknowable:
+        if outcome.quantity is not Quantity.BUCKLING_FACTOR or outcome.value.unknowable:
             return outcome
         link = outcome.subject.name if outcome.subject.kind == "link" else ""
 
         def inverse(one: OtherCase) -> float:
             return one.numbers[link][2] if link else 1.0 / (one.moved.factor or float("inf"))
 
-        spread = self.scatter(inverse)
-        endless = self.scatter(lambda _: 1.0).high == float("inf")  # it may lock itself
-        if spread.high == float("inf") and not inverse(self.stated) > 0.0 and not endless:
+        spread = self.cause.scatter(self.stated, inverse)
+        if spread.high == float("inf") and not inverse(self.stated) > 0.0 and not self.cause.endless:
             # no compression as stated: the outcome is that of the worst other
             spread = Scatter(low=0.0, sources=spread.sources)
         return widened(outcome, spread)
+
+
+def on_shape(moved: LargeDisplacement, doubt: Doubt) -> LargeDisplacement:
+    """Return what became of a load case with what becomes of it under the other conditions of a doubt.
+
+    Parameters
+    ----------
+    moved : LargeDisplacement
+    doubt : Doubt
+
+    Returns
+    -------
+    LargeDisplacement
+    """
+    return replace(moved, causes=(*moved.causes, doubt.cause.told_by(lambda one: one.moved)))

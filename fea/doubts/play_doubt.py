@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import Source, play_source
+from alula.fea.common.source import Source, SourceKind, play_source
 from alula.fea.doubts.force_doubt import measures
 from alula.fea.doubts.load_growth import LEAST, Growths
 from alula.fea.frame.joint_forces import JointForces, joint_forces
@@ -176,7 +177,8 @@ def shaken(case: Case, load_case: str, forces: JointForces, moved: LargeDisplace
             with suppress(CaseError, CannotRunError):
                 found.append(examine(case, load_case, joint_forces(case, pose, here.loads), here.loads))
     source, passes = play_source(play.clearances), play.through_dead_point
-    return replace(moved, play=source, shaken=tuple(found), passes=passes)
+    cause = Alternatives(source=source, others=tuple(found), endless=passes)
+    return replace(moved, causes=(*moved.causes, cause))
 
 
 def play_warnings(
@@ -205,7 +207,9 @@ def play_warnings(
             found.append(under_load_cases([load_case], reason("through_dead_point_by_play", driven=driven)))
         elif play.settled is None:
             found.append(under_load_cases([load_case], reason("rests_nowhere_with_play")))
-        worse = [what for what in moved[load_case].shaken if what.gives_way and not moved[load_case].gives_way]
+        loose = moved[load_case].by(SourceKind.PLAY)
+        others = () if loose is None or moved[load_case].gives_way else loose.others
+        worse = [other for other in others if other.gives_way]
         if worse:
             found.append(under_load_cases([load_case], reason("nearest_to_dead_point", why=worse[0].reason)))
     return found

@@ -6,7 +6,7 @@ by the first-order ends of its joint forces at all poses. There it is calculated
 
 So does the range of C_N of wings that flap: a link is calculated by hand at its worst poses with the stated C_N and
 with either end of the range, and its largest stress of each is compared, as in a check
-(``alula.fea.doubts.range_doubt``). And so does friction, at either end of what it may be.
+(``alula.fea.doubts.air_doubt``). And so does friction, at either end of what it may be.
 
 Growth on the deformed shape is sought at some poses, by hand, as a check of each has it
 (``alula.fea.doubts.load_growth``), without a threshold: where the linkage as a whole is looked at
@@ -17,7 +17,7 @@ the largest of them in the undeformed pose, widens the bands of the whole motion
 a pose between these is in no band.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -25,13 +25,13 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.buckling.buckling import least_factor
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import distinct, play_source
+from alula.fea.common.source import air_source, distinct, friction_source, play_source
 from alula.fea.doubts.force_doubt import measures
 from alula.fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
 from alula.fea.doubts.play_doubt import play_doubt
-from alula.fea.doubts.range_doubt import air_scatter, friction_scatter
 from alula.fea.links.link_by_hand import plates_by_hand
 from alula.fea.motion.buckling_history import factors_over_motion
 from alula.fea.motion.layered import forces_at
@@ -162,17 +162,22 @@ def _spread(
     moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_], number: Callable[[CaseMotion], float]
 ) -> Scatter:
     """Return what the range of C_N and friction make of a number, each alone, times one another."""
-    airs, rubbed, air = _airs(moved, load_case), _rubbed(moved, load_case, evaluated), Scatter()
-    if not airs and not moved.rubbing:
-        return air
-    stated, flapping = number(moved), moved.case.load_cases[load_case].flapping
-    if airs and flapping is not None:
-        found = dict(zip(flapping.ends, map(number, airs), strict=True))
-        air = air_scatter((flapping.normal_coefficient, stated), found, flapping.ends)
-    if not moved.rubbing:
-        return air
-    locks = len(rubbed) < len(friction_range(moved))
-    return air.times(friction_scatter(stated, [number(one) for one in rubbed], friction_ranges(moved.case), locks))
+    spread = Scatter()
+    for cause in _causes(moved, load_case, evaluated):
+        spread = spread.times(cause.scatter(moved, number))
+    return spread
+
+
+def _causes(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> Iterator[Alternatives[CaseMotion]]:
+    """Yield the causes that change what acts over a motion: the range of C_N, and friction."""
+    air, airs = moved.case.load_cases[load_case].flapping, _airs(moved, load_case)
+    if air is not None and airs:
+        coefficients = (air.normal_coefficient, *air.ends)
+        yield Alternatives(source=air_source(*air.ends), others=airs, coefficients=coefficients)
+    if moved.rubbing:
+        rubbed = tuple(_rubbed(moved, load_case, evaluated))
+        locks, source = len(rubbed) < len(friction_range(moved)), friction_source(friction_ranges(moved.case))
+        yield Alternatives(source=source, others=rubbed, endless=locks)
 
 
 def _size(moved: CaseMotion, load_case: str, link: str) -> NDArray[np.float64]:

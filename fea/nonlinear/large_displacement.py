@@ -28,8 +28,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
-from alula.fea.common.convex import least_of_convex
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
@@ -112,24 +112,11 @@ class LargeDisplacement:
         The undeformed one; None where there is no frame.
     solution : FrameSolution or None
         Linear, of that frame.
-    play : Source or None
-        The play of pins, where joints have some.
-    shaken : tuple of LargeDisplacement
-        What becomes of it where play brings the linkage nearest to a dead point, and furthest off.
-    passes : bool
-        True where play may take it through a dead point, so that no load is sure to be held.
-    air : Source or None
-        The range of C_N of wings that flap, where one is stated.
-    airs : tuple of tuple of (float, LargeDisplacement)
-        C_N -> what becomes of it: first at the stated one, then at others of the range.
     grown : LargeDisplacement or None
         Of a small one what holds on the deformed shape, where that was asked for and found.
-    friction : Source or None
-        What friction may be, where joints rub.
-    rubbed : tuple of LargeDisplacement
-        What becomes of it with the least and with the largest friction, but for those with which it locks itself.
-    locks : bool
-        True where it locks itself with some of that friction, so that no load is sure to be held.
+    causes : tuple of Alternatives
+        What may become of it instead: where play brings the linkage nearest to a dead point and furthest off, at other
+        coefficients of air, with other friction.
     """
 
     state: State
@@ -151,15 +138,8 @@ class LargeDisplacement:
     reason: Reason
     frame: LinkageFrame | None = None
     solution: FrameSolution | None = None
-    play: Source | None = None
-    shaken: tuple["LargeDisplacement", ...] = ()
-    passes: bool = False
-    air: Source | None = None
-    airs: tuple[tuple[float, "LargeDisplacement"], ...] = ()
     grown: "LargeDisplacement | None" = None
-    friction: Source | None = None
-    rubbed: tuple["LargeDisplacement", ...] = ()
-    locks: bool = False
+    causes: "tuple[Alternatives[LargeDisplacement], ...]" = ()
 
     @property
     def share(self) -> float:
@@ -189,63 +169,58 @@ class LargeDisplacement:
     @property
     def limit_load(self) -> Band:
         """Factor on all loads at which the linkage gives way, with all that play, air and friction may make of it."""
-        causes = self.play, self.air, self.friction
-        found, doubts = self._limit_load, tuple(source for source in causes if source is not None)
-        if not doubts or found.unknowable:
+        found = self._limit_load
+        if not self.causes or found.unknowable:
             return found
-        others = [one.limit_load for one in (*self.shaken, *(other for _, other in self.airs[1:]), *self.rubbed)]
+        others = [one.limit_load for cause in self.causes for one in cause.others]
         every = [found, *(one for one in others if not one.unknowable)]
         return replace(
             found,
-            low=0.0 if self.passes or self.locks else min(one.low for one in every),
+            low=0.0 if any(cause.endless for cause in self.causes) else min(one.low for one in every),
             high=max(one.high for one in every),
-            sources=distinct(found.sources, doubts),
+            sources=distinct(found.sources, tuple(cause.source for cause in self.causes)),
         )
 
-    def in_any_air(self, link: str, point: str) -> Scatter:
-        """Return what the range of C_N makes of the displacement of a point, which is convex in it.
+    def by(self, kind: SourceKind) -> "Alternatives[LargeDisplacement] | None":
+        """Return what a cause of some kind may make of it; None where there is no such cause.
 
         Parameters
         ----------
+        kind : SourceKind
+
+        Returns
+        -------
+        Alternatives or None
+        """
+        return next((cause for cause in self.causes if cause.source.kind is kind), None)
+
+    @property
+    def shapes(self) -> "tuple[LargeDisplacement, ...]":
+        """All that may become of it under the loads as they may be: as stated first. Play changes where pins stand."""
+        return (self, *(one for cause in self.of_loads for one in cause.others))
+
+    @property
+    def of_loads(self) -> "tuple[Alternatives[LargeDisplacement], ...]":
+        """Causes that change what acts: air and friction."""
+        return tuple(cause for cause in self.causes if cause.source.kind is not SourceKind.PLAY)
+
+    def displaced(self, cause: "Alternatives[LargeDisplacement]", link: str, point: str) -> Scatter:
+        """Return what one of its causes makes of the displacement of a point.
+
+        Parameters
+        ----------
+        cause : Alternatives
         link, point : str
             Their names.
 
         Returns
         -------
         Scatter
+            From nothing to infinity where the point has no displacement in one of the answers.
         """
-        if self.air is None:
-            return Scatter()
-        if any((link, point) not in one.points for _, one in self.airs):
-            return Scatter(low=0.0, high=math.inf, sources=(self.air,))
-        found = [(c, float(np.linalg.norm(one.points[link, point]))) for c, one in self.airs]
-        value = found[0][1]
-        if not value > 0.0:
-            return Scatter(high=math.inf, sources=(self.air,)) if max(found, key=lambda one: one[1])[1] else Scatter()
-        least, most = max(least_of_convex(found), 0.0), max(size for _, size in found)
-        return Scatter(low=least / value, high=most / value, sources=(self.air,))
-
-    def with_any_friction(self, link: str, point: str) -> Scatter:
-        """Return what the friction that may be makes of the displacement of a point.
-
-        Parameters
-        ----------
-        link, point : str
-            Their names.
-
-        Returns
-        -------
-        Scatter
-        """
-        if self.friction is None:
-            return Scatter()
-        known = all((link, point) in one.points for one in (self, *self.rubbed))
-        sizes = [float(np.linalg.norm(one.points[link, point])) for one in (self, *self.rubbed)] if known else []
-        if not sizes or (not sizes[0] > 0.0 and max(sizes) > 0.0):
-            return Scatter(low=0.0, high=math.inf, sources=(self.friction,))
-        least, most = (end / (sizes[0] or 1.0) for end in (min(sizes), max(sizes)))
-        known_end = Scatter(low=least, high=most, sources=(self.friction,)) if most > 0.0 else Scatter()
-        return replace(known_end, high=math.inf, sources=(self.friction,)) if self.locks else known_end
+        if any((link, point) not in one.points for one in (self, *cause.others)):
+            return Scatter(low=0.0, high=math.inf, sources=(cause.source,))
+        return cause.scatter(self, lambda one: float(np.linalg.norm(one.points[link, point])))
 
     @cached_property
     def _limit_load(self) -> Band:

@@ -11,10 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
-from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from alula.fea.common.scatter import compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.frame.case_statics import locks_on_tight_pins
@@ -116,11 +117,6 @@ class PointDisplacement:
         )
 
     @property
-    def in_any_air(self) -> Scatter:
-        """What the range of C_N makes of it."""
-        return self.moved.in_any_air(self.link, self.point)
-
-    @property
     def play(self) -> Play | None:
         """What the play of pins does; None where no joint has play."""
         return None if self.forces is None else self.forces.play
@@ -144,11 +140,10 @@ class PointDisplacement:
             return None
         if math.isfinite(self.elastic().high):
             why = reason("play_through_dead_point")
-        elif self.in_any_air.high == math.inf:
-            why = reason("gives_way_in_some_air")
-        elif self.moved.with_any_friction(self.link, self.point).high == math.inf:
-            why = reason("gives_way_with_any_friction")
-            if self.moved.locks and self._free_to_tilt and not locks_on_tight_pins(self.case, self.load_case):
+        elif self._endless is not None:
+            in_air = self._endless.source.kind is SourceKind.AIR
+            why = reason("gives_way_in_some_air") if in_air else reason("gives_way_with_any_friction")
+            if self._endless.endless and self._free_to_tilt and not locks_on_tight_pins(self.case, self.load_case):
                 why = reason("locks_by_tilting_pins", joints=self._free_to_tilt)
         elif math.isfinite(self.elastic(tilted=False).high):
             plain, _, most = self._tilted
@@ -158,6 +153,12 @@ class PointDisplacement:
         else:
             why = reason("near_giving_way", factor=SNAP)
         return reason("no_upper_end", why=why)
+
+    @property
+    def _endless(self) -> Alternatives[LargeDisplacement] | None:
+        """The cause that leaves it without upper end; None where none does."""
+        found = ((cause, self.moved.displaced(cause, self.link, self.point)) for cause in self.moved.of_loads)
+        return next((cause for cause, spread in found if spread.high == math.inf), None)
 
     @property
     def _free_to_tilt(self) -> tuple[str, ...]:
@@ -257,7 +258,9 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
-        load = load_scatter(case, self.load_case).times(self.in_any_air).times(moved.with_any_friction(link, point))
+        load = load_scatter(case, self.load_case)
+        for cause in moved.of_loads:
+            load = load.times(moved.displaced(cause, link, point))
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
         if shares.framed is None:

@@ -190,8 +190,9 @@ class LayerGaps:
         assert solution is not None
         soft = compliance_range(self.case, frame, solution).times(stated_scatter(self.case, self.load_case))
         loose = clearances(self.case)
-        doubts = self.moved.air, self.moved.friction, play_source(loose) if loose else None
-        sources = distinct(soft.sources, tuple(source for source in doubts if source is not None))
+        causes = self.moved.of_loads
+        told = (*(cause.source for cause in causes), *((play_source(loose),) if loose else ()))
+        sources = distinct(soft.sources, told)
         found = []
         for over in overlaps(frame, self.assembly):
             closed = np.array(
@@ -202,7 +203,7 @@ class LayerGaps:
             k = int(np.argmax(ends[-1] + free))
             left = Band(
                 value=over.gap - float(closed[0, k]),
-                low=-math.inf if self.moved.locks else over.gap - float(ends[-1][k] + free[k]),
+                low=-math.inf if any(cause.endless for cause in causes) else over.gap - float(ends[-1][k] + free[k]),
                 high=over.gap - float(ends[0][k] - free[k]),
                 sources=sources,
             )
@@ -213,9 +214,7 @@ class LayerGaps:
     @cached_property
     def _shapes(self) -> list[Raised]:
         """As stated first, then with other air and friction that may be."""
-        moved = self.moved
-        every = (moved, *(other for _, other in moved.airs[1:]), *moved.rubbed)
-        known = [(one.frame, one.solution) for one in every]
+        known = [(one.frame, one.solution) for one in self.moved.shapes]
         return [Raised(frame=frame, solution=solution) for frame, solution in known if frame and solution]
 
     def _free(self, frame: LinkageFrame, over: Overlap) -> Real:

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.alternatives import least_of_convex
 from alula.fea.common.band import Band
-from alula.fea.common.convex import least_of_convex
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind, air_source, friction_source, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict

@@ -8,7 +8,7 @@ from edited_cases import edited
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
-from alula.fea.common.convex import least_of_convex
+from alula.fea.common.alternatives import least_of_convex
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Verdict
 from alula.fea.doubts.force_doubt import measures

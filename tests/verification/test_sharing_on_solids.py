@@ -14,8 +14,7 @@ from tilting_pins import PLA, loaded
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.solid_frame import with_solids
-from alula.fea.common.convex import outermost
-from alula.fea.doubts.force_doubt import sharing_doubt, ways_borne
+from alula.fea.doubts.force_doubt import outermost, sharing_doubt, ways_borne
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.thrust import thrusts

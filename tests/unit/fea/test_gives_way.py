@@ -9,6 +9,7 @@ from edited_cases import PLANAR
 from alula.fea.buckling.linkage import NO_EQUILIBRIUM, linkage_outcomes, unless_it_gives_way
 from alula.fea.check import known_stiffness
 from alula.fea.check.known_stiffness import with_known_stiffness
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter
@@ -96,21 +97,25 @@ def linear(factor, **entries):
     return LargeDisplacement(span=100.0, buckling=factor, **entries)
 
 
-PLAY, AIR, FRICTION = (Source(kind=kind) for kind in (SourceKind.PLAY, SourceKind.AIR, SourceKind.FRICTION))
+PLAY, AIR, FRICTION = SourceKind.PLAY, SourceKind.AIR, SourceKind.FRICTION
+
+
+def cause(kind, *factors, **more):
+    """A cause whose answers have these limit loads by linear theory."""
+    return Alternatives(source=Source(kind=kind), others=tuple(map(linear, factors)), **more)
 
 
 def test_a_limit_load_holds_those_of_all_places_of_its_pins_of_all_airs_and_of_all_friction():
     """The outer ends come from the second of two other places, and from the second of two other airs."""
     one = linear(8.0)
     assert (one.limit_load.low, one.limit_load.high) == pytest.approx((8.0 / SNAP, 8.0))
-    shaken = replace(one, play=PLAY, shaken=(linear(7.0), linear(5.0), linear(9.0)))
+    shaken = replace(one, causes=(cause(PLAY, 7.0, 5.0, 9.0),))
     assert (shaken.limit_load.low, shaken.limit_load.high) == pytest.approx((5.0 / SNAP, 9.0))
-    airs = tuple((c, linear(f)) for c, f in ((2.0, 8.0), (1.0, 9.5), (3.0, 4.0), (2.5, 6.0)))
-    blown = replace(shaken, air=AIR, airs=airs)
+    blown = replace(shaken, causes=(*shaken.causes, cause(AIR, 9.5, 4.0, 6.0, coefficients=(2.0, 1.0, 3.0, 2.5))))
     assert (blown.limit_load.low, blown.limit_load.high) == pytest.approx((4.0 / SNAP, 9.5))
-    rubbed = replace(blown, friction=FRICTION, rubbed=(linear(7.0), linear(3.0)))
+    rubbed = replace(blown, causes=(*blown.causes, cause(FRICTION, 7.0, 3.0)))
     assert (rubbed.limit_load.low, rubbed.limit_load.high) == pytest.approx((3.0 / SNAP, 9.5))
-    assert {SourceKind.PLAY, SourceKind.AIR, SourceKind.FRICTION} <= {one.kind for one in rubbed.limit_load.sources}
+    assert {PLAY, AIR, FRICTION} <= {one.kind for one in rubbed.limit_load.sources}
 
 
 def test_what_solids_tell_of_their_links_is_told_with_other_air_play_and_friction_as_well(monkeypatch):
@@ -119,12 +124,12 @@ def test_what_solids_tell_of_their_links_is_told_with_other_air_play_and_frictio
     answers = {"_tells": True, "_beams": 1.0, "_solids": soft, "blind_link": "", "softness": soft}
     for name, answer in {**answers, "works_of_links": [("bar", Band.exact(1.0))]}.items():
         monkeypatch.setattr(known_stiffness, name, lambda *_, answer=answer: answer)
-    airs = ((1.0, linear(8.0)), (2.0, linear(6.0)))
-    one = linear(8.0, solution=object(), shaken=(linear(7.0),), airs=airs, rubbed=(linear(5.0), linear(9.0)))
+    causes = cause(PLAY, 7.0), cause(AIR, 6.0), cause(FRICTION, 5.0, 9.0)
+    one = linear(8.0, solution=object(), causes=causes)
     case, cut = SimpleNamespace(bending_links=("bar",)), {"bar": SimpleNamespace(name="a")}
     found = with_known_stiffness(case, one, None, {"bar": solid}, cut)
-    every = [found, *found.shaken, *(other for _, other in found.airs), *found.rubbed]
-    assert [(other.softness.value, other.alone) for other in every] == [(0.5, 3.0)] * 6
+    every = [found, *(other for each in found.causes for other in each.others)]
+    assert [(other.softness.value, other.alone) for other in every] == [(0.5, 3.0)] * 5
 
 
 def test_where_the_linkage_gives_way_no_gap_between_layers_passes():
@@ -137,17 +142,18 @@ def test_where_the_linkage_gives_way_no_gap_between_layers_passes():
 
 def test_play_that_may_pass_a_dead_point_leaves_no_load_that_is_held_for_sure():
     """With a limit load of 1.6 to 8 it passes, unless play may take it through."""
-    one = replace(linear(8.0), play=PLAY, shaken=(linear(7.0), linear(9.0)))
+    one = replace(linear(8.0), causes=(cause(PLAY, 7.0, 9.0),))
     assert one.limit_load.low > 1.0
-    through = replace(one, passes=True)
+    through = replace(one, causes=(cause(PLAY, 7.0, 9.0, endless=True),))
     assert (through.limit_load.low, through.held_share.low) == (0.0, 0.0)
     assert through.limit_load.high == one.limit_load.high
 
 
 def test_friction_with_which_it_may_lock_itself_leaves_no_load_that_is_held_for_sure():
-    one = replace(linear(8.0), friction=FRICTION, rubbed=(linear(7.0),))
+    one = replace(linear(8.0), causes=(cause(AIR, 7.0), cause(FRICTION, 7.0)))
     assert one.limit_load.low > 1.0
-    assert (replace(one, locks=True).limit_load.low, replace(one, locks=True).held_share.low) == (0.0, 0.0)
+    locks = replace(one, causes=(cause(AIR, 7.0), cause(FRICTION, 7.0, endless=True)))
+    assert (locks.limit_load.low, locks.held_share.low) == (0.0, 0.0)
 
 
 def test_what_is_stated_and_what_eyes_do_both_take_of_a_limit_load():
