@@ -1,7 +1,7 @@
 """The result of a link under one load case, from the model that decided it, with all stated scatter in its bands."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -51,9 +51,9 @@ def link_result(
     decided : DecidedLink or None
         None where nothing acts on the link under any load case.
     uneven : Growths
-        What grows out of proportion to the scattered load.
+        What grows out of proportion to the scattered load, and what causes make by hand that ``shares`` leave out.
     shares : mapping of PeakQuantity to Scatter
-        What the ways of sharing couples between layers make of every number; of what is left out nothing.
+        What causes make of every number; of what is left out nothing.
     name : str
         Of the loads on that plate; that of the load case, or one of their own.
 
@@ -111,6 +111,25 @@ def by_hand_shares(shared: Growths, link: str) -> Shares:
     stress = shared.stress.get(link, Scatter())
     bent = shared.displacement.get(link, Scatter())
     return {"von_mises": stress, "principal": stress, "layers": stress, "displacement": bent}
+
+
+def together_shares(causes: Mapping[str, Shares]) -> Shares:
+    """Return what several causes make of a link together: each alone, times one another.
+
+    Parameters
+    ----------
+    causes : mapping of str to Shares
+        At least one, with the same numbers.
+
+    Returns
+    -------
+    mapping of PeakQuantity to Scatter
+    """
+    first, *others = causes.values()
+    found = dict(first)
+    for other in others:
+        found = {quantity: one.times(other[quantity]) for quantity, one in found.items()}
+    return found
 
 
 def worse_plate(plates: Sequence[LinkResult]) -> LinkResult:

@@ -12,7 +12,7 @@ from alula.fea.beam.theory import CantileverCheck, uniform_cantilever
 from alula.fea.buckling.buckling import buckling_outcomes
 from alula.fea.buckling.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.check.known_stiffness import with_known_stiffness
-from alula.fea.check.link_result import by_hand_shares, link_result, worse_plate
+from alula.fea.check.link_result import by_hand_shares, link_result, together_shares, worse_plate
 from alula.fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from alula.fea.check.point_solids import decide_point
 from alula.fea.check.solid_frame import with_solids
@@ -25,11 +25,11 @@ from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
 from alula.fea.common.verdict import CheckOutcome, overall
 from alula.fea.doubts.air_doubt import air_doubt, air_warnings
-from alula.fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
+from alula.fea.doubts.force_doubt import sharing_answers, sharing_doubt, stiffness_answers, stiffness_doubt
 from alula.fea.doubts.friction_doubt import friction_doubt, friction_warnings
 from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
-from alula.fea.doubts.play_doubt import play_doubt, play_warnings, shaken
+from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from alula.fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
@@ -49,6 +49,7 @@ from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.solution import require_compressible
+from alula.fea.superposition.link_answers import LinkAnswers
 from alula.fea.superposition.solid_shares import Shares, solid_shares
 from alula.fea.whole.layer_gaps import layer_gap_outcomes
 from alula.fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
@@ -65,6 +66,8 @@ from alula.loads.text.shares import parse_accuracy
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
 BY_HAND = ("beam", "frame")
+SolvedAnswers = Mapping[str, Shares]
+"""Cause -> what it makes of the numbers of a link on its solid."""
 POINT_ROUNDS = 4
 """At most, in which links are solved or refined for the displacement of a point."""
 
@@ -111,7 +114,7 @@ class _LoadCase:
 
     ``plates`` has one of every link; of a pair whose plates bear differently both, first the worse one by hand.
     ``shared`` is what the ways of sharing couples between layers make by hand, and ``uneven`` all else; ``grown`` is
-    ``uneven`` without ``doubts``.
+    ``uneven`` without ``doubts``, and ``growth`` what grows beyond the load alone.
     """
 
     case: Case
@@ -119,6 +122,7 @@ class _LoadCase:
     load_case: str
     moved: LargeDisplacement
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
+    growth: Growths
     grown: Growths
     uneven: Growths
     shared: Growths
@@ -143,8 +147,8 @@ class _LoadCase:
         }
         hands = {link: found[0][1] for link, found in plates.items()}
         forces = statics.forces[load_case]
-        grown = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
-        grown = grown.times(stiffness_doubt(case, load_case, forces, loads))
+        growth = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
+        grown = growth.times(stiffness_doubt(case, load_case, forces, loads))
         uneven = grown = grown.times(play_doubt(case, load_case, forces, loads))
         for doubt in doubts:
             uneven = uneven.times(doubt.growths)
@@ -154,6 +158,7 @@ class _LoadCase:
             load_case=load_case,
             moved=moved,
             plates=plates,
+            growth=growth,
             grown=grown,
             uneven=uneven,
             shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved), links=tilting),
@@ -200,22 +205,20 @@ class _LoadCase:
         return self.statics.forces[self.load_case]
 
     def links(
-        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares] | None = None
+        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, SolvedAnswers] | None = None
     ) -> dict[str, LinkResult]:
         """Return the results of links; of a pair, that of its worse plate.
 
-        ``solved`` is what the ways of sharing couples make of links that are solids; of any other the shares by hand
-        stand.
+        ``solved`` is what causes make of links that are solids; of any other what they make by hand stands.
         """
         found = {}
         for link, plates in self.plates.items():
-            own = self.case, link, self.load_case
-            shares = (solved or {}).get(link) or by_hand_shares(self.shared, link)
+            own, known = (self.case, link, self.load_case), (solved or {}).get(link)
+            uneven, shares = self.uneven, by_hand_shares(self.shared, link)
+            if known is not None:
+                uneven, shares = self.growth, together_shares(known)
             found[link] = worse_plate(
-                [
-                    link_result(*own, hand, decided.get(link), self.uneven, shares, name=loads.name)
-                    for loads, hand in plates
-                ]
+                [link_result(*own, hand, decided.get(link), uneven, shares, name=loads.name) for loads, hand in plates]
             )
         return found
 
@@ -233,20 +236,36 @@ class _LoadCase:
         sources = distinct(*(grown[name].sources for name in own))
         return widened(outcome, Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources))
 
-    def solid_shares(self, decided: Mapping[str, DecidedLink], threads: int) -> dict[str, Shares]:
-        """Return what the ways of sharing couples make of the links that are solved as solids."""
-        found: dict[str, Shares] = {}
-        for link, one in decided.items() if self.forces.sharings else ():
+    def answers(self, link: str) -> dict[str, LinkAnswers]:
+        """Return what may act on a link in place of what is stated, by the name of the cause."""
+        case, load_case, forces, loads = self.case, self.load_case, self.forces, self.statics.loads[self.load_case]
+        own = case, load_case, link, forces, loads
+        found = {"couples": sharing_answers(*own, grown=_grown(self.moved))} if forces.sharings else {}
+        if forces.open_by:
+            found["stiffness"] = stiffness_answers(*own)
+        play = play_answers(*own)
+        if play is not None:
+            found["play"] = play
+        return found | {str(doubt.cause.source.kind): doubt.answers(link) for doubt in self.doubts}
+
+    def solid_answers(self, decided: Mapping[str, DecidedLink], threads: int) -> dict[str, SolvedAnswers]:
+        """Return what causes make of the links that are solved as solids, each answer on the solid itself."""
+        found: dict[str, SolvedAnswers] = {}
+        for link, one in decided.items():
             left = one.left.intersection(cut.name for cut, _ in self.plates[link])
-            if one.solid is not None and self.acts_on(link) and not left:
-                loads, grown = self.statics.loads[self.load_case], _grown(self.moved)
-                ways = ways_borne(self.case, self.load_case, link, self.forces, loads, grown=grown)
-                found[link] = solid_shares(link_task(self.case, link, ways[0]), one.solid, ways, threads=threads)
+            if one.solid is None or not self.acts_on(link) or left:
+                continue
+            causes = self.answers(link)
+            if causes:
+                task = link_task(self.case, link, next(iter(causes.values())).stated)
+                solved = solid_shares(task, one.solid, list(causes.values()), threads=threads)
+                found[link] = dict(zip(causes, solved, strict=True))
         return found
 
-    def couples(self, solved: Mapping[str, Shares], checks: Sequence[CheckOutcome]) -> SharedCouples:
+    def couples(self, solved: Mapping[str, SolvedAnswers], checks: Sequence[CheckOutcome]) -> SharedCouples:
         """Return what the sharing of couples leaves open of links' strength."""
-        decisive = {link: STRESS[self.case.material_of(link).brittle] for link in solved}
+        known = {link: shares["couples"] for link, shares in solved.items() if "couples" in shares}
+        decisive = {link: STRESS[self.case.material_of(link).brittle] for link in known}
         return SharedCouples(
             case=self.case,
             load_case=self.load_case,
@@ -254,12 +273,12 @@ class _LoadCase:
             loads=self.statics.loads[self.load_case],
             grown=_grown(self.moved),
             by_hand=self.shared.stress,
-            told={**self.shared.stress, **{link: shares[decisive[link]] for link, shares in solved.items()}},
+            told={**self.shared.stress, **{link: shares[decisive[link]] for link, shares in known.items()}},
             checks=checks,
         )
 
     def judged(
-        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares], whole: Sequence[CheckOutcome]
+        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, SolvedAnswers], whole: Sequence[CheckOutcome]
     ) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
         case, load_case, links = self.case, self.load_case, self.links(decided, solved)
@@ -393,7 +412,7 @@ def check_case(
         x: (*own, *layer_gap_outcomes(by_load_case[x].case, x, moved[x], outlines))
         for x, own in whole_outcomes(whole).items()
     }
-    solved = {load_case: one.solid_shares(decided, threads) for load_case, one in by_load_case.items()}
+    solved = {load_case: one.solid_answers(decided, threads) for load_case, one in by_load_case.items()}
     load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
     clock("stress")
     warnings: tuple[Reason | str, ...] = ()

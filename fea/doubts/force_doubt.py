@@ -7,7 +7,7 @@ compression on pins that tilt bends out of the plane from the first newton, by t
 in the frame, whose pins keep its angles: the answers of sharing hold that growth (``alula.fea.links.second_order``).
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.links.second_order import on_tilting_pins
+from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule, widest
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
 from alula.loads.records.applied import Load
@@ -30,8 +31,6 @@ FLAT = 1e-4
 """Extent of points in a direction, over their largest, below which they have none."""
 MOST_DIRECTIONS = 6
 """Beyond so many nearly all points are corners of their convex hull, and finding it takes long."""
-_Around = Callable[[float, Sequence[float]], Scatter]
-"""From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
 
 
 def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
@@ -53,17 +52,29 @@ def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequ
     """
     if not forces.open_by:
         return Growths()
-    around = _summed(forces.sources)
-    stress, displacement = {}, {}
-    for link in case.checked_links:
-        every = (forces.reactions, *(one.reactions for one in forces.open_by))
-        plain, *others = (
-            measures(case, link, link_loads(load_case, link, case.body(link), reactions, loads)) for reactions in every
-        )
-        stress[link], displacement[link] = (around(plain[i], [one[i] for one in others]) for i in (0, 1))
-    return Growths(
-        stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, forces.open_by, around))
+    answers = {link: stiffness_answers(case, load_case, link, forces, loads) for link in case.checked_links}
+    return _growths(case, forces, forces.open_by, _summed(forces.sources), answers)
+
+
+def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> LinkAnswers:
+    """Return what acts on a link as each link by itself is softer or stiffer, where joint forces depend on it.
+
+    Parameters
+    ----------
+    case, load_case, forces, loads
+        As of ``stiffness_doubt``.
+    link : str
+
+    Returns
+    -------
+    LinkAnswers
+    """
+    body, rule = case.body(link), _summed(forces.sources)
+    stated, *others = (
+        borne(case, link, link_loads(load_case, link, body, reactions, loads), tilts=False)
+        for reactions in (forces.reactions, *(one.reactions for one in forces.open_by))
     )
+    return LinkAnswers(stated=stated, others=tuple(others), stress=rule, displacement=rule)
 
 
 def sharing_doubt(
@@ -82,7 +93,7 @@ def sharing_doubt(
     case, load_case, forces, loads
         As of ``stiffness_doubt``.
     grown : bool, optional
-        As of ``ways_borne``.
+        As of ``sharing_answers``.
     links : sequence of str or None, optional
         Links that are looked at; None for every one.
 
@@ -93,19 +104,14 @@ def sharing_doubt(
     """
     if not forces.sharings:
         return Growths()
-    stress, displacement = {}, {}
-    for link in case.checked_links if links is None else links:
-        ways = ways_borne(case, load_case, link, forces, loads, grown=grown)
-        plain, *others = (_by_hand(case, link, borne) for borne in ways)
-        stress[link], displacement[link] = (_widest(plain[i], [one[i] for one in others]) for i in (0, 1))
-    return Growths(
-        stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, forces.sharings, _widest))
-    )
+    links = case.checked_links if links is None else links
+    answers = {link: sharing_answers(case, load_case, link, forces, loads, grown=grown) for link in links}
+    return _growths(case, forces, forces.sharings, widest(COUPLES), answers)
 
 
-def ways_borne(
+def sharing_answers(
     case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load], *, grown: bool = False
-) -> tuple[tuple[LinkLoads, ...], ...]:
+) -> LinkAnswers:
     """Return what acts on a link, or on each plate of a pair, with tight pins and in the ways of sharing that count.
 
     In the plane all ways have the same forces, and stress is a convex function of what acts across it: it is largest at
@@ -120,7 +126,7 @@ def ways_borne(
 
     Returns
     -------
-    tuple of tuple of LinkLoads
+    LinkAnswers
     """
     body = case.body(link)
     tight, *others = (
@@ -131,8 +137,25 @@ def ways_borne(
     across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
     across = across.reshape(len(others), -1)
     chosen = {*outermost(across).tolist(), int(np.argmin(np.linalg.norm(across, axis=1)))}
-    borne = [_borne(case, link, others[i], tilts=True) for i in sorted(chosen)]
-    return (_borne(case, link, tight, tilts=grown), *borne)
+    tilted = tuple(borne(case, link, others[i], tilts=True) for i in sorted(chosen))
+    rule = widest(COUPLES)
+    return LinkAnswers(stated=borne(case, link, tight, tilts=grown), others=tilted, stress=rule, displacement=rule)
+
+
+def _growths(
+    case: Case,
+    forces: JointForces,
+    changes: Sequence[Deviation],
+    rule: Rule,
+    answers: Mapping[str, LinkAnswers],
+) -> Growths:
+    """What a cause makes of links by hand, and of joint forces."""
+    stress, displacement = {}, {}
+    for link, one in answers.items():
+        plain, *others = (_by_hand(case, link, borne) for borne in one.every)
+        stress[link] = one.stress(plain[0], [other[0] for other in others])
+        displacement[link] = one.displacement(plain[1], [other[1] for other in others])
+    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, changes, rule)))
 
 
 def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -164,7 +187,7 @@ def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.arange(count)
 
 
-def _joints(forces: JointForces, changes: Sequence[Deviation], around: _Around) -> dict[str, Scatter]:
+def _joints(forces: JointForces, changes: Sequence[Deviation], around: Rule) -> dict[str, Scatter]:
     joints = {}
     for name, joint in forces.reactions.joints.items():
         along = joint.force / (joint.magnitude or 1.0)
@@ -189,12 +212,23 @@ def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) ->
     tuple of (float, float)
         [MPa], [mm]; twice [N] without beam.
     """
-    return _by_hand(case, link, _borne(case, link, loads, tilts=tilts))
+    return _by_hand(case, link, borne(case, link, loads, tilts=tilts))
 
 
-def _borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool) -> tuple[LinkLoads, ...]:
-    borne = plates(loads, apart(case, link))
-    return tuple(on_tilting_pins(case, link, plate) for plate in borne) if tilts else borne
+def borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> Plates:
+    """Return what acts on a link, or on each plate of a pair.
+
+    Parameters
+    ----------
+    case, link, loads, tilts
+        As of ``measures``.
+
+    Returns
+    -------
+    tuple of LinkLoads
+    """
+    each = plates(loads, apart(case, link))
+    return tuple(on_tilting_pins(case, link, plate) for plate in each) if tilts else each
 
 
 def _by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[float, float]:
@@ -205,18 +239,13 @@ def _by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[float, 
     return max(hand.worst[1].equivalent for hand in hands), max(hand.displacement for hand in hands)
 
 
-def _summed(sources: tuple[Source, ...]) -> _Around:
+def _summed(sources: tuple[Source, ...]) -> Rule:
     def around(value: float, changed: Sequence[float]) -> Scatter:
         steps = np.array([one - value for one in changed]) / (value or np.inf)
         low, high = float(np.minimum(steps, 0.0).sum()), float(np.maximum(steps, 0.0).sum())
         return Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources)
 
     return around
-
-
-def _widest(value: float, changed: Sequence[float]) -> Scatter:
-    shares = np.array([value, *changed]) / value if value > 0.0 else np.ones(1)
-    return Scatter(low=max(float(shares.min()), 0.0), high=float(shares.max()), sources=COUPLES)
 
 
 def _open(found: Mapping[str, Scatter]) -> dict[str, Scatter]:

@@ -18,6 +18,7 @@ from alula.fea.links.fidelity import hand_bands
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement, examine
+from alula.fea.superposition.link_answers import LinkAnswers
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
 
@@ -216,6 +217,21 @@ class Doubt:
         stress, displacement = ({link: of_link(link, i) for link in self.stated.plates} for i in (0, 1))
         joints = {name: of_joint(name) for name in self.stated.reactions.joints}
         return Growths(stress=_telling(stress), displacement=_telling(displacement), joints=_telling(joints))
+
+    def answers(self, link: str) -> LinkAnswers:
+        """Return what acts on a link as stated and in the other answers.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        LinkAnswers
+        """
+        stated, *others = (tuple(loads for loads, _ in one.plates[link]) for one in (self.stated, *self.cause.others))
+        rule = self.cause.of
+        return LinkAnswers(stated=stated, others=tuple(others), stress=rule, displacement=rule)
 
     def slenderest(self, case: Case, link: str, plates: Plates) -> Plates:
         """Return the plates of a link of which the slenderest is judged as a column: others where none buckles.

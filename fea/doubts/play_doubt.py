@@ -1,6 +1,6 @@
 """What play makes of the numbers of a check: stress through changed forces, and how much load the linkage holds."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -14,10 +14,11 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
-from alula.fea.doubts.force_doubt import measures
+from alula.fea.doubts.force_doubt import borne, measures
 from alula.fea.doubts.load_growth import LEAST, Growths
 from alula.fea.frame.joint_forces import JointForces, joint_forces
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
+from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.bodies.body import Body
 from alula.loads.case.case import Case
@@ -27,6 +28,7 @@ from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 
+_At = Callable[[Reactions, Displaced], LinkLoads]
 OUT_OF_PLANE = [2, 3, 4]
 """Components of a wrench that equilibrium in the plane does not give."""
 
@@ -70,7 +72,11 @@ def play_doubt(
     for link in links:
         body = case.body(link)
         acting = link_loads(load_case, link, body, forces.reactions, loads)
-        told = partial(_told, case, load_case, link, body, acting)
+        at = partial(_at, load_case, link, body, acting)
+
+        def told(here: Reactions, place: Displaced, link: str = link, at: _At = at) -> tuple[float, float]:
+            return measures(case, link, at(here, place))
+
         plain = told(*nominal)
         tried = {name: [told(*end) for end in each] for name, each in ends.items()}
         for i, found in enumerate((stress, displacement)):
@@ -87,10 +93,79 @@ def play_doubt(
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
 
 
-def _told(
-    case: Case, load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced
-) -> tuple[float, float]:
-    """Stress and displacement of a link by hand, with its joints at offsets.
+def play_answers(
+    case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]
+) -> LinkAnswers | None:
+    """Return what acts on a link as pins stand otherwise in their holes.
+
+    Every joint with play stands at its ends in x and in y, then all joints stand where the link's stress and its
+    displacement by hand are largest and least. The sizes of what the single joints make add up; what all make together
+    counts as well.
+
+    Parameters
+    ----------
+    case, load_case, forces, loads
+        As of ``play_doubt``.
+    link : str
+
+    Returns
+    -------
+    LinkAnswers or None
+        None without play.
+    """
+    play, body = forces.play, case.body(link)
+    if play is None:
+        return None
+    source, acting = play_source(play.clearances), link_loads(load_case, link, body, forces.reactions, loads)
+    if play.through_dead_point or play.nominal is None:
+
+        def endless(_value: float, _others: Sequence[float]) -> Scatter:
+            return Scatter(low=0.0, high=np.inf, sources=(source,))
+
+        return LinkAnswers(stated=borne(case, link, acting), others=(), stress=endless, displacement=endless)
+    at = partial(_at, load_case, link, body, acting)
+    stated = at(_reactions(play, forces, play.nominal), play.nominal)
+    others, places = list[LinkLoads](), list[tuple[str, int]]()
+    for name in play.loose.radii:
+        for i, share in enumerate(np.eye(2)[: len(play.loose.directions(name))]):
+            for sign in (1.0, -1.0):
+                here = play.at(play.loose.offsets({name: sign * share}))
+                if here is not None:
+                    others.append(at(_reactions(play, forces, here), here))
+                    places.append((name, i))
+    plain, *tried = (measures(case, link, one) for one in (stated, *others))
+    for k in (0, 1):
+        slopes = {name: np.zeros(2) for name in play.loose.radii}
+        for (name, i), one in reversed(list(zip(places, tried, strict=True))):  # that at the end in x or y rules
+            slopes[name][i] = one[k] - plain[k]
+        others += [at(*end) for end in _worst(play, forces, slopes)]
+    held = [_scatter(play.forces[name], source) for name in case.linkage.joints_of(link)] if case.layered else []
+
+    def rule(value: float, found: Sequence[float]) -> Scatter:
+        if not value > 0.0:
+            return Scatter()
+        steps = {name: np.zeros(2) for name in play.loose.radii}
+        for (name, i), one in zip(places, found, strict=False):
+            steps[name][i] = max(steps[name][i], abs(one - value))
+        slack = sum(float(np.linalg.norm(step)) for step in steps.values())
+        low, high = (end / value for end in (min(value - slack, *found), max(value + slack, *found)))
+        # Couples between layers go with the forces of the link's pins.
+        return Scatter(
+            low=max(min(low, *(one.low for one in held)), 0.0) if held else max(low, 0.0),
+            high=max(high, *(one.high for one in held)) if held else high,
+            sources=(source,),
+        )
+
+    return LinkAnswers(
+        stated=borne(case, link, stated),
+        others=tuple(borne(case, link, one) for one in others),
+        stress=rule,
+        displacement=rule,
+    )
+
+
+def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:
+    """What acts on a link with its joints at offsets.
 
     Components out of the plane are those of the link ``plain``, in its own axes, since play changes none of them.
     """
@@ -101,7 +176,7 @@ def _told(
     ends = [
         replace(end, wrench=_across(end.wrench, was.wrench)) for end, was in zip(found.ends, plain.ends, strict=True)
     ]
-    return measures(case, link, replace(found, pins=tuple(pins), ends=tuple(ends)))
+    return replace(found, pins=tuple(pins), ends=tuple(ends))
 
 
 def _across(wrench: Real, plain: Real) -> Real:

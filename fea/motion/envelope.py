@@ -3,7 +3,7 @@
 import math
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import copy_context
@@ -39,6 +39,7 @@ from alula.fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecid
 from alula.fea.refine.link_series import STRESS, Measure
 from alula.fea.refine.refinement import START, Effort, refine_links
 from alula.fea.solid.solution import require_compressible
+from alula.fea.superposition.link_answers import LinkAnswers
 from alula.fea.superposition.solid_shares import solid_shares
 from alula.fea.whole.outcomes import unloaded_outcomes, whole_numbers
 from alula.fea.whole.rubbed_motion import rubbed_motion, work_between
@@ -67,7 +68,7 @@ class _Envelope:
     threads: int
     progress: Progress
     shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
-    ways: Mapping[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = field(default_factory=dict)
+    ways: Mapping[tuple[str, str], LinkAnswers] = field(default_factory=dict)
     grown: Mapping[str, MotionGrowth] = field(default_factory=dict)
     ended: threading.Event = field(default_factory=threading.Event)
 
@@ -148,11 +149,11 @@ class _Envelope:
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
             layers = layers_of(case, link)
-            shared = {
-                load_case: solid_shares(replace(task, layers=layers), refined, self.ways[load_case, link], threads=1)
-                for load_case in dict.fromkeys(history.name for history in self.loaded[link])
-                if (load_case, link) in self.ways
-            }
+            shared, layered = {}, replace(task, layers=layers)
+            for load_case in dict.fromkeys(history.name for history in self.loaded[link]):
+                if (load_case, link) in self.ways:
+                    couples = [self.ways[load_case, link]]
+                    [shared[load_case]] = solid_shares(layered, refined, couples, threads=1)
 
             def scatter(quantity: Measure) -> dict[str, Scatter]:
                 return {

@@ -6,7 +6,7 @@ joint, is that of the spatial frame of each pose. The ways in which pins may sha
 there.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
-from alula.fea.common.link_loads import LinkLoads
-from alula.fea.doubts.force_doubt import ways_borne
+from alula.fea.doubts.force_doubt import sharing_answers
 from alula.fea.frame.joint_forces import JointForces, joint_forces, solved_frame
+from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.ties import first_largest
 from alula.loads.records.applied import Load, chosen
 from alula.loads.states.case_motion import CaseMotion
@@ -33,13 +33,13 @@ class LayeredMotion:
     ----------
     moved : CaseMotion
         With all six components of the joint forces at the poses that count; as it was without layers.
-    ways : mapping of tuple of 2 str to tuple of tuple of LinkLoads
-        (load case, link) -> what acts on it with tight pins and in every way of sharing (``ways_borne``), where it
+    ways : mapping of tuple of 2 str to LinkAnswers
+        (load case, link) -> what acts on it with tight pins and in every way of sharing (``sharing_answers``), where it
         bears most; empty without layers.
     """
 
     moved: CaseMotion
-    ways: Mapping[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = field(default_factory=dict)
+    ways: Mapping[tuple[str, str], LinkAnswers] = field(default_factory=dict)
 
 
 def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMotion:
@@ -64,7 +64,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
     if not case.layered or not moved.forces:
         return LayeredMotion(moved=moved)
     forces: dict[str, Kinetostatics] = {}
-    ways: dict[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = {}
+    ways: dict[tuple[str, str], LinkAnswers] = {}
     wrenches = {
         name: {joint: reaction.wrench.copy() for joint, reaction in solved.joints.items()}
         for name, solved in moved.forces.items()
@@ -84,7 +84,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         for link, pose in poses.items():
             here = forces_at(moved, name, pose)
             if here.sharings:
-                ways[name, link] = ways_borne(case, name, link, here, _loads_at(moved, name, pose), grown=True)
+                ways[name, link] = sharing_answers(case, name, link, here, _loads_at(moved, name, pose), grown=True)
     return LayeredMotion(moved=replace(moved, forces=forces), ways=ways)
 
 

@@ -1,23 +1,22 @@
-"""What the ways of sharing couples between layers make of a link that is solved as a solid: the peaks of each way.
+"""What the answers of causes make of a link that is solved as a solid: the peaks of each answer.
 
-Every way has wrenches of its own on the link, under which the peak may lie elsewhere and pins press otherwise. So no
-peak is scaled by the stress of beams: the loads of all ways, under all pressures of pins and transfers of torque, are
-solved on the link's finest mesh. The problem is linear and most of these loads are sums of a few, which their
-Gram matrix tells; one factorisation serves them. What comes out are factors on the band that the link
-has with tight pins, for each number that is judged. Where the peak of a way lies at a place that no mesh was refined
-for, the fourfold estimate there counts beside the factor.
+Every answer has wrenches of its own on the link (in other air, with other friction, with pins that stand or tilt
+otherwise), under which the peak may lie elsewhere and pins press otherwise. So no peak is scaled by the stress of
+beams: the loads of all answers, under all pressures of pins and transfers of torque, are solved on the link's finest
+mesh. The problem is linear and most of these loads are sums of a few, which their Gram matrix tells; one factorisation
+serves them. What comes out are factors on the band that the link has as stated, for each number that is judged. Where
+the peak of an answer lies at a place that no mesh was refined for, the fourfold estimate there counts beside the
+factor.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common import memory
-from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import COUPLES
 from alula.fea.elements.supports import LineReference
 from alula.fea.refine.convergence import ALONE
 from alula.fea.refine.error_estimate import estimate_error
@@ -26,7 +25,8 @@ from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import RefinedSolid
 from alula.fea.solid.solution import solve_free
 from alula.fea.solid.stress import stress_field
-from alula.fea.superposition.peaks import ModeMeasures, largest_stress
+from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule
+from alula.fea.superposition.peaks import ModeMeasures, Peaks, largest_stress
 from alula.fea.superposition.unit_solutions import nodal_stress
 from alula.fea.tractions.load_vectors import LoadVectors
 from alula.geometry.base.errors import CannotRunError
@@ -35,8 +35,6 @@ from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, Span
 Real = NDArray[np.float64]
 Shares = Mapping[PeakQuantity, Scatter]
 """By what the numbers of a link may differ."""
-Plates = tuple[LinkLoads, ...]
-"""What acts on a link, or on each plate of a pair, in one way of sharing."""
 
 LEFT_OUT = 1e-5
 """Norm of the nodal forces that a mode left out may have in loads, over that of the largest mode."""
@@ -48,8 +46,8 @@ class _Modes:
 
     Attributes
     ----------
-    ways : ndarray of int, shape (N,)
-        Which way of sharing each load is of; 0 with tight pins.
+    answers : ndarray of int, shape (N,)
+        Which answer each load is of, of all causes in a row.
     spans : sequence of Span
         Of the pins' pressure.
     displacement : ndarray, shape (3 nodes, modes)
@@ -57,59 +55,87 @@ class _Modes:
     combination : ndarray, shape (modes, N)
     """
 
-    ways: NDArray[np.int64]
+    answers: NDArray[np.int64]
     spans: Sequence[Span]
     displacement: Real
     combination: Real
 
 
 def solid_shares(
-    task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], *, threads: int | None = None
-) -> Shares:
-    """Return by what the numbers of a solved link may differ since nobody states how pins share couples.
+    task: LinkTask, refined: RefinedSolid, causes: Sequence[LinkAnswers], *, threads: int | None = None
+) -> tuple[Shares, ...]:
+    """Return by what the numbers of a solved link may differ by causes that change what acts on it.
 
     Parameters
     ----------
     task : LinkTask
         What was solved.
     refined : RefinedSolid
-        Its meshes; solved under what the first of ``ways`` holds, or about that.
-    ways : sequence of Plates
-        What acts on the link: with tight pins first, then in every way of sharing.
+        Its meshes; solved under what the causes hold as stated, or about that.
+    causes : sequence of LinkAnswers
+        At least one.
     threads : int or None, optional
 
     Returns
     -------
-    mapping of PeakQuantity to Scatter
+    tuple of mapping of PeakQuantity to Scatter
+        Of each cause.
 
     Raises
     ------
     CannotRunError
         Where memory does not suffice or a solver fails.
     """
-    modes = _solved(task, refined, ways, threads)
+    modes = _solved(task, refined, [plates for cause in causes for plates in cause.every], threads)
     space, E, nu = refined.solution.space, refined.solution.E, refined.solution.nu
     stress = nodal_stress(space, modes.displacement, E=E, nu=nu)
-    names = {plate.name for plate in ways[0]}
-    own = [one for one, case in zip(refined.precision, refined.solution.cases, strict=True) if case.load in names]
     measures = ModeMeasures.of(stress)
-    found: dict[PeakQuantity, Scatter] = {"displacement": _factors(_displacements(task, refined, modes), modes.ways)}
+    moved = _displacements(task, refined, modes)
+    found: list[dict[PeakQuantity, Scatter]] = [
+        {"displacement": _factors(moved[own], modes.answers[own], cause.displacement)}
+        for cause, own in _each(causes, modes)
+    ]
     wanted: list[PeakQuantity] = [*STRESS.values(), *(("layers",) if task.layers is not None else ())]
     for quantity in wanted:
         layers = task.layers if quantity == "layers" else None
         parts = measures if layers is None else ModeMeasures.of(stress, layers)
         peaks = largest_stress(parts, modes.combination, brittle=quantity == "principal", layers=layers)
-        plain = _factors(peaks.value, modes.ways)
-        tops = [one.high(quantity) for one in own]
-        largest = int(np.argmax(peaks.value))
-        most = plain.high
-        if modes.ways[largest] and tops and np.isfinite(max(tops)) and max(tops) > 0.0:
-            sensitivity = layers.sensitivity if layers is not None else 1.0
-            error = sensitivity * _error(refined, modes, largest, int(peaks.node[largest]))
-            contact = 1.0 - CONTACT_SHORTFALL if modes.spans[largest] == NARROW.span else 1.0
-            most = max(most, (float(peaks.value[largest]) + error) / contact / max(tops))
-        found[quantity] = Scatter(low=plain.low, high=most, sources=COUPLES)
-    return found
+        for shares, (cause, own) in zip(found, _each(causes, modes), strict=True):
+            plain = _factors(peaks.value[own], modes.answers[own], cause.stress)
+            most = max(plain.high, _elsewhere(task, refined, modes, quantity, peaks, cause, own))
+            shares[quantity] = replace(plain, high=most)
+    return tuple(found)
+
+
+def _each(causes: Sequence[LinkAnswers], modes: _Modes) -> Iterator[tuple[LinkAnswers, NDArray[np.int64]]]:
+    """Yield each cause with the numbers of its loads, as stated first."""
+    first = 0
+    for cause in causes:
+        yield cause, np.flatnonzero((modes.answers >= first) & (modes.answers < first + len(cause.every)))
+        first += len(cause.every)
+
+
+def _elsewhere(
+    task: LinkTask,
+    refined: RefinedSolid,
+    modes: _Modes,
+    quantity: PeakQuantity,
+    peaks: Peaks,
+    cause: LinkAnswers,
+    own: NDArray[np.int64],
+) -> float:
+    """Return the largest peak of another answer with its error, over the upper end as stated; 0 where none leads."""
+    names = {plate.name for plate in cause.stated}
+    precision = zip(refined.precision, refined.solution.cases, strict=True)
+    tops = [one.high(quantity) for one, case in precision if case.load in names]
+    largest = int(own[np.argmax(peaks.value[own])])
+    stated = modes.answers[own[0]]
+    if modes.answers[largest] == stated or not tops or not 0.0 < max(tops) < np.inf:
+        return 0.0
+    sensitivity = task.layers.sensitivity if quantity == "layers" and task.layers is not None else 1.0
+    error = sensitivity * _error(refined, modes, largest, int(peaks.node[largest]))
+    contact = 1.0 - CONTACT_SHORTFALL if modes.spans[largest] == NARROW.span else 1.0
+    return (float(peaks.value[largest]) + error) / contact / max(tops)
 
 
 def _solved(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], threads: int | None) -> _Modes:
@@ -117,7 +143,7 @@ def _solved(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], threa
     numbers, spans, columns = zip(*_loads(task, refined, ways), strict=True)
     memory.require(
         8.0 * len(columns) * (4.0 * space.unknowns + 6.0 * len(space.nodes)),
-        f"the stress of {len(ways)} ways of sharing couples at {len(space.nodes):,} nodes",
+        f"the stress under {len(ways)} answers of what is in doubt at {len(space.nodes):,} nodes",
         None,
     )
     loads = np.array(columns)
@@ -127,7 +153,7 @@ def _solved(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], threa
     kept = values > LEFT_OUT**2 * values[-1]
     free = solve_free(space, (vectors[:, kept].T @ loads).T, E=task.E, nu=task.nu, threads=threads)
     return _Modes(
-        ways=np.array(numbers),
+        answers=np.array(numbers),
         spans=spans,
         displacement=free.displacement,
         combination=(size[:, None] * vectors[:, kept]).T,
@@ -135,7 +161,7 @@ def _solved(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], threa
 
 
 def _loads(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates]) -> Iterator[tuple[int, Span, Real]]:
-    """Yield number of the way, span of the pressure and load vector, of all variants."""
+    """Yield number of the answer, span of the pressure and load vector, of all variants."""
     vectors = LoadVectors(refined.solution.space, task.density)
     for number, plates in enumerate(ways):
         for plate in plates:
@@ -151,13 +177,16 @@ def _displacements(task: LinkTask, refined: RefinedSolid, modes: _Modes) -> Real
     return np.asarray(np.sqrt(sum(part**2 for part in moved)).max(axis=1))
 
 
-def _factors(values: Real, ways: NDArray[np.int64]) -> Scatter:
-    """Least and largest value of all ways over those with tight pins; plates of a pair count by the worse one."""
-    tight, other = values[ways == 0], values[ways != 0]
-    if not tight.min() > 0.0:
-        raise CannotRunError("a link without stress shares no couples")
-    low, high = float(other.min() / tight.min()), float(other.max() / tight.max())
-    return Scatter(low=min(low, 1.0), high=max(high, 1.0), sources=COUPLES)
+def _factors(values: Real, answers: NDArray[np.int64], rule: Rule) -> Scatter:
+    """What all answers make of a value; variants and plates of a pair count by the worst one, and by the best one."""
+    each = [values[answers == number] for number in np.unique(answers)]
+    if not each[0].min() > 0.0:
+        raise CannotRunError("a link without stress has no share of one")
+    ends = [
+        rule(float(first), list(map(float, rest)))
+        for first, *rest in ([one.min() for one in each], [one.max() for one in each])
+    ]
+    return replace(ends[1], low=min(ends[0].low, 1.0), high=max(ends[1].high, 1.0))
 
 
 def _error(refined: RefinedSolid, modes: _Modes, load: int, node: int) -> float:

@@ -1,0 +1,62 @@
+"""What may act on a link in place of what is stated, by one cause, and what its answers make of a number.
+
+A cause is measured by hand and on solids alike: it tells what acts on the link in each of its answers, and by which
+rule the numbers found under these become an interval (``docs/theory/bands.md``).
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source
+
+Plates = tuple[LinkLoads, ...]
+"""What acts on a link, or on each plate of a pair, in one answer."""
+Rule = Callable[[float, Sequence[float]], Scatter]
+"""From a number as stated, and in every other answer, to the least and the largest factor on it."""
+
+
+def widest(sources: tuple[Source, ...]) -> Rule:
+    """Return the rule of alternatives: the least and the largest of all answers.
+
+    Parameters
+    ----------
+    sources : tuple of Source
+        Of the cause.
+
+    Returns
+    -------
+    callable
+    """
+
+    def rule(value: float, others: Sequence[float]) -> Scatter:
+        shares = [1.0, *(one / value for one in others)] if value > 0.0 else [1.0]
+        return Scatter(low=max(min(shares), 0.0), high=max(shares), sources=sources)
+
+    return rule
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkAnswers:
+    """What one cause may make of the loads on a link under a load case.
+
+    Attributes
+    ----------
+    stated : tuple of LinkLoads
+        As stated, of the link or of each plate of a pair.
+    others : tuple of tuple of LinkLoads
+        In each other answer.
+    stress, displacement : callable
+        The rules by which numbers of answers become an interval.
+    """
+
+    stated: Plates
+    others: tuple[Plates, ...]
+    stress: Rule
+    displacement: Rule
+
+    @property
+    def every(self) -> tuple[Plates, ...]:
+        """All answers, as stated first."""
+        return (self.stated, *self.others)

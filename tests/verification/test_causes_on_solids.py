@@ -1,0 +1,108 @@
+"""Play and friction on links that are solids: each answer of a cause is solved on the solid, none is a ratio of beams.
+
+A four-bar in a plane, with play in two joints and friction in three. What the program says of its coupler and rocker is
+held against direct solutions on the same mesh, under forces of the linkage with its pins displaced, or rubbing more.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tilting_pins import four_bar
+
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.doubts.friction_doubt import friction_doubt
+from alula.fea.doubts.play_doubt import _reactions, play_answers
+from alula.fea.frame.case_statics import CaseStatics, at_friction_ends, solve_case_statics
+from alula.fea.links.solid_result import link_task
+from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
+from alula.fea.solid.solution import solve_solid
+from alula.fea.solid.stress import stress_field
+from alula.fea.superposition.solid_shares import solid_shares
+from alula.geometry.meshing.mesh import mesh_body
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.case.case_file import validate
+
+RUBS = {"friction": 0.3, "friction_range": [0.1, 0.6]}
+LINKS = ("coupler", "rocker")
+
+
+@cache
+def statics() -> CaseStatics:
+    data = four_bar(tight={})
+    del data["layer_spacing"]
+    for link in data["links"].values():
+        link.pop("layer", None)
+    data["joints"]["A"]["clearance"], data["joints"]["O4"]["clearance"] = "2 mm", "1.5 mm"
+    for name in ("O2", "A", "B"):
+        data["joints"][name] |= RUBS
+    data["load_cases"]["l"]["direction"] = "forward"
+    data["checks"] = {"strength": {"type": "safety-factor", "minimum": 2.0}}
+    return solve_case_statics(validate(data))
+
+
+def acting(link: str, found: CaseStatics) -> LinkLoads:
+    return link_loads("l", link, found.case.body(link), found.reactions["l"], found.loads["l"])
+
+
+@cache
+def mesh(link: str) -> TaggedMesh:
+    return mesh_body(statics().case.body(link), START)
+
+
+@cache
+def solid(link: str) -> RefinedSolid:
+    task = link_task(statics().case, link, [acting(link, statics())])
+    return refine_links({link: task}, START, Effort(max_meshes=1), first={link: mesh(link)}, threads=1)[link]
+
+
+def peaks(link: str, loads: LinkLoads) -> tuple[float, float]:
+    """Least and largest von Mises stress of all variants, solved by itself on the same mesh [MPa]."""
+    task = link_task(statics().case, link, [loads])
+    found = solve_solid(mesh(link), E=task.E, nu=task.nu, density=task.density, loads=[loads], line=task.line)
+    fields = [stress_field(found.space, one.displacement, E=found.E, nu=found.nu) for one in found.cases]
+    sizes = [float(field.von_mises.max()) for field in fields]
+    return min(sizes), max(sizes)
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_the_answers_of_friction_are_those_of_the_solid(link):
+    forces = statics().forces["l"]
+    doubt = friction_doubt(statics(), "l", examine(statics().case, "l", forces, statics().loads["l"]))
+    assert doubt is not None
+    answers = doubt.answers(link)
+    [found] = solid_shares(link_task(statics().case, link, answers.stated), solid(link), [answers], threads=1)
+    least, most = zip(
+        peaks(link, acting(link, statics())),
+        *(peaks(link, acting(link, one)) for one in at_friction_ends(statics(), "l") if one is not None),
+        strict=True,
+    )
+    assert found["von_mises"].low == pytest.approx(min(least) / least[0], rel=1e-6)
+    assert found["von_mises"].high >= max(most) / most[0] * (1.0 - 1e-6)
+    assert found["von_mises"].high == pytest.approx(max(most) / most[0], rel=0.1)  # with the estimate of this mesh
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_wherever_pins_with_play_stand_the_solid_bears_no_more(link):
+    """Twelve places drawn, and the corners of both joints' directions."""
+    case, forces, loads = statics().case, statics().forces["l"], statics().loads["l"]
+    play, answers = forces.play, play_answers(case, "l", link, forces, loads)
+    assert play is not None
+    assert play.nominal is not None
+    assert answers is not None
+    [found] = solid_shares(link_task(case, link, answers.stated), solid(link), [answers], threads=1)
+    rng, stated = np.random.default_rng(1), peaks(link, answers.stated[0])
+    sizes = []
+    for _ in range(12):
+        angle = rng.uniform(0.0, 2.0 * np.pi, 2)
+        shares = {name: np.array([np.cos(a), np.sin(a)]) for name, a in zip(("A", "O4"), angle, strict=True)}
+        here = play.at(play.loose.offsets(shares))
+        assert here is not None
+        reactions = _reactions(play, forces, here)
+        sizes.append(peaks(link, link_loads("l", link, case.body(link), reactions, here.loads)))
+    assert found["von_mises"].low <= min(least for least, _ in sizes) / stated[0]
+    assert found["von_mises"].high >= max(most for _, most in sizes) / stated[1]
+    assert max(most for _, most in sizes) / stated[1] > 1.01  # play tells
+    assert found["von_mises"].high < 1.6
