@@ -20,6 +20,7 @@ from alula.reports.commands.options import (
     at_a_time,
     folder_option,
 )
+from alula.reports.commands.telling import tell
 
 if TYPE_CHECKING:
     from alula.fea.study.study import Progress
@@ -246,7 +247,6 @@ def show(
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
     from alula.fea.study.store import Store
-    from alula.reports.renderers.console import print_sections
     from alula.reports.renderers.record import as_json, as_record
     from alula.reports.study.columns import read_study
     from alula.reports.study.rows import lines, results_section
@@ -258,9 +258,7 @@ def show(
         if json:
             print(as_json(as_record([results_section(store)])))
         else:
-            from rich.console import Console
-
-            print_sections(study_sections(read_study(store, numbers or (), most)), Console())
+            tell(study_sections(read_study(store, numbers or (), most)))
     if output is not None:
         _draw(folder, output, numbers or (), sys.stderr if json else sys.stdout)
 

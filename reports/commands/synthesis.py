@@ -14,8 +14,7 @@ from alula.geometry.base.model import CaseModel
 from alula.geometry.base.units import POSITIVE, Angle, Length
 from alula.geometry.mechanisms.synthesis import DRIVES, PrecisionPoint, Synthesis, synthesise
 from alula.loads.text.explain import printable, sentence
-from alula.reports.commands.telling import json_of
-from alula.reports.tools.synthesis import ANGLES, seen, synthesis_section, unit_of
+from alula.reports.tools.synthesis import ANGLES, seen, unit_of
 
 PUBLISHED_POINTS = ("0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg")
 """Precision points (theta, psi) of Arango and Hurtado."""
@@ -92,19 +91,6 @@ def joints_at(synthesis: Synthesis, point: PrecisionPoint) -> NDArray[np.float64
     crank = bar.a * np.array([math.cos(point.phi), math.sin(point.phi)])
     output = np.array([bar.d + bar.c * math.cos(psi), bar.c * math.sin(psi)])
     return np.array([[0.0, 0.0], crank, output, [bar.d, 0.0]])
-
-
-def write_synthesis(synthesis: Synthesis, folder: Path) -> None:
-    """Write ``result.json`` and ``linkage.png``.
-
-    Parameters
-    ----------
-    synthesis : Synthesis
-    folder : Path
-        An existing folder.
-    """
-    (folder / "result.json").write_text(json_of([synthesis_section(synthesis)]) + "\n", encoding="utf-8")
-    draw_linkage(synthesis, folder / "linkage.png")
 
 
 def draw_linkage(synthesis: Synthesis, path: Path | BinaryIO) -> None:
