@@ -285,7 +285,8 @@ def synth(
     json: JsonOption = False,
 ) -> None:
     """Synthesise a four-bar through three precision points, and report its defects."""
-    from alula.reports.commands.synthesis import PUBLISHED_POINTS, draw_linkage, read_synthesis
+    from alula.reports.commands.synthesis import PUBLISHED_POINTS, read_synthesis
+    from alula.reports.figures.four_bar import precision_points_png
     from alula.reports.page.output import refuse_unusable
     from alula.reports.renderers.record import as_brief_record
     from alula.reports.tools.synthesis import synthesis_section
@@ -294,14 +295,11 @@ def synth(
     found = read_synthesis(points or PUBLISHED_POINTS, ground)
     sections = [synthesis_section(found)]
     tell(sections, json=json)
-    write(
-        "synth",
-        output,
-        partial(as_brief_record, sections),
-        lambda folder: draw_linkage(found, folder / "linkage.png"),
-        what="\nRecord and drawing",
-        json=json,
-    )
+
+    def fill(folder: Path) -> None:
+        (folder / "linkage.png").write_bytes(precision_points_png(found))
+
+    write("synth", output, partial(as_brief_record, sections), fill, what="\nRecord and drawing", json=json)
 
 
 app.add_typer(starters)

@@ -1,8 +1,10 @@
 """Output of ``alula envelope``: its files and what it prints."""
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from rich.console import Console
 
 from alula.fea.motion.envelope_result import EnvelopeResult
 from alula.reports.commands.ending import progress
@@ -10,14 +12,8 @@ from alula.reports.commands.telling import tell, write
 from alula.reports.motion.envelope import envelope_headline, envelope_page, envelope_record, envelope_sections
 from alula.reports.renderers.console import print_sections, verdict_line
 from alula.reports.renderers.folder import write_sections
+from alula.reports.sections.section import Section
 from alula.reports.words.terminal import say
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rich.console import Console
-
-    from alula.reports.sections.section import Section
 
 ENVELOPE = "envelope.html"
 
@@ -43,7 +39,7 @@ def tell_envelope(result: EnvelopeResult, output: Path | None = None, *, json: b
     sections = envelope_sections(result)
     record = partial(envelope_record, result, sections)
 
-    def show(sections: "Sequence[Section]", console: "Console") -> None:
+    def show(sections: Sequence[Section], console: Console) -> None:
         verdict_line(result.verdict, result.case.title, console)
         say(console, envelope_headline(result))
         print_sections(sections, console)

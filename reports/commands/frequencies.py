@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from alula.reports.commands.ending import progress
 from alula.reports.commands.options import CaseArgument, JsonOption, SetOption, ThreadsOption, folder_option
 from alula.reports.commands.telling import begun, tell, write
 
@@ -47,14 +48,11 @@ def frequencies(
         sections=(section,),
         footer=page_footer(case, "frequencies.csv"),
     )
+
+    def fill(folder: Path) -> None:
+        progress("Drawing shapes and diagrams ...")
+        write_sections(page, folder, PAGE)
+
     record = partial(as_brief_record, [section], case=case, title=parsed.title, units=UNITS)
     tell([section], json=json, record=record, title=parsed.title)
-    write(
-        "frequencies",
-        output,
-        record,
-        lambda folder: write_sections(page, folder, PAGE),
-        what="\nPage, tables and pictures",
-        json=json,
-        begin="Drawing shapes and diagrams ...",
-    )
+    write("frequencies", output, record, fill, what="\nPage, tables and pictures", json=json)

@@ -75,6 +75,7 @@ def tell_inspection(found: Inspection, output: Path | None = None, *, json: bool
     def fill(folder: Path) -> None:
         from alula.reports.figures.part_picture import part_picture
 
+        progress("Drawing the part ...")
         try:
             picture, trouble = part_picture(found.facts, found.surface)
         except AlulaError as error:
@@ -89,5 +90,5 @@ def tell_inspection(found: Inspection, output: Path | None = None, *, json: bool
     tell(sections, json=json)
     if text and not json:
         print(f"\nEntries of the case file\n\n{text}", end="", flush=True)
-    record, begin = partial(as_brief_record, sections), "Drawing the part ..."
-    write("inspect", output, record, fill, what="\nEntries, record and picture", json=json, begin=begin)
+    record = partial(as_brief_record, sections)
+    write("inspect", output, record, fill, what="\nEntries, record and picture", json=json)

@@ -4,6 +4,7 @@ from functools import partial
 from pathlib import Path
 
 from alula.fea.findings.of_motion import MotionFindings
+from alula.reports.commands.ending import progress
 from alula.reports.commands.telling import tell, write
 from alula.reports.motion.whole_motion import motion_page, motion_record, motion_sections
 from alula.reports.renderers.folder import write_sections
@@ -37,6 +38,7 @@ def tell_motion(found: MotionFindings, name: str, output: Path | None = None, *,
         from alula.reports.turnable.moving import LINKAGE, motion_linkage
         from alula.reports.turnable.pack import data_block
 
+        progress("Drawing figures and the animation ...")
         draw_animation(found.moved.motion, folder / ANIMATION)
         write_sections(
             motion_page(found, name, sections),
@@ -47,5 +49,4 @@ def tell_motion(found: MotionFindings, name: str, output: Path | None = None, *,
         )
 
     tell(sections, json=json, record=record, title=found.moved.case.title)
-    begin = "Drawing figures and the animation ..."
-    write("motion", output, record, fill, what="\nTables and figures", json=json, begin=begin)
+    write("motion", output, record, fill, what="\nTables and figures", json=json)

@@ -5,8 +5,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from alula.reports.commands.ending import progress
-
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -109,7 +107,6 @@ def write(
     *,
     what: str,
     json: bool = False,
-    begin: str = "",
 ) -> None:
     """Write ``result.json`` and more into the folder of a command, where one is named, and say where it is.
 
@@ -127,8 +124,6 @@ def write(
         What was written.
     json : bool, optional
         True where standard output is JSON, so that nothing is said there.
-    begin : str, optional
-        Told before.
 
     Raises
     ------
@@ -140,8 +135,6 @@ def write(
 
     if output is None:
         return
-    if begin:
-        progress(begin)
 
     def every(folder: Path) -> None:
         (folder / MARK).write_text(as_json(record()) + "\n", encoding="utf-8")

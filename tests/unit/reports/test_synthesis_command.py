@@ -13,10 +13,10 @@ from alula.reports.commands.cli import app
 from alula.reports.commands.synthesis import (
     PUBLISHED_GROUND,
     PUBLISHED_POINTS,
-    joints_at,
     read_synthesis,
 )
 from alula.reports.commands.telling import text_of
+from alula.reports.figures.four_bar import joints_at
 from alula.reports.renderers.record import as_brief_record
 from alula.reports.tools.synthesis import synthesis_section
 
