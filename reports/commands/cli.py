@@ -35,10 +35,7 @@ app = typer.Typer(
 )
 AccuracyOption = Annotated[
     str | None,
-    typer.Option(
-        help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.',
-        show_default=False,
-    ),
+    typer.Option(help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.'),
 ]
 UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest number of unknowns of a refined mesh.")]
 TimeOption = Annotated[float, typer.Option(min=0.0, help="Time after which no finer mesh is started [s].")]
@@ -185,11 +182,7 @@ def envelope(
     overrides: SetOption = None,
     repetitions: Annotated[
         float | None,
-        typer.Option(
-            min=1.0,
-            help="Repetitions of the motion for fatigue; default: the cycles of the material card.",
-            show_default=False,
-        ),
+        typer.Option(min=1.0, help="Repetitions of the motion for fatigue; default: the cycles of the material card."),
     ] = None,
     growth: Annotated[
         float,
@@ -225,8 +218,7 @@ def claims(
     case: Annotated[
         str | None,
         typer.Argument(
-            help="Path to a case file, or the name of a built-in case or source document; default: all sources.",
-            show_default=False,
+            help="Path to a case file, or the name of a built-in case or source document; default: all sources."
         ),
     ] = None,
     strict: Annotated[
@@ -277,7 +269,7 @@ def synth(
             '"0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg".',
         ),
     ] = None,
-    ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
+    ground: Annotated[str, typer.Option(help="Length d of the ground link.")] = "10 m",
     output: Annotated[
         Path | None,
         folder_option("Folder; result.json and the drawing go to its subfolder synth."),
@@ -312,15 +304,10 @@ app.add_typer(tolerance)
 
 @app.command()
 def inspect(
-    file: Annotated[
-        Path,
-        typer.Argument(help="A STEP file, or a mesh (.msh, .inp, .vtu), of one solid.", show_default=False),
-    ],
-    material: Annotated[
-        str | None, typer.Option("--material", help="Material of the library, for the mass.", show_default=False)
-    ] = None,
+    file: Annotated[Path, typer.Argument(help="A STEP file, or a mesh (.msh, .inp, .vtu), of one solid.")],
+    material: Annotated[str | None, typer.Option(help="Material of the library, for the mass.")] = None,
     unit: Annotated[
-        str | None, typer.Option("--unit", help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
+        str | None, typer.Option(help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
     ] = None,
     output: Annotated[
         Path | None,

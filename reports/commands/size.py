@@ -40,17 +40,14 @@ def size(
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            "--vary",
-            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.',
-            show_default=False,
+            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.'
         ),
     ] = None,
     choose: Annotated[
         list[str] | None,
         typer.Option(
-            "--choose",
             help="An entry and its values, or a part and those of the case that may stand for it: "
-            "parts.tube=tube-4,tube-5.",
+            "parts.tube=tube-4,tube-5."
         ),
     ] = None,
     minimise: Annotated[
@@ -58,11 +55,11 @@ def size(
     ] = None,
     maximise: Annotated[str | None, typer.Option(help="What shall be greatest instead.")] = None,
     most: Annotated[
-        int, typer.Option("--most", min=1, help="Combinations of several entries that the model that decides solves.")
+        int, typer.Option(min=1, help="Combinations of several entries that the model that decides solves.")
     ] = 24,
     seed: Annotated[int, typer.Option(min=0, help="Of the search over several entries.")] = 0,
     step: Annotated[
-        str | None, typer.Option("--step", help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
+        str | None, typer.Option(help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
     ] = None,
     link: LinkOption = None,
     overrides: SetOption = None,

@@ -49,40 +49,25 @@ app = typer.Typer(
 
 @app.command(hidden=True)
 def run(
-    case: Annotated[
-        str,
-        typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).", show_default=False),
-    ],
+    case: Annotated[str, typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).")],
     output: Annotated[Path, folder_option("Folder for study.sqlite, on a local disk.")],
     vary: VaryOption = None,
     link: LinkOption = None,
-    points: Annotated[
-        str, typer.Option("--points", help="CSV file of points; entries in its first line.", show_default=False)
-    ] = "",
-    sample: Annotated[
-        str,
-        typer.Option("--sample", help="latin-hypercube or sobol, and how many: sobol:64.", show_default=False),
-    ] = "",
+    points: Annotated[str, typer.Option(help="CSV file of points; entries in its first line.")] = "",
+    sample: Annotated[str, typer.Option(help="latin-hypercube or sobol, and how many: sobol:64.")] = "",
     seed: Annotated[int, typer.Option(min=0, help="Of the sample.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override an entry of the case in all variants.")
     ] = None,
-    analysis: Annotated[
-        str | None, typer.Option(help="check (default), motion or envelope.", show_default=False)
-    ] = None,
-    fidelity: Annotated[
-        str | None, typer.Option(help="Model of a check: auto (default), beam or solid.", show_default=False)
-    ] = None,
+    analysis: Annotated[str | None, typer.Option(help="check (default), motion or envelope.")] = None,
+    fidelity: Annotated[str | None, typer.Option(help="Model of a check: auto (default), beam or solid.")] = None,
     accuracy: AccuracyOption = None,
     mass: Annotated[
         bool | None, typer.Option("--mass/--no-mass", help="Weigh the links; default: where solids are built.")
     ] = None,
     threads: VariantsOption = None,
     workers: WorkersOption = None,
-    scheduler: Annotated[
-        str,
-        typer.Option("--scheduler", help="Dask scheduler whose workers compute, tcp://host:8786.", show_default=False),
-    ] = "",
+    scheduler: Annotated[str, typer.Option(help="Dask scheduler whose workers compute, tcp://host:8786.")] = "",
     retry: Annotated[bool, typer.Option("--retry", help="Try crashed points again that had three attempts.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
     pictures: Annotated[
@@ -230,19 +215,19 @@ def _duration(seconds: float) -> str:
 
 @app.command()
 def show(
-    folder: Annotated[Path, typer.Argument(help="Folder of a study.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help="Folder of a study.")],
     csv_file: Annotated[
-        Path | None, typer.Option("--csv", help="Write all points and numbers to a CSV file.", show_default=False)
+        Path | None, typer.Option("--csv", help="Write all points and numbers to a CSV file.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print points as JSON.")] = False,
-    most: Annotated[int, typer.Option("--most", min=1, help="Rows of the table.")] = 40,
+    most: Annotated[int, typer.Option(min=1, help="Rows of the table.")] = 40,
     output: Annotated[
         Path | None,
         folder_option("Folder for study.html and pictures, in its subfolder study."),
     ] = None,
     numbers: Annotated[
         list[str] | None,
-        typer.Option("--number", help='Show numbers of this name as well, such as "drive torque".', show_default=False),
+        typer.Option("--number", help='Show numbers of this name as well, such as "drive torque".')
     ] = None,
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
