@@ -7,17 +7,10 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
 from alula.reports.commands.materials import app as materials
-from alula.reports.commands.options import (
-    CaseArgument,
-    JsonOption,
-    MemoryOption,
-    SetOption,
-    ThreadsOption,
-    folder_option,
-)
 from alula.reports.commands.size import app as size
 from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
@@ -65,17 +58,17 @@ def _options(
 
 @app.command()
 def check(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
-        Path | None, folder_option("Folder for report.html, result.json, pictures and VTU files.")
+        Path | None, options.folder_option("Folder for report.html, result.json, pictures and VTU files.")
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     fidelity: Annotated[
         str, typer.Option(help="Model that decides: auto (the cheapest that can), beam (also called frame) or solid.")
     ] = "auto",
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
     accuracy: AccuracyOption = None,
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
@@ -129,10 +122,10 @@ def check(
 
 @app.command()
 def statics(
-    case: CaseArgument,
+    case: options.CaseArgument,
     matrix: Annotated[bool, typer.Option("--matrix", help="Print [A] and [b] with named rows and columns.")] = False,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
 ) -> None:
     """Solve pose and joint forces only."""
     from alula.fea.frame.case_statics import solve_case_statics
@@ -147,14 +140,14 @@ def statics(
 
 @app.command()
 def motion(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; tables, figures and the animation go to its subfolder motion."),
+        options.folder_option("Folder; tables, figures and the animation go to its subfolder motion."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
-    threads: ThreadsOption = 2,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
+    threads: options.ThreadsOption = 2,
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
     from alula.fea.common.verdict import Verdict
@@ -173,13 +166,13 @@ def motion(
 
 @app.command()
 def envelope(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."),
+        options.folder_option("Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     repetitions: Annotated[
         float | None,
         typer.Option(min=1.0, help="Repetitions of the motion for fatigue; default: the cycles of the material card."),
@@ -188,8 +181,8 @@ def envelope(
         float,
         typer.Option(min=1.0, help="Growth of the drive torque towards a dead point above which poses are left out."),
     ] = 20.0,
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
     accuracy: AccuracyOption = None,
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
@@ -224,12 +217,12 @@ def claims(
     strict: Annotated[
         bool, typer.Option("--strict", help="End with exit status 1 if a claim does not hold or does not follow.")
     ] = False,
-    json: JsonOption = False,
+    json: options.JsonOption = False,
     markdown: Annotated[bool, typer.Option("--markdown", help="Print a page of Markdown.")] = False,
-    overrides: SetOption = None,
+    overrides: options.SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model for claims on stress: solid or beam.")] = "solid",
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
 ) -> None:
     """Re-derive published figures and report which of them hold."""
     from alula.fea.claims.sources import check_all, check_claims
@@ -272,9 +265,9 @@ def synth(
     ground: Annotated[str, typer.Option(help="Length d of the ground link.")] = "10 m",
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json and the drawing go to its subfolder synth."),
+        options.folder_option("Folder; result.json and the drawing go to its subfolder synth."),
     ] = None,
-    json: JsonOption = False,
+    json: options.JsonOption = False,
 ) -> None:
     """Synthesise a four-bar through three precision points, and report its defects."""
     from alula.reports.commands.synthesis import PUBLISHED_POINTS, read_synthesis
@@ -311,9 +304,9 @@ def inspect(
     ] = None,
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json, parts.toml and part.png go to its subfolder inspect."),
+        options.folder_option("Folder; result.json, parts.toml and part.png go to its subfolder inspect."),
     ] = None,
-    json: JsonOption = False,
+    json: options.JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
     from alula.reports.commands.inspect_part import inspect_file, tell_inspection
@@ -328,10 +321,10 @@ def inspect(
 
 @app.command()
 def export(
-    case: CaseArgument,
+    case: options.CaseArgument,
     step: Annotated[bool, typer.Option("--step", help="Write the parts as STEP files (mm).")] = False,
-    output: Annotated[Path, folder_option("Folder for the files.")] = Path("parts"),
-    overrides: SetOption = None,
+    output: Annotated[Path, options.folder_option("Folder for the files.")] = Path("parts"),
+    overrides: options.SetOption = None,
 ) -> None:
     """Write the parts of a case to CAD files."""
     from alula.geometry.base.errors import CaseError

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress
-from alula.reports.commands.options import CaseArgument, JsonOption, SetOption, ThreadsOption, folder_option
 from alula.reports.commands.telling import begun, tell, write
 
 UNITS = {"angle": "deg", "length": "mm", "frequency": "Hz"}
@@ -17,17 +17,17 @@ app = typer.Typer()
 
 @app.command()
 def frequencies(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; page, tables, result.json and pictures go to its subfolder frequencies."),
+        options.folder_option("Folder; page, tables, result.json and pictures go to its subfolder frequencies."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     poses: Annotated[int, typer.Option(min=2, max=1000, help="Poses over the motion, ends included.")] = 25,
     count: Annotated[int, typer.Option(min=1, max=20, help="Natural frequencies of every pose and link.")] = 4,
     solid: Annotated[bool, typer.Option("--solid", help="Links by themselves as solids in place of beams.")] = False,
-    threads: ThreadsOption = 2,
+    threads: options.ThreadsOption = 2,
 ) -> None:
     """Natural frequencies over the motion and of each link, and the harmonics of the drive that meet them."""
     from alula.fea.common.at_temperature import require_stiffness

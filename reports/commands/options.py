@@ -1,5 +1,6 @@
 """Options that several commands have in common."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -86,3 +87,36 @@ def at_a_time(threads: int | None, workers: int | None) -> int | None:
         raise CaseError("--workers: it is the old name of --threads, which is given too; leave --workers out")
     progress("Warning: --workers is called --threads now; the old name goes with the next version.")
     return workers
+
+
+def stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
+    """Read options of the form ``entry=text``.
+
+    Parameters
+    ----------
+    options : sequence of str or None
+    name : str
+        Of the option, for messages.
+
+    Returns
+    -------
+    dict of str to str
+
+    Raises
+    ------
+    CaseError
+        For text of another form, and an entry that is stated twice.
+    """
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.text.explain import printable
+
+    found: dict[str, str] = {}
+    for option in options or ():
+        path, sign, text = option.partition("=")
+        path, text = path.strip(), text.strip().strip('"')
+        if not (sign and path and text):
+            raise CaseError(f"{name} '{printable(option)}': write it as entry=..., for example parts.bar.thickness=...")
+        if path in found:
+            raise CaseError(f"{name} '{printable(path)}': the entry is stated twice; state it once")
+        found[path] = text
+    return found

@@ -7,17 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress
-from alula.reports.commands.options import (
-    AccuracyOption,
-    CaseArgument,
-    JsonOption,
-    MemoryOption,
-    SetOption,
-    ThreadsOption,
-    folder_option,
-)
-from alula.reports.commands.study import stated
 from alula.reports.commands.telling import begun, tell, write
 
 if TYPE_CHECKING:
@@ -30,22 +21,22 @@ app = typer.Typer()
 
 @app.command()
 def tolerance(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json, samples.npz and pictures go to its subfolder tolerance."),
+        options.folder_option("Folder; result.json, samples.npz and pictures go to its subfolder tolerance."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     tolerances: Annotated[
         list[str] | None,
         typer.Option("--tolerance", help='Besides those of the case: pins="0.2 mm", links.AE.points.E="0.1 mm".'),
     ] = None,
     samples: Annotated[int, typer.Option(min=100, max=10_000_000, help="Independent samples.")] = 100_000,
     seed: Annotated[int, typer.Option(min=0, help="Of the samples.")] = 0,
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
-    accuracy: AccuracyOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
+    accuracy: options.AccuracyOption = None,
 ) -> None:
     """Sample the tolerances of a case: how likely every check passes, and which tolerance matters."""
     from alula.fea.check.run import effort_of
@@ -54,7 +45,7 @@ def tolerance(
     from alula.reports.study.tolerance import tolerance_sections
 
     with begun("tolerance", case, overrides, output, threads=threads, memory=memory) as parsed:
-        tolerant = with_tolerances(parsed, stated(tolerances, "--tolerance"))
+        tolerant = with_tolerances(parsed, options.stated(tolerances, "--tolerance"))
         effort = effort_of(tolerant, accuracy)
         result = tolerance_case(
             tolerant, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=progress
