@@ -51,12 +51,14 @@ def not_checked(found: Iterable[Caveat]) -> list[str]:
     return [caveat(one) for one in found if one.heading is Heading.NOT_CHECKED]
 
 
-def by_heading(found: Iterable[Caveat]) -> tuple[tuple[str, str], ...]:
+def by_heading(found: Iterable[Caveat], *, short: bool = False) -> tuple[tuple[str, str], ...]:
     """Return caveats in words under their headings, with the lines to paste.
 
     Parameters
     ----------
     found : iterable of Caveat
+    short : bool, optional
+        As for ``caveat``.
 
     Returns
     -------
@@ -65,5 +67,5 @@ def by_heading(found: Iterable[Caveat]) -> tuple[tuple[str, str], ...]:
     """
     headings: dict[Heading, list[str]] = {}
     for one in found:
-        headings.setdefault(one.heading, []).append(caveat(one))
+        headings.setdefault(one.heading, []).append(caveat(one, short=short))
     return tuple((heading.capitalize(), f"{'; '.join(texts)}.") for heading, texts in headings.items())
