@@ -1,8 +1,8 @@
 """How a reason becomes a sentence.
 
 A sentence is a text with places such as ``{share:percent}`` in one of the TOML files of this folder, by the kind of its
-reason, or a function of ``arranged`` where its words are put together from lists of numbers. ``places`` says how facts
-are written in their places. Reasons among the facts are told first.
+reason, or a function of ``arranged`` where a text with places would not do. ``places`` says how facts are written in
+their places. Reasons among the facts are told first.
 """
 
 import tomllib
