@@ -118,12 +118,13 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[Reason | str, ...]:
     if any(pin.slot > 0.0 for pin in body.pins):
         said.append(reason("pin_on_slot_flank"))
     said += [told for told in (body.part.by_hand, cut_remark(body)) if told]
-    open_ones = tuple((pin.name, body.ring(pin).share) for pin in body.pins if body.ring(pin).share < 1.0)
-    if open_ones:
-        said.append(reason("open_bores", bores=open_ones))
-    off = [pin for pin in body.pins if body.ring(pin).off_plane]
-    if off:
-        said.append(reason("bores_off_plane", bores=tuple((pin.name, body.ring(pin).middle) for pin in off)))
+    rings = {pin.name: body.ring(pin) for pin in body.pins}
+    shares = [reason("share_of_bore", pin=pin, share=ring.share) for pin, ring in rings.items() if ring.share < 1.0]
+    if shares:
+        said.append(reason("open_bores", shares=shares))
+    middles = [reason("middle_of_bore", pin=pin, z=ring.middle) for pin, ring in rings.items() if ring.off_plane]
+    if middles:
+        said.append(reason("bores_off_plane", middles=middles))
     return tuple(said)
 
 

@@ -162,11 +162,11 @@ def friction_source(ranges: Mapping[str, tuple[float, float]]) -> Source:
     -------
     Source
     """
-    alike = tuple(
-        (low, high, tuple(name for name, one in ranges.items() if one == (low, high)))
-        for low, high in dict.fromkeys(ranges.values())
-    )
-    return Source(kind=SourceKind.FRICTION, detail=reason("friction_at_joints", ranges=alike))
+    alike: dict[tuple[float, float], list[str]] = {}
+    for name, ends in ranges.items():
+        alike.setdefault(ends, []).append(name)
+    said = [reason("friction_range", low=low, high=high, joints=joints) for (low, high), joints in alike.items()]
+    return Source(kind=SourceKind.FRICTION, detail=reason("friction_at_joints", ranges=said))
 
 
 def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:

@@ -170,8 +170,6 @@ def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
     ndarray of int
         Their numbers, rising; of points in more than ``MOST_DIRECTIONS`` directions, and where no hull is found, all.
     """
-    from scipy.spatial import ConvexHull, QhullError
-
     place, extent, _ = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
     place = place[:, extent > FLAT * extent[0]]  # the hull has the same corners however it is stretched
     count, directions = place.shape
@@ -181,6 +179,8 @@ def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.unique([place.argmin(), place.argmax()])
     if directions > MOST_DIRECTIONS or count <= directions + 1:
         return np.arange(count)
+    from scipy.spatial import ConvexHull, QhullError
+
     try:
         return np.sort(ConvexHull(place).vertices).astype(np.int64)
     except QhullError:  # points that are corners but for rounding

@@ -46,4 +46,5 @@ class LayerStress:
     def peak(self) -> Reason:
         """Where the peak is and what acts there."""
         place = tuple(map(float, self.location))
-        return reason("peak_of_layers", place=place, tension=self.tension, shear=self.shear)
+        across, pulled = abs(self.tension), self.tension >= 0.0
+        return reason("peak_of_layers", place=place, across=across, pulled=pulled, shear=self.shear)

@@ -60,7 +60,7 @@ class Shares:
         """Which model gives the displacement."""
         if self.framed is not None:
             return reason("frame_of_solids")
-        return reason("solids_and_beams", solids=tuple(self.solids), beams=self.beams)
+        return reason("solids_and_beams", solids=tuple(self.solids), beams=self.beams if self.solids else ())
 
     @property
     def sources(self) -> tuple[Source, ...]:

@@ -79,7 +79,7 @@ def undecided_buckling(load_case: str, link: str, why: Reason | str) -> CheckOut
 def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> CheckOutcome:
     said = reason(
         "solid_buckles",
-        factor=found.value,
+        factor=found.value if math.isfinite(found.value) else None,
         most=MOST,
         held=found.holding,
         least=found.least if found.least < found.value else None,

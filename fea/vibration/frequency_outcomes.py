@@ -189,6 +189,7 @@ def lowest_frequency(case: Case, history: FrequencyHistory) -> Reason:
         in_plane=mode.in_plane,
         link=most_moved(history.lowest, mode),
         driving=history.driving,
+        ratio=frequency.times(1.0 / history.driving) if history.driving > 0.0 else None,
     )
 
 

@@ -124,8 +124,6 @@ class Raised:
         """
         if link not in self.frame.stations:
             return np.zeros(len(places))
-        from scipy.interpolate import CubicHermiteSpline
-
         pose, stations = self.frame.pose, self.frame.stations[link]
         x, y = ((places - pose.origins[link]) @ pose.rotation(link)).T
         at, nodes = np.array([station[0] for station in stations]), [node for _, node in stations]
@@ -135,9 +133,21 @@ class Raised:
         twist, tilt = (moved[:, 3:5] @ pose.rotation(link)).T
         inside = np.clip(x, at[0], at[-1])
         along = np.interp(inside, at, -tilt)
-        return np.asarray(
-            CubicHermiteSpline(at, axis, -tilt)(inside) + (x - inside) * along + np.interp(x, at, twist) * y
-        )
+        return np.asarray(_cubic(inside, at, axis, -tilt) + (x - inside) * along + np.interp(x, at, twist) * y)
+
+
+def _cubic(x: Real, at: Real, values: Real, slopes: Real) -> Real:
+    """Return the cubics between stations that have their values and slopes, as ``CubicHermiteSpline`` of SciPy does.
+
+    Its module takes longer to import than a frame to solve.
+    """
+    i = np.clip(np.searchsorted(at, x, side="right") - 1, 0, len(at) - 2)
+    sizes = np.diff(at)
+    rises = np.diff(values) / sizes
+    third = (slopes[:-1] + slopes[1:] - 2.0 * rises) / sizes
+    second, third = (rises - slopes[:-1]) / sizes - third, third / sizes
+    s = x - at[i]
+    return np.asarray(values[i] + slopes[i] * s + second[i] * (s * s) + third[i] * (s * s * s))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -58,7 +58,7 @@ def mass_reason(found: Weighed, others: float | None = None) -> Reason:
     kinds = (("parts", total.part), ("pins", total.pins), ("carried", total.carried))
     return reason(
         "made_up_of",
-        masses=tuple((kind, GRAMS * mass) for kind, mass in kinds if mass > 0.0),
+        masses=[reason("mass_of_kind", kind=kind, mass=GRAMS * mass) for kind, mass in kinds if mass > 0.0],
         others=None if others is None else GRAMS * others,
         not_counted=tuple(found.not_counted),
     )

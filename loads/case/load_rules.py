@@ -245,7 +245,7 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
         why = reason("no_own_weight", load_cases=light, first=light[0])
         yield Caveat(topic=Topic.WEIGHT, what=reason("weight_of_carried"), why=why)
     if case.carried and not any(one.carried for one in case.load_cases.values()):
-        yield Caveat(topic=Topic.WEIGHT, what=reason("what_links_carry"), why=reason("carried_is_false"))
+        yield Caveat(topic=Topic.WEIGHT, what=reason("what_links_carry", links=()), why=reason("carried_is_false"))
     pinned = {(link, case.linkage.point_of(name, link)) for name, joint in case.joints.items() for link in joint.links}
     on_pins = dict.fromkeys(
         f"{force.at} of {force.link}"

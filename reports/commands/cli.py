@@ -1,30 +1,21 @@
 """The command ``alula``. Heavy libraries are imported by the command that needs them."""
 
-from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
 from alula.reports.commands.materials import app as materials
-from alula.reports.commands.options import (
-    CaseArgument,
-    JsonOption,
-    MemoryOption,
-    SetOption,
-    ThreadsOption,
-    folder_option,
-)
 from alula.reports.commands.size import app as size
 from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
+from alula.reports.commands.telling import begun, tell, write
 from alula.reports.commands.tolerance import app as tolerance
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 app = typer.Typer(
     name="alula",
@@ -37,10 +28,7 @@ app = typer.Typer(
 )
 AccuracyOption = Annotated[
     str | None,
-    typer.Option(
-        help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.',
-        show_default=False,
-    ),
+    typer.Option(help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.'),
 ]
 UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest number of unknowns of a refined mesh.")]
 TimeOption = Annotated[float, typer.Option(min=0.0, help="Time after which no finer mesh is started [s].")]
@@ -70,17 +58,17 @@ def _options(
 
 @app.command()
 def check(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
-        Path | None, folder_option("Folder for report.html, result.json, pictures and VTU files.")
+        Path | None, options.folder_option("Folder for report.html, result.json, pictures and VTU files.")
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     fidelity: Annotated[
         str, typer.Option(help="Model that decides: auto (the cheapest that can), beam (also called frame) or solid.")
     ] = "auto",
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
     accuracy: AccuracyOption = None,
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
@@ -99,21 +87,17 @@ def check(
     """Check a case: pose, joint forces, stress, verdict."""
     from alula.fea.check.run import check_case, effort_of
     from alula.fea.findings.of_check import with_findings
-    from alula.loads.case.case_file import read_case
     from alula.reports.check.folder import report_names
     from alula.reports.check.screen import print_result, print_screen
-    from alula.reports.check.whole_check import check_json, check_sections
-    from alula.reports.page.output import refuse_unusable
-    from alula.reports.words.limits import limited
+    from alula.reports.check.whole_check import check_record, check_sections
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
-    with limited(threads, memory), ExitStack() as scratch:
-        parsed = read_case(case, overrides or ())
-        refuse_unusable(output, "check", report_names(parsed))
+    beginning = begun("check", case, overrides, output, threads=threads, memory=memory, names=report_names)
+    with beginning as parsed, ExitStack() as scratch:
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
-        tell = progress if output is None or threads == 1 else _solving
-        result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=tell)
+        told = progress if output is None or threads == 1 else _solving
+        result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=told)
         decks = None
         if second_opinion:
             from alula.fea.calculix.second_opinion import second_opinions
@@ -124,67 +108,56 @@ def check(
             result = with_second_opinions(result, second_opinions(result, decks, threads=threads, progress=progress))
         result = with_findings(result)
         sections = check_sections(result)
-        if json:
-            print(check_json(result, sections), flush=True)
-        else:
-            from rich.console import Console
-
-            (print_result if verbose else print_screen)(result, sections, Console())
+        show = partial(print_result if verbose else print_screen, result)
+        tell(sections, json=json, record=partial(check_record, result, sections), show=show)
         if output is not None:
             from alula.fea.claims.sources import claims_of
             from alula.reports.check.folder import write_report
 
             write_report(result, output, claims=claims_of(result), decks=decks, progress=progress)
-            _tell(f"Report: {output / 'report.html'}", json)
+            if not json:
+                print(f"Report: {output / 'report.html'}")
     raise SystemExit(result.verdict.exit_status)
 
 
 @app.command()
 def statics(
-    case: CaseArgument,
+    case: options.CaseArgument,
     matrix: Annotated[bool, typer.Option("--matrix", help="Print [A] and [b] with named rows and columns.")] = False,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
 ) -> None:
     """Solve pose and joint forces only."""
     from alula.fea.frame.case_statics import solve_case_statics
     from alula.loads.case.case_file import read_case
-    from alula.reports.commands.statics import print_statics
+    from alula.reports.commands.statics import UNITS, statics_sections
+    from alula.reports.renderers.record import as_brief_record
 
-    parsed = read_case(case, overrides or ())
-    print_statics(solve_case_statics(parsed, case), matrix=matrix, json=json)
+    solved = solve_case_statics(read_case(case, overrides or ()), case)
+    sections = statics_sections(solved, matrix=matrix)
+    tell(sections, json=json, record=partial(as_brief_record, sections, units=UNITS))
 
 
 @app.command()
 def motion(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; tables, figures and the animation go to its subfolder motion."),
+        options.folder_option("Folder; tables, figures and the animation go to its subfolder motion."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
-    threads: ThreadsOption = 2,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
+    threads: options.ThreadsOption = 2,
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
     from alula.fea.common.verdict import Verdict
     from alula.fea.findings.of_motion import motion_findings
     from alula.fea.whole.rubbed_motion import rubbed_motion
-    from alula.loads.case.case_file import read_case
-    from alula.reports.commands.motion import print_motion, write_motion
-    from alula.reports.page.output import refuse_unusable, write_folder
-    from alula.reports.words.limits import limited
+    from alula.reports.commands.motion import tell_motion
 
-    with limited(threads):
-        parsed = read_case(case, overrides or ())
-        refuse_unusable(output, "motion")
+    with begun("motion", case, overrides, output, threads=threads) as parsed:
         result = rubbed_motion(parsed)
-        found = motion_findings(result)
-        print_motion(found, case, json=json)
-        if output is not None:
-            progress("Drawing figures and the animation ...")
-            write_folder(output, "motion", lambda folder: write_motion(found, folder, case))
-            _tell(f"\nTables and figures: {output / 'motion'}", json)
+        tell_motion(motion_findings(result), case, output, json=json)
     for sentence in result.locks:
         progress(f"Warning: {sentence}.")
     if result.locks:
@@ -193,27 +166,23 @@ def motion(
 
 @app.command()
 def envelope(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."),
+        options.folder_option("Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     repetitions: Annotated[
         float | None,
-        typer.Option(
-            min=1.0,
-            help="Repetitions of the motion for fatigue; default: the cycles of the material card.",
-            show_default=False,
-        ),
+        typer.Option(min=1.0, help="Repetitions of the motion for fatigue; default: the cycles of the material card."),
     ] = None,
     growth: Annotated[
         float,
         typer.Option(min=1.0, help="Growth of the drive torque towards a dead point above which poses are left out."),
     ] = 20.0,
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
     accuracy: AccuracyOption = None,
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
@@ -221,14 +190,9 @@ def envelope(
     """Check every link over the whole motion: least safety factor and fatigue."""
     from alula.fea.check.run import effort_of
     from alula.fea.motion.envelope import envelope_case
-    from alula.loads.case.case_file import read_case
-    from alula.reports.commands.envelope import as_json, print_envelope, write_envelope
-    from alula.reports.page.output import refuse_unusable
-    from alula.reports.words.limits import limited
+    from alula.reports.commands.envelope import tell_envelope
 
-    with limited(threads, memory):
-        parsed = read_case(case, overrides or ())
-        refuse_unusable(output, "envelope")
+    with begun("envelope", case, overrides, output, threads=threads, memory=memory) as parsed:
         result = envelope_case(
             parsed,
             name=case,
@@ -238,10 +202,7 @@ def envelope(
             effort=effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit),
             progress=progress,
         )
-        _show(result, as_json if json else None, print_envelope)
-        if output is not None:
-            write_envelope(result, output, progress=progress)
-            _tell(f"Curves, pictures and fields: {output / 'envelope'}", json)
+        tell_envelope(result, output, json=json)
     raise SystemExit(result.verdict.exit_status)
 
 
@@ -250,26 +211,24 @@ def claims(
     case: Annotated[
         str | None,
         typer.Argument(
-            help="Path to a case file, or the name of a built-in case or source document; default: all sources.",
-            show_default=False,
+            help="Path to a case file, or the name of a built-in case or source document; default: all sources."
         ),
     ] = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="End with exit status 1 if a claim does not hold or does not follow.")
     ] = False,
-    json: JsonOption = False,
+    json: options.JsonOption = False,
     markdown: Annotated[bool, typer.Option("--markdown", help="Print a page of Markdown.")] = False,
-    overrides: SetOption = None,
+    overrides: options.SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model for claims on stress: solid or beam.")] = "solid",
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
 ) -> None:
     """Re-derive published figures and report which of them hold."""
     from alula.fea.claims.sources import check_all, check_claims
     from alula.geometry.base.errors import CaseError
     from alula.loads.sources.claim import read_source, sources
     from alula.reports.check.published import as_json, as_markdown
-    from alula.reports.commands.telling import tell
     from alula.reports.sections.published import claims_section, count
     from alula.reports.words.limits import limited
 
@@ -303,25 +262,29 @@ def synth(
             '"0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg".',
         ),
     ] = None,
-    ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
+    ground: Annotated[str, typer.Option(help="Length d of the ground link.")] = "10 m",
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json and the drawing go to its subfolder synth."),
+        options.folder_option("Folder; result.json and the drawing go to its subfolder synth."),
     ] = None,
-    json: JsonOption = False,
+    json: options.JsonOption = False,
 ) -> None:
     """Synthesise a four-bar through three precision points, and report its defects."""
-    from alula.reports.commands.synthesis import PUBLISHED_POINTS, read_synthesis, write_synthesis
-    from alula.reports.commands.telling import tell
-    from alula.reports.page.output import refuse_unusable, write_folder
+    from alula.reports.commands.synthesis import PUBLISHED_POINTS, read_synthesis
+    from alula.reports.figures.four_bar import precision_points_png
+    from alula.reports.page.output import refuse_unusable
+    from alula.reports.renderers.record import as_brief_record
     from alula.reports.tools.synthesis import synthesis_section
 
     refuse_unusable(output, "synth")
     found = read_synthesis(points or PUBLISHED_POINTS, ground)
-    tell([synthesis_section(found)], json=json)
-    if output is not None:
-        write_folder(output, "synth", lambda folder: write_synthesis(found, folder))
-        _tell(f"\nRecord and drawing: {output / 'synth'}", json)
+    sections = [synthesis_section(found)]
+    tell(sections, json=json)
+
+    def fill(folder: Path) -> None:
+        (folder / "linkage.png").write_bytes(precision_points_png(found))
+
+    write("synth", output, partial(as_brief_record, sections), fill, what="\nRecord and drawing", json=json)
 
 
 app.add_typer(starters)
@@ -334,44 +297,34 @@ app.add_typer(tolerance)
 
 @app.command()
 def inspect(
-    file: Annotated[
-        Path,
-        typer.Argument(help="A STEP file, or a mesh (.msh, .inp, .vtu), of one solid.", show_default=False),
-    ],
-    material: Annotated[
-        str | None, typer.Option("--material", help="Material of the library, for the mass.", show_default=False)
-    ] = None,
+    file: Annotated[Path, typer.Argument(help="A STEP file, or a mesh (.msh, .inp, .vtu), of one solid.")],
+    material: Annotated[str | None, typer.Option(help="Material of the library, for the mass.")] = None,
     unit: Annotated[
-        str | None, typer.Option("--unit", help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
+        str | None, typer.Option(help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
     ] = None,
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json, parts.toml and part.png go to its subfolder inspect."),
+        options.folder_option("Folder; result.json, parts.toml and part.png go to its subfolder inspect."),
     ] = None,
-    json: JsonOption = False,
+    json: options.JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from alula.reports.commands.inspect_part import inspect_file, print_inspection, write_inspection
+    from alula.reports.commands.inspect_part import inspect_file, tell_inspection
     from alula.reports.figures.figures import start_renderer
-    from alula.reports.page.output import refuse_unusable, write_folder
+    from alula.reports.page.output import refuse_unusable
 
     refuse_unusable(output, "inspect")
     if output is not None:
         start_renderer()
-    found = inspect_file(file, material, unit)
-    print_inspection(found, json=json)
-    if output is not None:
-        progress("Drawing the part ...")
-        write_folder(output, "inspect", lambda folder: write_inspection(found, folder, progress))
-        _tell(f"\nEntries, record and picture: {output / 'inspect'}", json)
+    tell_inspection(inspect_file(file, material, unit), output, json=json)
 
 
 @app.command()
 def export(
-    case: CaseArgument,
+    case: options.CaseArgument,
     step: Annotated[bool, typer.Option("--step", help="Write the parts as STEP files (mm).")] = False,
-    output: Annotated[Path, folder_option("Folder for the files.")] = Path("parts"),
-    overrides: SetOption = None,
+    output: Annotated[Path, options.folder_option("Folder for the files.")] = Path("parts"),
+    overrides: options.SetOption = None,
 ) -> None:
     """Write the parts of a case to CAD files."""
     from alula.geometry.base.errors import CaseError
@@ -387,22 +340,6 @@ def export(
     write_folder(output, EXPORT, lambda folder: export_step(bodies, folder))
     for name in step_names(bodies):
         print(output / name)
-
-
-def _show(result: Any, as_json: Callable[[Any], str] | None, show: Callable[[Any, "Console"], None]) -> None:
-    """Print a result before its folder is written, so that a full disk does not hide the verdict."""
-    if as_json is not None:
-        print(as_json(result), flush=True)
-    else:
-        from rich.console import Console
-
-        show(result, Console())
-
-
-def _tell(written: str, json: bool) -> None:
-    """Say where the folder is, unless standard output is JSON."""
-    if not json:
-        print(written)
 
 
 def _solving(message: str) -> None:

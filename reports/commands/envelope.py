@@ -1,50 +1,55 @@
 """Output of ``alula envelope``: its files and what it prints."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from rich.console import Console
 
 from alula.fea.motion.envelope_result import EnvelopeResult
+from alula.reports.commands.ending import progress
+from alula.reports.commands.telling import tell, write
 from alula.reports.motion.envelope import envelope_headline, envelope_page, envelope_record, envelope_sections
-from alula.reports.page.output import MARK, write_folder
 from alula.reports.renderers.console import print_sections, verdict_line
 from alula.reports.renderers.folder import write_sections
-from alula.reports.renderers.record import as_json as record_json
+from alula.reports.sections.section import Section
 from alula.reports.words.terminal import say
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 ENVELOPE = "envelope.html"
 
 
-def write_envelope(
-    result: EnvelopeResult, target: Path, *, progress: Callable[[str], None] = lambda message: None
-) -> None:
-    """Write ``envelope.html``, ``result.json``, ``envelope.csv`` and ``envelope.png``, VTU files and stress plots.
+def tell_envelope(result: EnvelopeResult, output: Path | None = None, *, json: bool = False) -> None:
+    """Print an envelope, and write ``envelope.html``, ``result.json``, curves, VTU files and stress plots.
 
     VTU file and picture show the worst pose under the worst load case.
 
     Parameters
     ----------
     result : EnvelopeResult
-    target : Path
+    output : Path, optional
         The output folder; the files go to its subfolder ``envelope``.
-    progress : callable, optional
-        Receives messages.
+    json : bool, optional
+        True to print JSON.
 
     Raises
     ------
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from alula.reports.figures.motion.envelope_figures import stress_pictures
-    from alula.reports.page.export import write_vtu
-    from alula.reports.turnable.moving import LINKAGE, envelope_linkage
-    from alula.reports.turnable.pack import data_block
+    sections = envelope_sections(result)
+    record = partial(envelope_record, result, sections)
+
+    def show(sections: Sequence[Section], console: Console) -> None:
+        verdict_line(result.verdict, result.case.title, console)
+        say(console, envelope_headline(result))
+        print_sections(sections, console)
 
     def fill(folder: Path) -> None:
-        (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")
+        from alula.reports.figures.motion.envelope_figures import stress_pictures
+        from alula.reports.page.export import write_vtu
+        from alula.reports.turnable.moving import LINKAGE, envelope_linkage
+        from alula.reports.turnable.pack import data_block
+
         progress("Rendering the stress plots ...")
         plots, warnings = stress_pictures(result, result.links)
         for warning in warnings:
@@ -54,7 +59,7 @@ def write_envelope(
             (folder / "pictures" / f"stress-{name}.png").write_bytes(plot.png())
         progress("Drawing the envelope ...")
         write_sections(
-            envelope_page(result, envelope_sections(result)),
+            envelope_page(result, sections),
             folder,
             ENVELOPE,
             pictures={f"stress-{name}": plot for name, plot in plots.items()},
@@ -64,32 +69,5 @@ def write_envelope(
         for name, link in result.links.items():
             write_vtu(folder / "vtu" / f"{name}.vtu", link.displacement, link.field)
 
-    write_folder(target, "envelope", fill)
-
-
-def as_json(result: EnvelopeResult) -> str:
-    """Return the result as the text of ``result.json``.
-
-    Parameters
-    ----------
-    result : EnvelopeResult
-
-    Returns
-    -------
-    str
-    """
-    return record_json(envelope_record(result, envelope_sections(result)))
-
-
-def print_envelope(result: EnvelopeResult, console: "Console") -> None:
-    """Print the result of an envelope.
-
-    Parameters
-    ----------
-    result : EnvelopeResult
-    console : rich.console.Console
-        On a narrow one, lines break at spaces.
-    """
-    verdict_line(result.verdict, result.case.title, console)
-    say(console, envelope_headline(result))
-    print_sections(envelope_sections(result), console)
+    tell(sections, json=json, record=record, show=show)
+    write("envelope", output, record, fill, what="Curves, pictures and fields", json=json)

@@ -1,6 +1,6 @@
 """Output of ``alula inspect``: what is found in a STEP file or a mesh, and the entries of a case file for it."""
 
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from alula.geometry.base.errors import AlulaError, CaseError
@@ -9,10 +9,12 @@ from alula.geometry.imported.read import part_facts
 from alula.geometry.materials.material import library
 from alula.geometry.parts.mesh_part import UNITS
 from alula.loads.exchange.part import part_entries
-from alula.reports.commands.telling import json_of, tell
+from alula.reports.commands.ending import progress
+from alula.reports.commands.telling import tell, write
+from alula.reports.renderers.record import as_brief_record
 from alula.reports.tools.part import Inspection, part_section
 
-ENTRIES, PICTURE, RECORD = "parts.toml", "part.png", "result.json"
+ENTRIES, PICTURE = "parts.toml", "part.png"
 """Files that go to the output folder."""
 
 
@@ -52,41 +54,41 @@ def inspect_file(path: Path, material: str | None, unit: str | None = None) -> I
     return Inspection(path=path, facts=part_facts(path, UNITS[unit]), material=material, unit=unit)
 
 
-def print_inspection(found: Inspection, *, json: bool) -> None:
-    """Print what was found, and below it the entries of a case file, as they are copied.
+def tell_inspection(found: Inspection, output: Path | None = None, *, json: bool = False) -> None:
+    """Print what was found with the entries of a case file, as they are copied, and write both with a picture.
 
     Parameters
     ----------
     found : Inspection
-    json : bool
+    output : Path, optional
+        The output folder; the files go to its subfolder ``inspect``.
+    json : bool, optional
         True to print JSON.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
     """
-    tell([part_section(found)], json=json)
-    if (text := part_entries(found)) and not json:
+    sections, text = [part_section(found)], part_entries(found)
+
+    def fill(folder: Path) -> None:
+        from alula.reports.figures.part_picture import part_picture
+
+        progress("Drawing the part ...")
+        try:
+            picture, trouble = part_picture(found.facts, found.surface)
+        except AlulaError as error:
+            picture, trouble = None, str(error)
+        if picture is None:
+            progress(f"Warning: no picture: {trouble}")
+        else:
+            (folder / PICTURE).write_bytes(picture.png())
+        if text:
+            (folder / ENTRIES).write_text(text, encoding="utf-8")
+
+    tell(sections, json=json)
+    if text and not json:
         print(f"\nEntries of the case file\n\n{text}", end="", flush=True)
-
-
-def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], None] = lambda message: None) -> None:
-    """Write the record, the entries and the picture.
-
-    Parameters
-    ----------
-    found : Inspection
-    folder : Path
-        An existing folder.
-    progress : callable, optional
-        Receives a warning where the picture cannot be drawn.
-    """
-    from alula.reports.figures.part_picture import part_picture
-
-    try:
-        picture, trouble = part_picture(found.facts, found.surface)
-    except AlulaError as error:
-        picture, trouble = None, str(error)
-    if picture is None:
-        progress(f"Warning: no picture: {trouble}")
-    else:
-        (folder / PICTURE).write_bytes(picture.png())
-    if text := part_entries(found):
-        (folder / ENTRIES).write_text(text, encoding="utf-8")
-    (folder / RECORD).write_text(json_of([part_section(found)]) + "\n", encoding="utf-8")
+    record = partial(as_brief_record, sections)
+    write("inspect", output, record, fill, what="\nEntries, record and picture", json=json)

@@ -9,9 +9,7 @@ app = typer.Typer()
 
 @app.command()
 def materials(
-    name: Annotated[
-        str | None, typer.Argument(help="A card to show whole; default: list all.", show_default=False)
-    ] = None,
+    name: Annotated[str | None, typer.Argument(help="A card to show whole; default: list all.")] = None,
     card: Annotated[
         bool, typer.Option("--card", help="Print the named card as TOML, to paste into a case and edit.")
     ] = False,

@@ -1,13 +1,12 @@
 """Options that several commands have in common."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-CaseArgument = Annotated[
-    str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
-]
+CaseArgument = Annotated[str, typer.Argument(help="Path to a case file, or the name of a built-in case.")]
 SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
@@ -17,33 +16,24 @@ ThreadsOption = Annotated[int, typer.Option(min=1, max=256, help="Threads per li
 VariantsOption = Annotated[
     int | None,
     typer.Option(
-        "--threads",
-        min=1,
-        max=256,
-        help="Variants at a time, each computed by a process of one thread; default: one a core.",
-        show_default=False,
+        min=1, max=256, help="Variants at a time, each computed by a process of one thread; default: one a core."
     ),
 ]
-WorkersOption = Annotated[int | None, typer.Option("--workers", min=1, max=256, hidden=True)]
+WorkersOption = Annotated[int | None, typer.Option(min=1, max=256, hidden=True)]
 """What ``VariantsOption`` was called; it goes with the version after 0.1."""
 VaryOption = Annotated[
     list[str] | None,
     typer.Option(
-        "--vary",
-        help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".',
+        help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".'
     ),
 ]
 LinkOption = Annotated[
     list[str] | None,
-    typer.Option("--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'),
+    typer.Option(help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'),
 ]
-AccuracyOption = Annotated[
-    str | None,
-    typer.Option("--accuracy", help='Discretisation error of solids, such as "5 %".', show_default=False),
-]
+AccuracyOption = Annotated[str | None, typer.Option(help='Discretisation error of solids, such as "5 %".')]
 MemoryOption = Annotated[
-    str | None,
-    typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.', show_default=False),
+    str | None, typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.')
 ]
 
 
@@ -97,3 +87,36 @@ def at_a_time(threads: int | None, workers: int | None) -> int | None:
         raise CaseError("--workers: it is the old name of --threads, which is given too; leave --workers out")
     progress("Warning: --workers is called --threads now; the old name goes with the next version.")
     return workers
+
+
+def stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
+    """Read options of the form ``entry=text``.
+
+    Parameters
+    ----------
+    options : sequence of str or None
+    name : str
+        Of the option, for messages.
+
+    Returns
+    -------
+    dict of str to str
+
+    Raises
+    ------
+    CaseError
+        For text of another form, and an entry that is stated twice.
+    """
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.text.explain import printable
+
+    found: dict[str, str] = {}
+    for option in options or ():
+        path, sign, text = option.partition("=")
+        path, text = path.strip(), text.strip().strip('"')
+        if not (sign and path and text):
+            raise CaseError(f"{name} '{printable(option)}': write it as entry=..., for example parts.bar.thickness=...")
+        if path in found:
+            raise CaseError(f"{name} '{printable(path)}': the entry is stated twice; state it once")
+        found[path] = text
+    return found

@@ -8,19 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress
-from alula.reports.commands.options import (
-    AccuracyOption,
-    CaseArgument,
-    JsonOption,
-    LinkOption,
-    SetOption,
-    VariantsOption,
-    WorkersOption,
-    at_a_time,
-    folder_option,
-)
-from alula.reports.commands.study import stated
 from alula.reports.commands.telling import tell
 
 if TYPE_CHECKING:
@@ -36,21 +25,18 @@ STEPS = 100
 
 @app.command()
 def size(
-    case: CaseArgument,
+    case: options.CaseArgument,
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            "--vary",
-            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.',
-            show_default=False,
+            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.'
         ),
     ] = None,
     choose: Annotated[
         list[str] | None,
         typer.Option(
-            "--choose",
             help="An entry and its values, or a part and those of the case that may stand for it: "
-            "parts.tube=tube-4,tube-5.",
+            "parts.tube=tube-4,tube-5."
         ),
     ] = None,
     minimise: Annotated[
@@ -58,21 +44,21 @@ def size(
     ] = None,
     maximise: Annotated[str | None, typer.Option(help="What shall be greatest instead.")] = None,
     most: Annotated[
-        int, typer.Option("--most", min=1, help="Combinations of several entries that the model that decides solves.")
+        int, typer.Option(min=1, help="Combinations of several entries that the model that decides solves.")
     ] = 24,
     seed: Annotated[int, typer.Option(min=0, help="Of the search over several entries.")] = 0,
     step: Annotated[
-        str | None, typer.Option("--step", help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
+        str | None, typer.Option(help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
     ] = None,
-    link: LinkOption = None,
-    overrides: SetOption = None,
+    link: options.LinkOption = None,
+    overrides: options.SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model that decides: auto, beam or solid.")] = "auto",
-    accuracy: AccuracyOption = None,
+    accuracy: options.AccuracyOption = None,
     analysis: Annotated[str, typer.Option(help="check or envelope.")] = "check",
-    threads: VariantsOption = None,
-    workers: WorkersOption = None,
-    output: Annotated[Path | None, folder_option("Folder that keeps what was computed, as of a study.")] = None,
-    json: JsonOption = False,
+    threads: options.VariantsOption = None,
+    workers: options.WorkersOption = None,
+    output: Annotated[Path | None, options.folder_option("Folder that keeps what was computed, as of a study.")] = None,
+    json: options.JsonOption = False,
 ) -> None:
     """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
     from alula.loads.case.case_file import stated_changes
@@ -81,19 +67,19 @@ def size(
 
     found = find_size(
         StatedCase.read(case),
-        stated(vary, "--vary"),
-        stated(choose, "--choose"),
+        options.stated(vary, "--vary"),
+        options.stated(choose, "--choose"),
         step=step,
         minimise=minimise,
         maximise=maximise,
         most=most,
         seed=seed,
-        link=stated(link, "--link"),
+        link=options.stated(link, "--link"),
         values={change.path: change.value for change in stated_changes(overrides or ())},
         fidelity=fidelity,
         accuracy=accuracy,
         analysis=analysis,
-        workers=at_a_time(threads, workers),
+        workers=options.at_a_time(threads, workers),
         folder=output,
         tell=progress,
     )

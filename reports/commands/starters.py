@@ -17,11 +17,11 @@ app = typer.Typer()
 @app.command()
 def cases() -> None:
     """List the built-in cases."""
-    from alula.loads.case.case_file import built_in_cases, read_case
+    from alula.loads.case.case_file import built_in_cases, read_tables
 
     width = max(map(len, built_in_cases()))
     for name in built_in_cases():
-        print(f"{name:<{width}}  {read_case(name).title}")
+        print(f"{name:<{width}}  {read_tables(name)['title']}")  # to validate a case may take the CAD kernel
 
 
 @app.command()
@@ -40,7 +40,7 @@ def schema(
 
 @app.command()
 def new(
-    path: Annotated[Path | None, typer.Argument(help="The file to write.", show_default=False)] = None,
+    path: Annotated[Path | None, typer.Argument(help="The file to write.")] = None,
     start: Annotated[
         str | None,
         typer.Option("--from", metavar="NAME", help="The built-in case to start from.", show_default=STARTER),
@@ -64,7 +64,7 @@ def new(
     ] = None,
     unit: Annotated[
         Unit | None,
-        typer.Option("--unit", help="Unit of the lengths, which pylinkage and a mesh do not state.", show_default="mm"),
+        typer.Option(help="Unit of the lengths, which pylinkage and a mesh do not state.", show_default="mm"),
     ] = None,
 ) -> None:
     """Write a commented case to start from: a four-bar linkage, any built-in case, or one for a part from CAD."""

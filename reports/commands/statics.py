@@ -10,8 +10,6 @@ from alula.fea.frame.case_statics import CaseStatics, with_ends
 from alula.fea.frame.thrust import thrusts
 from alula.loads.statics.statics import Reactions
 from alula.loads.statics.system import System
-from alula.reports.renderers.console import print_sections
-from alula.reports.renderers.record import as_json, as_record
 from alula.reports.sections.data import data
 from alula.reports.sections.friction import friction_record
 from alula.reports.sections.play import play_parts, play_record
@@ -21,27 +19,6 @@ from alula.reports.sections.section import Cell, Column, Group, Number, Part, Se
 from alula.reports.sections.springs import standing_record
 
 UNITS = {"length": "mm", "force": "N", "moment": "N*mm", "angle": "deg"}
-
-
-def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
-    """Print pose and reactions of every load case.
-
-    Parameters
-    ----------
-    statics : CaseStatics
-    matrix : bool
-        True to print [A] and [b] as well.
-    json : bool
-        True to print JSON.
-    """
-    sections = statics_sections(statics, matrix=matrix)
-    if json:
-        record = as_record(sections, units=UNITS)
-        print(as_json({name: entry for name, entry in record.items() if name != "nulls"}))
-        return
-    from rich.console import Console
-
-    print_sections(sections, Console())
 
 
 def statics_sections(statics: CaseStatics, *, matrix: bool) -> tuple[Section, Section]:

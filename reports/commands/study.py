@@ -11,15 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 import typer.core
 
-from alula.reports.commands.options import (
-    AccuracyOption,
-    LinkOption,
-    VariantsOption,
-    VaryOption,
-    WorkersOption,
-    at_a_time,
-    folder_option,
-)
+from alula.reports.commands import options
+from alula.reports.commands.telling import tell
 
 if TYPE_CHECKING:
     from alula.fea.study.study import Progress
@@ -48,56 +41,48 @@ app = typer.Typer(
 
 @app.command(hidden=True)
 def run(
-    case: Annotated[
-        str,
-        typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).", show_default=False),
-    ],
-    output: Annotated[Path, folder_option("Folder for study.sqlite, on a local disk.")],
-    vary: VaryOption = None,
-    link: LinkOption = None,
-    points: Annotated[
-        str, typer.Option("--points", help="CSV file of points; entries in its first line.", show_default=False)
-    ] = "",
-    sample: Annotated[
-        str,
-        typer.Option("--sample", help="latin-hypercube or sobol, and how many: sobol:64.", show_default=False),
-    ] = "",
+    case: Annotated[str, typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).")],
+    output: Annotated[Path, options.folder_option("Folder for study.sqlite, on a local disk.")],
+    vary: options.VaryOption = None,
+    link: options.LinkOption = None,
+    points: Annotated[str, typer.Option(help="CSV file of points; entries in its first line.")] = "",
+    sample: Annotated[str, typer.Option(help="latin-hypercube or sobol, and how many: sobol:64.")] = "",
     seed: Annotated[int, typer.Option(min=0, help="Of the sample.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override an entry of the case in all variants.")
     ] = None,
-    analysis: Annotated[
-        str | None, typer.Option(help="check (default), motion or envelope.", show_default=False)
-    ] = None,
-    fidelity: Annotated[
-        str | None, typer.Option(help="Model of a check: auto (default), beam or solid.", show_default=False)
-    ] = None,
-    accuracy: AccuracyOption = None,
+    analysis: Annotated[str | None, typer.Option(help="check (default), motion or envelope.")] = None,
+    fidelity: Annotated[str | None, typer.Option(help="Model of a check: auto (default), beam or solid.")] = None,
+    accuracy: options.AccuracyOption = None,
     mass: Annotated[
         bool | None, typer.Option("--mass/--no-mass", help="Weigh the links; default: where solids are built.")
     ] = None,
-    threads: VariantsOption = None,
-    workers: WorkersOption = None,
-    scheduler: Annotated[
-        str,
-        typer.Option("--scheduler", help="Dask scheduler whose workers compute, tcp://host:8786.", show_default=False),
-    ] = "",
+    threads: options.VariantsOption = None,
+    workers: options.WorkersOption = None,
+    scheduler: Annotated[str, typer.Option(help="Dask scheduler whose workers compute, tcp://host:8786.")] = "",
     retry: Annotated[bool, typer.Option("--retry", help="Try crashed points again that had three attempts.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
     pictures: Annotated[
         Path | None,
-        folder_option("Folder for study.html and pictures, drawn at the end.", "--pictures"),
+        options.folder_option("Folder for study.html and pictures, drawn at the end.", "--pictures"),
     ] = None,
 ) -> None:
     """Compute the variants of a case that are missing in a folder."""
     from alula.fea.study.compute import compute_study
+    from alula.loads.case.case_file import stated_changes
     from alula.loads.plans.variants import Variants
     from alula.reports.study.sections import headline
 
-    workers = at_a_time(threads, workers)
-    plan, folder = _plan(case, stated(vary, "--vary"), stated(link, "--link"), points, sample, seed, overrides, {
-        "analysis": analysis, "fidelity": fidelity, "accuracy": accuracy, "mass": mass,
-    })  # fmt: skip
+    workers = options.at_a_time(threads, workers)
+    varied: dict[str, Any] = {
+        "vary": options.stated(vary, "--vary"),
+        "link": options.stated(link, "--link"),
+        "points": points,
+        "sample": _sample(sample, seed),
+        "set": {change.path: change.value for change in stated_changes(overrides or ())},
+    }
+    model = {"analysis": analysis, "fidelity": fidelity, "accuracy": accuracy, "mass": mass}
+    plan, folder = _plan(case, varied, {name: value for name, value in model.items() if value is not None})
     variants = Variants(plan, folder)
     if pictures is not None:
         from alula.reports.study.page import refuse_folder
@@ -119,66 +104,25 @@ def _draw(folder: Path, output: Path, wanted: Sequence[str], told: TextIO) -> No
     print(f"Pictures: {write_study(folder, output, wanted)}", file=told)
 
 
-def stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
-    """Read options of the form ``entry=text``.
-
-    Parameters
-    ----------
-    options : sequence of str or None
-    name : str
-        Of the option, for messages.
-
-    Returns
-    -------
-    dict of str to str
-
-    Raises
-    ------
-    CaseError
-        For text of another form, and an entry that is stated twice.
-    """
+def _sample(text: str, seed: int) -> dict[str, object] | None:
     from alula.geometry.base.errors import CaseError
-    from alula.loads.text.explain import printable
 
-    found: dict[str, str] = {}
-    for option in options or ():
-        path, sign, text = option.partition("=")
-        path, text = path.strip(), text.strip().strip('"')
-        if not (sign and path and text):
-            raise CaseError(f"{name} '{printable(option)}': write it as entry=..., for example parts.bar.thickness=...")
-        if path in found:
-            raise CaseError(f"{name} '{printable(path)}': the entry is stated twice; state it once")
-        found[path] = text
-    return found
+    if not text:
+        return None
+    method, _, count = text.partition(":")
+    if not (count.isascii() and count.isdigit()):
+        raise CaseError(f"--sample '{text}': write method and number of points, for example sobol:64")
+    return {"method": method, "count": int(count), "seed": seed}
 
 
-def _plan(
-    case: str,
-    vary: Mapping[str, str],
-    link: Mapping[str, str],
-    points: str,
-    sample: str,
-    seed: int,
-    overrides: Sequence[str] | None,
-    more: Mapping[str, object],
-) -> "tuple[StudyPlan, Path]":
+def _plan(case: str, varied: Mapping[str, Any], model: Mapping[str, object]) -> "tuple[StudyPlan, Path]":
     """The plan of the options, or of a file of its own, of which options change analysis and model alone."""
-    from alula.geometry.base.errors import CaseError
-    from alula.loads.case.case_file import built_in_cases, read_tables, stated_changes
+    from alula.loads.case.case_file import built_in_cases, read_tables
     from alula.loads.plans.plan import plan_of, read_plan
 
-    stated = {name: value for name, value in more.items() if value is not None}
-    options = bool(vary or link or points or sample or overrides)
-    if not options and case not in built_in_cases() and "case" in read_tables(case):
-        return read_plan(Path(case), stated)
-    data: dict[str, Any] = {"case": case, "vary": dict(vary), "link": dict(link), "points": points} | stated
-    data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}
-    if sample:
-        method, _, count = sample.partition(":")
-        if not (count.isascii() and count.isdigit()):
-            raise CaseError(f"--sample '{sample}': write method and number of points, for example sobol:64")
-        data["sample"] = {"method": method, "count": int(count), "seed": seed}
-    return plan_of(data), Path()
+    if not any(varied.values()) and case not in built_in_cases() and "case" in read_tables(case):
+        return read_plan(Path(case), model)
+    return plan_of({"case": case, **varied, **model}), Path()
 
 
 def _refuse_many(variants: "Variants", workers: int | None) -> None:
@@ -229,24 +173,23 @@ def _duration(seconds: float) -> str:
 
 @app.command()
 def show(
-    folder: Annotated[Path, typer.Argument(help="Folder of a study.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help="Folder of a study.")],
     csv_file: Annotated[
-        Path | None, typer.Option("--csv", help="Write all points and numbers to a CSV file.", show_default=False)
+        Path | None, typer.Option("--csv", help="Write all points and numbers to a CSV file.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print points as JSON.")] = False,
-    most: Annotated[int, typer.Option("--most", min=1, help="Rows of the table.")] = 40,
+    most: Annotated[int, typer.Option(min=1, help="Rows of the table.")] = 40,
     output: Annotated[
         Path | None,
-        folder_option("Folder for study.html and pictures, in its subfolder study."),
+        options.folder_option("Folder for study.html and pictures, in its subfolder study."),
     ] = None,
     numbers: Annotated[
         list[str] | None,
-        typer.Option("--number", help='Show numbers of this name as well, such as "drive torque".', show_default=False),
+        typer.Option("--number", help='Show numbers of this name as well, such as "drive torque".')
     ] = None,
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
     from alula.fea.study.store import Store
-    from alula.reports.renderers.console import print_sections
     from alula.reports.renderers.record import as_json, as_record
     from alula.reports.study.columns import read_study
     from alula.reports.study.rows import lines, results_section
@@ -258,9 +201,7 @@ def show(
         if json:
             print(as_json(as_record([results_section(store)])))
         else:
-            from rich.console import Console
-
-            print_sections(study_sections(read_study(store, numbers or (), most)), Console())
+            tell(study_sections(read_study(store, numbers or (), most)))
     if output is not None:
         _draw(folder, output, numbers or (), sys.stderr if json else sys.stdout)
 

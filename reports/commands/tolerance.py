@@ -1,22 +1,15 @@
 """The command ``alula tolerance``: samples of a case's tolerances, with their probabilities."""
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress
-from alula.reports.commands.options import (
-    AccuracyOption,
-    CaseArgument,
-    JsonOption,
-    MemoryOption,
-    SetOption,
-    ThreadsOption,
-    folder_option,
-)
-from alula.reports.commands.study import stated
+from alula.reports.commands.telling import begun, tell, write
 
 if TYPE_CHECKING:
     from alula.fea.tolerance.result import ToleranceResult
@@ -28,50 +21,40 @@ app = typer.Typer()
 
 @app.command()
 def tolerance(
-    case: CaseArgument,
+    case: options.CaseArgument,
     output: Annotated[
         Path | None,
-        folder_option("Folder; result.json, samples.npz and pictures go to its subfolder tolerance."),
+        options.folder_option("Folder; result.json, samples.npz and pictures go to its subfolder tolerance."),
     ] = None,
-    json: JsonOption = False,
-    overrides: SetOption = None,
+    json: options.JsonOption = False,
+    overrides: options.SetOption = None,
     tolerances: Annotated[
         list[str] | None,
         typer.Option("--tolerance", help='Besides those of the case: pins="0.2 mm", links.AE.points.E="0.1 mm".'),
     ] = None,
     samples: Annotated[int, typer.Option(min=100, max=10_000_000, help="Independent samples.")] = 100_000,
     seed: Annotated[int, typer.Option(min=0, help="Of the samples.")] = 0,
-    threads: ThreadsOption = 2,
-    memory: MemoryOption = None,
-    accuracy: AccuracyOption = None,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
+    accuracy: options.AccuracyOption = None,
 ) -> None:
     """Sample the tolerances of a case: how likely every check passes, and which tolerance matters."""
     from alula.fea.check.run import effort_of
     from alula.fea.tolerance.analysis import tolerance_case
-    from alula.loads.case.case_file import read_case
-    from alula.reports.page.output import refuse_unusable
+    from alula.reports.renderers.record import as_record
     from alula.reports.study.tolerance import tolerance_sections
-    from alula.reports.words.limits import limited
 
-    with limited(threads, memory):
-        parsed = with_tolerances(read_case(case, overrides or ()), stated(tolerances, "--tolerance"))
-        refuse_unusable(output, "tolerance")
-        effort = effort_of(parsed, accuracy)
+    with begun("tolerance", case, overrides, output, threads=threads, memory=memory) as parsed:
+        tolerant = with_tolerances(parsed, options.stated(tolerances, "--tolerance"))
+        effort = effort_of(tolerant, accuracy)
         result = tolerance_case(
-            parsed, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=progress
+            tolerant, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=progress
         )
-        if json:
-            print(_record(result), flush=True)
-        else:
-            from rich.console import Console
-
-            from alula.reports.renderers.console import print_sections
-
-            print_sections(tolerance_sections(result), Console())
-        if output is not None:
-            write_tolerance(result, output)
-            if not json:
-                print(f"Record, samples and pictures: {output / 'tolerance'}")
+        sections = tolerance_sections(result)
+        record = partial(as_record, sections, case=case, samples=result.samples, seed=result.seed)
+        tell(sections, json=json, record=record)
+        fill = partial(write_samples, result)
+        write("tolerance", output, record, fill, what="Record, samples and pictures", json=json)
 
 
 def with_tolerances(case: "Case", more: Mapping[str, str]) -> "Case":
@@ -93,40 +76,22 @@ def with_tolerances(case: "Case", more: Mapping[str, str]) -> "Case":
     return case.with_values({"tolerances": kept | dict(more)})
 
 
-def write_tolerance(result: "ToleranceResult", target: Path) -> None:
-    """Write ``result.json``, ``samples.npz`` (the deviations and all numbers of every sample) and pictures.
+def write_samples(result: "ToleranceResult", folder: Path) -> None:
+    """Write ``samples.npz``, the deviations and all numbers of every sample, and pictures.
 
     Parameters
     ----------
     result : ToleranceResult
-    target : Path
-        The output folder; the files go to its subfolder ``tolerance``.
-
-    Raises
-    ------
-    CaseError, CannotRunError
-        As ``write_folder``.
+    folder : Path
+        An existing folder.
     """
     import numpy as np
 
     from alula.reports.figures.study.tolerance_pictures import tolerance_pictures
-    from alula.reports.page.output import MARK, write_folder
 
-    def fill(folder: Path) -> None:
-        (folder / MARK).write_text(_record(result) + "\n", encoding="utf-8")
-        arrays: dict[str, Any] = {
-            name: np.array([getattr(one, name) for one in result.numbers]) for name in ("values", "low", "high")
-        }
-        np.savez_compressed(folder / SAMPLES, deviations=result.deviations, **arrays)
-        for name, picture in tolerance_pictures(result).items():
-            (folder / name).write_bytes(picture.png())
-
-    write_folder(target, "tolerance", fill)
-
-
-def _record(result: "ToleranceResult") -> str:
-    from alula.reports.renderers.record import as_json, as_record
-    from alula.reports.study.tolerance import tolerance_sections
-
-    head = {"case": result.nominal.name, "samples": result.samples, "seed": result.seed}
-    return as_json(as_record(tolerance_sections(result), **head))
+    arrays: dict[str, Any] = {
+        name: np.array([getattr(one, name) for one in result.numbers]) for name in ("values", "low", "high")
+    }
+    np.savez_compressed(folder / SAMPLES, deviations=result.deviations, **arrays)
+    for name, picture in tolerance_pictures(result).items():
+        (folder / name).write_bytes(picture.png())

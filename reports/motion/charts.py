@@ -6,7 +6,14 @@ from typing import Any
 from alula.reports.sections.section import Picture
 
 
-def chart(name: str, what: str, figure: Callable[[], Any], more: str = "") -> Picture:
+def figures() -> Any:
+    """Return the functions that draw a motion, with matplotlib, which is imported where a picture is drawn."""
+    from alula.reports.figures.motion import motion_figures
+
+    return motion_figures
+
+
+def chart(name: str, what: str, figure: Callable[[], Any]) -> Picture:
     """Return a figure of matplotlib as a picture.
 
     Parameters
@@ -17,8 +24,6 @@ def chart(name: str, what: str, figure: Callable[[], Any], more: str = "") -> Pi
         What it shows, which is told below it as well.
     figure : callable
         Draws it.
-    more : str, optional
-        What is told below it besides.
 
     Returns
     -------
@@ -26,9 +31,8 @@ def chart(name: str, what: str, figure: Callable[[], Any], more: str = "") -> Pi
     """
 
     def draw() -> Any:
-        from alula.reports.figures.motion.motion_figures import DPI
         from alula.reports.figures.sheet.chart import Chart
 
-        return Chart(figure(), dpi=DPI)
+        return Chart(figure(), dpi=figures().DPI)
 
-    return Picture(name=name, alt=what, caption=f"{what}.{f' {more}' if more else ''}", draw=draw)
+    return Picture(name=name, alt=what, caption=f"{what}.", draw=draw)

@@ -8,12 +8,12 @@ import numpy as np
 
 from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import with_inertia
-from alula.reports.motion.charts import chart
-from alula.reports.motion.extremes import extreme_cells, extreme_columns, extremes
+from alula.reports.motion.charts import chart, figures
+from alula.reports.motion.extremes import extremes, extremes_table
 from alula.reports.motion.friction import friction_over_motion, friction_texts
 from alula.reports.motion.linkage import linkage_over_motion, linkage_text
 from alula.reports.motion.play import drive_with_play, play_record
-from alula.reports.sections.section import Group, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Group, Number, Part, Section, Text, say
 from alula.reports.sentences.verdicts import told_speed
 
 
@@ -29,14 +29,7 @@ def drive_section(found: MotionFindings) -> Section:
     Section
     """
     moved = found.moved
-    records, play = {name: _record(found, name) for name in moved.torque}, play_record(found)
-
-    def torque() -> Any:
-        from alula.reports.figures.motion.motion_figures import torque_figure
-
-        return torque_figure(moved, found.play)
-
-    groups = []
+    records, play, groups = {name: _record(found, name) for name in moved.torque}, play_record(found), []
     for name, record in records.items():
         at = f"with inertia at {told_speed(moved, name)}" if record["inertia"] else "without inertia"
         groups.append(Group(f"Load case {name}", tuple(_parts(found, name, record, play)), remark=at))
@@ -44,7 +37,14 @@ def drive_section(found: MotionFindings) -> Section:
         key="drive",
         title="Drive and joint forces",
         short="Drive",
-        parts=(chart("torque", f"Drive {moved.effort[0]} on {moved.drive.link}", torque), *groups),
+        parts=(
+            chart(
+                "torque",
+                f"Drive {moved.effort[0]} on {moved.drive.link}",
+                lambda: figures().torque_figure(moved, found.play),
+            ),
+            *groups,
+        ),
         data={
             "load_cases": records,
             "linkage": {name: linkage_over_motion(moved, over) for name, over in found.linkage.items()},
@@ -59,13 +59,7 @@ def _parts(
     rows = [(f"drive {what} on {moved.drive.link}", unit, record[f"drive_{what}"])]
     rows += [("drive power", "W", record["drive_power"])] if "drive_power" in record else []
     rows += [(f"joint {joint}", "N", row) for joint, row in (record["joints"] or {}).items()]
-    told = extreme_columns(moved.motion.unit, ends=True, known=not moved.dead_points)
-    yield Table(
-        key="drive",
-        columns=(words("quantity"), words("unit"), *told),
-        rows=tuple((quantity, own, *extreme_cells(row, ends=True)) for quantity, own, row in rows),
-        under=(("load case", name),),
-    )
+    yield extremes_table("drive", name, rows, moved.motion.unit, ends=True, known=not moved.dead_points)
     if record["joints"] is None:
         yield Text("The linkage is statically indeterminate, so equilibrium alone does not give the joint forces.")
     if "energy_imbalance" in record:
@@ -78,16 +72,10 @@ def _parts(
     if moved.rubbing:
         yield from friction_texts(moved, found.work[name], name)
     if name in moved.forces:
-        several = len(moved.forces) > 1
-
-        def forces() -> Any:
-            from alula.reports.figures.motion.motion_figures import forces_figure
-
-            return forces_figure(moved, name)
-
-        number = list(moved.forces).index(name) + 1
+        several, number = len(moved.forces) > 1, list(moved.forces).index(name) + 1
         title = f"Joint forces, load case {name}" if several else "Joint forces"
-        yield chart(f"joint-forces-{number}" if several else "joint-forces", title, forces)
+        file = f"joint-forces-{number}" if several else "joint-forces"
+        yield chart(file, title, lambda: figures().forces_figure(moved, name))
 
 
 def _record(found: MotionFindings, load_case: str) -> dict[str, Any]:

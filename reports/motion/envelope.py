@@ -21,6 +21,7 @@ from alula.reports.renderers.record import as_brief_record
 from alula.reports.sections.checks import checks_section
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import (
+    Cell,
     Column,
     Group,
     Items,
@@ -126,30 +127,30 @@ def envelope_page(result: EnvelopeResult, sections: tuple[Section, ...]) -> Page
 def _motion(result: EnvelopeResult) -> Section:
     """Return which poses were evaluated, and the warnings."""
     motion, ends = result.moved.motion, np.degrees(result.angles[[0, -1]])
-    text = say(
+    first, last = (Number(float(end), stated=True) for end in ends)
+    told_range = (
         f"From {motion.coordinate} = {{first}}° to {{last}}°, driven at {result.drive.link}; "
-        f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated",
-        first=Number(float(ends[0]), stated=True),
-        last=Number(float(ends[1]), stated=True),
+        f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated"
     )
-    warnings = (
-        (Items(tuple(sentence(told(warning)) for warning in result.warnings), "warnings"),) if result.warnings else ()
-    )
-    idle = (Text(f"Links without load: {', '.join(result.idle)}."),) if result.idle else ()
+    parts: list[Part] = [say(told_range, first=first, last=last)]
+    if result.idle:
+        parts.append(Text(f"Links without load: {', '.join(result.idle)}."))
+    if result.warnings:
+        parts.append(Items(tuple(sentence(told(warning)) for warning in result.warnings), "warnings"))
     return Section(
         key="motion",
         title="The motion",
         short="Motion",
-        parts=(text, *idle, *warnings),
+        parts=tuple(parts),
         data={
             "motion": {
                 "coordinate": motion.coordinate,
-                "first": float(ends[0]),
-                "last": float(ends[1]),
+                "first": first.value,
+                "last": last.value,
                 "poses": len(result.angles),
                 "evaluated": int(result.evaluated.sum()),
                 "returns_to_start": motion.returns,
-                "drive": {"link": result.drive.link, "joint": result.drive.joint},
+                "drive": entries(result.drive, "link joint"),
                 "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
             },
             "idle_links": list(result.idle),
@@ -166,46 +167,36 @@ def _links(result: EnvelopeResult) -> Section:
 
         return envelope_figure(result)
 
-    every = [(name, link, found) for name, link in result.links.items() for found in link.load_cases.values()]
-    table = Table(
-        key="links",
-        columns=(
-            words("link"),
-            words("load case"),
-            Column("safety factor (band)"),
-            words("stress"),
-            Column("stress", "MPa"),
-            Column(f"{result.moved.motion.coordinate} at", "deg", hidden=_drives(result)),
-            Column(f"at {result.drive.link}", "deg"),
-            words("at x, y, z [mm]"),
-            Column("repetitions to failure", hidden=True),
-        ),
-        rows=tuple(
-            (
-                name,
-                found.name,
-                Number(found.safety_factor),
-                link.measure,
-                Number(found.stress.value, "", 3),
-                Number(math.degrees(float(result.angles[found.pose])), decimals=1),
-                Number(_drive_angle(result, found.pose), decimals=1),
-                ", ".join(fixed(float(x), 1) for x in found.location),
-                Number(None if found.fatigue is None or found.fatigue.repetitions is None
-                       else found.fatigue.repetitions.value),
-            )
-            for name, link, found in sorted(every, key=lambda row: row[2].severity)
-        ),
-        caption="Least safety factor over the motion",
-    )  # fmt: skip
+    coordinate, drive = result.moved.motion.coordinate, result.drive.link
+    columns = (
+        words("link"),
+        words("load case"),
+        Column("safety factor (band)"),
+        words("stress"),
+        Column("stress", "MPa"),
+        # of the driven link itself, both have one direction
+        Column(f"{coordinate} at", "deg", hidden=coordinate == drive),
+        Column(f"at {drive}", "deg"),
+        words("at x, y, z [mm]"),
+        Column("repetitions to failure", hidden=True),
+    )
+    every = [(link, found) for link in result.links.values() for found in link.load_cases.values()]
+    rows: list[tuple[Cell, ...]] = []
+    for link, found in sorted(every, key=lambda row: row[1].severity):
+        at, life = _place(result, found), None if found.fatigue is None else found.fatigue.repetitions
+        factor, stress = Number(found.safety_factor), Number(found.stress.value, "", 3)
+        angles = (Number(at[key], decimals=1) for key in ("coordinate", "drive"))
+        place = ", ".join(fixed(x, 1) for x in at["location"])
+        repetitions = Number(None if life is None else life.value)
+        rows.append((link.link, found.name, factor, link.measure, stress, *angles, place, repetitions))
+    caption = "Least safety factor over the motion"
+    table = Table(key="links", columns=columns, rows=tuple(rows), caption=caption)
     curves = "Safety factor of each link over the motion, with its error band"
     plots = (
-        Picture(
-            name=f"stress-{name}",
-            alt=f"Stress of link {name} in its worst pose",
-            caption=f"Link {name} in its worst pose, under its worst load case.",
-        )
+        Picture(name=f"stress-{name}", alt=f"Stress of link {name} in its worst pose",
+                caption=f"Link {name} in its worst pose, under its worst load case.")
         for name in result.links
-    )
+    )  # fmt: skip
     return Section(
         key="links",
         title="The worst pose of each link",
@@ -214,16 +205,6 @@ def _links(result: EnvelopeResult) -> Section:
         data={"links": {name: _link_record(result, link) for name, link in result.links.items()}},
         series=(_series(result),),
     )
-
-
-def _drives(result: EnvelopeResult) -> bool:
-    """Whether the motion's coordinate is the driven link, so that both have one direction."""
-    return result.moved.motion.coordinate == result.drive.link
-
-
-def _drive_angle(result: EnvelopeResult, pose: int) -> float:
-    """Direction of the driven link at a pose [degrees]."""
-    return math.degrees(float(result.drive_angles[pose]))
 
 
 def _series(result: EnvelopeResult) -> Series:
@@ -243,14 +224,18 @@ def _curves(link: LinkEnvelope, load_case: str, count: int) -> dict[str, ArrayLi
     found, none = link.load_cases.get(load_case), np.full(count, np.nan)
     value, low, high = (none, none, none) if found is None else (found.value, found.low, found.high)
     with np.errstate(divide="ignore"):
-        factors = [link.strength / np.maximum(stress, 0.0) for stress in (value, high, low)]
-    columns: dict[str, ArrayLike] = {}
-    for what, unit, ends in ((f"{link.measure} stress", "MPa", (value, low, high)), ("safety factor", "1", factors)):
-        columns |= {
-            f"{link.link} {what}{end} [{unit}]": found for end, found in zip(("", " low", " high"), ends, strict=True)
-        }
+        factor, most, least = (link.strength / np.maximum(stress, 0.0) for stress in (value, low, high))
     history = none if found is None or found.fatigue is None else found.fatigue.history
-    return columns | {f"{link.link} signed stress at the critical point [MPa]": history}
+    columns = {
+        f"{link.measure} stress [MPa]": value,
+        f"{link.measure} stress low [MPa]": low,
+        f"{link.measure} stress high [MPa]": high,
+        "safety factor [1]": factor,
+        "safety factor low [1]": least,
+        "safety factor high [1]": most,
+        "signed stress at the critical point [MPa]": history,
+    }
+    return {f"{link.link} {title}": curve for title, curve in columns.items()}
 
 
 def _fatigue(result: EnvelopeResult) -> Section:
@@ -261,31 +246,15 @@ def _fatigue(result: EnvelopeResult) -> Section:
         for found in link.load_cases.values()
         if found.fatigue is not None
     ]
-    parts: list[Part] = []
-    if rows:
-        parts.append(
-            Table(
-                key="fatigue",
-                columns=(
-                    words("link"),
-                    words("load case"),
-                    Column("smallest", "MPa"),
-                    Column("largest", "MPa"),
-                    Column("range", "MPa"),
-                    Column("repetitions to failure (band)"),
-                ),
-                rows=tuple(
-                    (
-                        link.link,
-                        name,
-                        *(Number(x, "", 3) for x in (found.life.smallest, found.life.largest, found.life.stress_range)),
-                        "unknown, no exponent" if found.repetitions is None else Number(found.repetitions, "", 2),
-                    )
-                    for link, name, found in rows
-                ),
-                caption="Signed stress at the critical point over one motion",
-            )
-        )
+    stresses = (Column(title, "MPa") for title in ("smallest", "largest", "range"))
+    columns = (words("link"), words("load case"), *stresses, Column("repetitions to failure (band)"))
+    cells: list[tuple[Cell, ...]] = []
+    for link, name, found in rows:
+        sizes = (Number(x, "", 3) for x in (found.life.smallest, found.life.largest, found.life.stress_range))
+        repeated = "unknown, no exponent" if found.repetitions is None else Number(found.repetitions, "", 2)
+        cells.append((link.link, name, *sizes, repeated))
+    caption = "Signed stress at the critical point over one motion"
+    parts: list[Part] = [Table(key="fatigue", columns=columns, rows=tuple(cells), caption=caption)] if rows else []
     materials = {result.case.part_of(link.link).material: result.case.material_of(link.link) for link, _, _ in rows}
     parts += [
         Text(f"Fatigue of {one.title}: cycles of {_measure_of(one)}; {_scatter_of(one)}.") for one in materials.values()
@@ -300,7 +269,7 @@ def _fatigue(result: EnvelopeResult) -> Section:
 
 def _linkage(result: EnvelopeResult) -> Section:
     """Return the linkage as a whole and friction, for every load case."""
-    several, friction = len(result.linkage) > 1, result.work.items()
+    several = len(result.linkage) > 1
 
     def texts(name: str) -> Iterator[Text]:
         if name in result.linkage:
@@ -310,7 +279,7 @@ def _linkage(result: EnvelopeResult) -> Section:
 
     every = {name: tuple(texts(name)) for name in dict.fromkeys((*result.linkage, *result.work))}
     parts = [part for name, own in every.items() for part in ((Group(f"Load case {name}", own),) if several else own)]
-    record = {name: friction_over_motion(result.moved, work, name) for name, work in friction}
+    record = {name: friction_over_motion(result.moved, work, name) for name, work in result.work.items()}
     return Section(
         key="linkage",
         title="The linkage as a whole",
@@ -333,7 +302,7 @@ def _limits(result: EnvelopeResult) -> Section:
         short="Not covered",
         parts=(Items(items, "columns2 note"),) if items else (),
         data={
-            "not_checked": not_checked(caveats(result.case, over_motion=True)),
+            "not_checked": not_checked(found),
             "caveats": [entries(one, "heading topic what why") for one in found],
         },
     )
@@ -355,15 +324,20 @@ def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
 def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
     return {
         **entries(found, "stress safety_factor"),
-        "at": {
-            "pose": found.pose,
-            "coordinate": math.degrees(float(result.angles[found.pose])),
-            "drive": _drive_angle(result, found.pose),
-            "location": found.location.tolist(),
-            "pin_pressure_span": found.governing.span,
-            "transfer": found.governing.transfer,
-        },
+        "at": _place(result, found),
         "fatigue": None if found.fatigue is None else _fatigue_record(found.fatigue, material),
+    }
+
+
+def _place(result: EnvelopeResult, found: LoadCaseEnvelope) -> dict[str, Any]:
+    """Return where and how the worst stress acts, with directions of coordinate and drive [degrees]."""
+    return {
+        "pose": found.pose,
+        "coordinate": math.degrees(result.angles[found.pose]),
+        "drive": math.degrees(result.drive_angles[found.pose]),
+        "location": found.location.tolist(),
+        "pin_pressure_span": found.governing.span,
+        "transfer": found.governing.transfer,
     }
 
 

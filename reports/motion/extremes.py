@@ -1,6 +1,6 @@
 """First, last and extreme values over a motion and where they stand: as data, and as cells of tables."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from alula.fea.findings.rates import QUANTITIES, Values
 from alula.geometry.base.ties import first_largest
 from alula.geometry.linkage.motion import Motion
-from alula.reports.sections.section import Cell, Column, Number
+from alula.reports.sections.section import Cell, Column, Number, Table, words
 from alula.reports.words.numbers import number
 
 Real = NDArray[np.float64]
@@ -36,13 +36,49 @@ def extremes(motion: Motion, values: Real, *, unbounded: bool = False) -> dict[s
         return ends | {"smallest": None, "largest": None, "unbounded": True}
     for key, sign in (("smallest", -1.0), ("largest", 1.0)):
         pose = _extreme_pose(sign * values)
-        ends |= {key: float(values[pose]), f"{key}_at": float(motion.told(motion.angles[pose]))}
+        ends |= with_pose(motion, key, values[pose], pose)
     return ends | {"unbounded": False}
 
 
 def _extreme_pose(values: Real) -> int:
     """Return the first of the poses whose value is the largest, but for rounding, as in a symmetric linkage."""
     return first_largest(values, float(np.nanmax(np.abs(values))))
+
+
+def with_pose(motion: Motion, what: str, value: float, pose: int) -> dict[str, float]:
+    """Return a value and where it stands.
+
+    Parameters
+    ----------
+    motion : Motion
+    what : str
+        Its name.
+    value : float
+    pose : int
+        Number of the pose.
+
+    Returns
+    -------
+    dict
+        ``what`` and ``what_at``, the value of the coordinate there.
+    """
+    return {what: float(value), f"{what}_at": float(motion.told(motion.angles[pose]))}
+
+
+def stretches(motion: Motion, true: NDArray[np.bool_]) -> list[list[float]]:
+    """Return first and last value of the coordinate of every run of poses at which something is true.
+
+    Parameters
+    ----------
+    motion : Motion
+    true : ndarray of bool, shape (n,)
+
+    Returns
+    -------
+    list of [first, last]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(int)))
+    return [motion.told(motion.angles[[first, after - 1]]).tolist() for first, after in edges.reshape(-1, 2)]
 
 
 def vector_extremes(motion: Motion, values: Values) -> dict[str, Any]:
@@ -60,8 +96,7 @@ def vector_extremes(motion: Motion, values: Values) -> dict[str, Any]:
     """
     pose = _extreme_pose(np.abs(values))
     return {
-        "largest": float(np.abs(values[pose])),
-        "largest_at": float(motion.told(motion.angles[pose])),
+        **with_pose(motion, "largest", np.abs(values[pose]), pose),
         "x": [float(values.real.min()), float(values.real.max())],
         "y": [float(values.imag.min()), float(values.imag.max())],
     }
@@ -100,49 +135,58 @@ def finite_or_none(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def extreme_columns(at: str, *, ends: bool, known: bool = True) -> tuple[Column, ...]:
-    """Return the columns of ``extreme_cells``.
+def extremes_table(
+    key: str,
+    load_case: str,
+    rows: Iterable[tuple[str, str, Mapping[str, Any]]],
+    at: str,
+    *,
+    ends: bool,
+    known: bool = True,
+    caption: str = "",
+) -> Table:
+    """Return quantities with their extremes as a table; a number beside which they are rounding is 0.
 
     Parameters
     ----------
+    key : str
+        Of the table.
+    load_case : str
+    rows : iterable of (str, str, mapping)
+        Name, unit and extremes of each quantity, of numbers or of a vector.
     at : str
         Unit of the coordinate.
     ends : bool
         Whether first and last value stand before the extremes.
     known : bool, optional
         False where extremes mean nothing, next to a dead point: columns for notebooks alone.
+    caption : str, optional
 
     Returns
     -------
-    tuple of Column
+    Table
     """
-    found = ("smallest", "smallest at", "largest", "largest at")
-    own = tuple(Column(title, at if title.endswith(" at") else "", hidden=not known) for title in found)
-    return (Column("first"), Column("last"), *own) if ends else own
+    found = (("smallest", ""), ("smallest at", at), ("largest", ""), ("largest at", at))
+    columns = [Column("first"), Column("last")] if ends else []
+    columns += [Column(title, unit, hidden=not known) for title, unit in found]
+    return Table(
+        key=key,
+        columns=(words("quantity"), words("unit"), *columns),
+        rows=tuple((name, unit, *_extreme_cells(row, ends=ends)) for name, unit, row in rows),
+        caption=caption,
+        under=(("load case", load_case),),
+    )
 
 
-def extreme_cells(row: Mapping[str, Any], *, ends: bool) -> tuple[Number, ...]:
-    """Return extremes as cells; a number beside which they are rounding is 0.
-
-    Parameters
-    ----------
-    row : mapping
-        Extremes, of numbers or of a vector.
-    ends : bool
-        Whether first and last value stand before them.
-
-    Returns
-    -------
-    tuple of Number
-    """
+def _extreme_cells(row: Mapping[str, Any], *, ends: bool) -> list[Number]:
     values = ("first", "last", "smallest", "largest")
     size = max((abs(row[key]) for key in values if row.get(key) is not None), default=0.0)
-    cells = {key: Number(row.get(key), beside=size) for key in values}
     # where nothing changes, no pose has the extreme
     moves = row.get("smallest") != row.get("largest")
-    at = {key: Number(row.get(key) if moves else None, decimals=1) for key in ("smallest_at", "largest_at")}
-    found = (cells["smallest"], at["smallest_at"], cells["largest"], at["largest_at"])
-    return (cells["first"], cells["last"], *found) if ends else found
+    found = [Number(row[key], beside=size) for key in ("first", "last")] if ends else []
+    for key in ("smallest", "largest"):
+        found += [Number(row.get(key), beside=size), Number(row.get(f"{key}_at") if moves else None, decimals=1)]
+    return found
 
 
 def rate_columns(key: str, at: str, *, told: bool = True) -> tuple[Column, ...]:
@@ -161,13 +205,12 @@ def rate_columns(key: str, at: str, *, told: bool = True) -> tuple[Column, ...]:
     -------
     tuple of Column
     """
-    name, unit = key.replace("_", " "), QUANTITIES[key]
-    largest = (Column(f"{name}, largest", unit, hidden=not told), Column(f"{name}, largest at", at, hidden=True))
-    if key in SIZES:
-        return largest
-    smallest = (Column(f"{name}, smallest", unit, hidden=True), Column(f"{name}, smallest at", at, hidden=True))
-    hidden = tuple(Column(column.title, column.unit, hidden=True) for column in largest)
-    return (Column(name, unit, hidden=not told), *smallest, *hidden)
+    name, unit, vector = key.replace("_", " "), QUANTITIES[key], key in SIZES
+    found = [] if vector else [Column(name, unit, hidden=not told)]
+    for end in ("largest",) if vector else ("smallest", "largest"):
+        found += [Column(f"{name}, {end}", unit, hidden=not (told and vector))]
+        found += [Column(f"{name}, {end} at", at, hidden=True)]
+    return tuple(found)
 
 
 SIZES = ("speed", "acceleration", "momentum")
@@ -188,12 +231,11 @@ def rate_cells(key: str, row: Mapping[str, Any] | None) -> tuple[Cell, ...]:
     -------
     tuple of str or Number
     """
-    found = row or {}
-    largest = (Number(found.get("largest")), Number(found.get("largest_at"), decimals=1))
-    if key in SIZES:
-        return largest
-    smallest = (Number(found.get("smallest")), Number(found.get("smallest_at"), decimals=1))
-    return (between(row), *smallest, *largest)
+    found, vector = row or {}, key in SIZES
+    cells: list[Cell] = [] if vector else [between(row)]
+    for end in ("largest",) if vector else ("smallest", "largest"):
+        cells += [Number(found.get(end)), Number(found.get(f"{end}_at"), decimals=1)]
+    return tuple(cells)
 
 
 def between(row: Mapping[str, Any] | None) -> str:

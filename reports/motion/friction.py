@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.rubbing import told_direction
-from alula.reports.motion.extremes import finite_or_none
+from alula.reports.motion.extremes import finite_or_none, stretches
 from alula.reports.sections.section import Number, Text, say
 
 Real = NDArray[np.float64]
@@ -43,9 +43,7 @@ def friction_over_motion(moved: CaseMotion, work: DriveWork, load_case: str) -> 
         "efficiency_smallest": float(shares.min()) if shares.size else None,
         "efficiency_largest": float(shares.max()) if shares.size else None,
         "locked": [[float(x) for x in motion.told(span)] for span in rubbing.spans],
-        "holds_itself": [
-            [float(x) for x in motion.told(span)] for span in _stretches(motion.angles, work.holds_itself)
-        ],
+        "holds_itself": stretches(motion, work.holds_itself),
     }
 
 
@@ -79,14 +77,10 @@ def friction_texts(moved: CaseMotion, work: DriveWork, load_case: str) -> Iterat
         all_high=Number(high, beside=max(abs(low), abs(high))) if math.isfinite(high) else "∞",
     )
     if record["efficiency_smallest"] is not None:
-        text, facts = "Efficiency {smallest} to {largest} by pose", {
-            key: _percent(record[f"efficiency_{key}"]) for key in ("smallest", "largest")
-        }  # fmt: skip
-        if record["efficiency_of_motion"] is not None:
-            text, facts = f"{text}, {{motion}} over the motion", facts | {
-                "motion": _percent(record["efficiency_of_motion"])
-            }  # fmt: skip
-        yield say(text, **facts)
+        of = {key: record[f"efficiency_{key}"] for key in ("smallest", "largest", "of_motion")}
+        shares = {key: Number(one, "%", decimals=1, factor=100.0) for key, one in of.items() if one is not None}
+        over = ", {of_motion} over the motion" if "of_motion" in shares else ""
+        yield say(f"Efficiency {{smallest}} to {{largest}} by pose{over}", **shares)
     if record["work"] is not None:
         lost = Number(record["work"] - record["work_without"], "N·mm", derived=True)
         done = Number(record["work"], "N·mm")
@@ -100,16 +94,12 @@ def friction_texts(moved: CaseMotion, work: DriveWork, load_case: str) -> Iterat
             yield Text(f"{text} {where}: {why}.")
 
 
-def _percent(share: float) -> Number:
-    return Number(share, "%", decimals=1, factor=100.0)
-
-
 def _range(values: Real) -> tuple[Number | str, Number | str]:
     known = values[np.isfinite(values)]
     if not known.size:
         return "not known", "not known"
-    size = float(np.abs(known).max())
-    return Number(float(known.min()), beside=size, derived=True), Number(float(known.max()), beside=size, derived=True)
+    low, high = (Number(float(x), beside=float(np.abs(known).max()), derived=True) for x in (known.min(), known.max()))
+    return low, high
 
 
 def _ends(work: DriveWork) -> tuple[float, float]:
@@ -117,9 +107,3 @@ def _ends(work: DriveWork) -> tuple[float, float]:
     assert work.ends is not None
     known = work.ends[:, np.isfinite(work.effort)]
     return (float(known[0].min()), float(known[1].max())) if known.size else (math.nan, math.nan)
-
-
-def _stretches(angles: Real, true: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """First and last value of the coordinate of every run of true poses."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(int)))
-    return [(float(angles[a]), float(angles[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from alula.fea.findings.joint_paths import loosest, moving_points
 from alula.fea.findings.of_motion import MotionFindings
 from alula.loads.states.case_motion import CaseMotion
+from alula.reports.motion.extremes import stretches, with_pose
 from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, say, words
 
 Real = NDArray[np.float64]
@@ -49,57 +50,39 @@ def play_record(found: MotionFindings) -> dict[str, Any] | None:
     dict or None
         ``docs/result.md`` describes it; None without play. Numbers without end are infinite.
     """
-    moved, play = found.moved, found.play
+    motion, play = found.moved.motion, found.play
     if play is None:
         return None
     points = {}
-    for label in moving_points(moved.motion):
-        point = play.points[loosest(moved.motion, play, label)]
-        points[label] = {"smallest": float(point.free.min()), **_told(moved, "largest", *point.farthest)}
+    for label in moving_points(motion):
+        point = play.points[loosest(motion, play, label)]
+        points[label] = {"smallest": float(point.free.min()), **with_pose(motion, "largest", *point.farthest)}
     return {
         "clearances": play.clearances,
-        "through_dead_point": list(_spans(moved, play.passes)),
-        "dead_point_distance": _told(moved, "smallest", *play.nearest),
+        "through_dead_point": stretches(motion, play.passes),
+        "dead_point_distance": with_pose(motion, "smallest", *play.nearest),
         "points": points,
-        f"drive_{moved.effort[0]}": {
-            name: _told(moved, "smallest", *play.smallest[name]) | _told(moved, "largest", *play.largest[name])
-            for name in moved.loads
+        f"drive_{found.moved.effort[0]}": {
+            name: with_pose(motion, "smallest", *play.smallest[name])
+            | with_pose(motion, "largest", *play.largest[name])
+            for name in found.moved.loads
         },
     }
-
-
-def _told(moved: CaseMotion, what: str, value: float, pose: int) -> dict[str, float]:
-    return {what: float(value), f"{what}_at": float(moved.motion.told(moved.motion.angles[pose]))}
-
-
-def _spans(moved: CaseMotion, passes: NDArray[np.bool_]) -> Iterator[list[float]]:
-    """Values of the coordinate between which play may take the linkage through a dead point."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], passes, [False]]).astype(int)))
-    for first, after in edges.reshape(-1, 2):
-        yield [float(moved.motion.told(moved.motion.angles[i])) for i in (first, after - 1)]
 
 
 def _parts(moved: CaseMotion, record: Mapping[str, Any]) -> Iterator[Part]:
     unit, drive = moved.motion.unit, moved.drive.link
     ended = {label: row for label, row in record["points"].items() if 0.0 < row["largest"] < math.inf}
     if ended:
+        largest = (Column("to either side, largest", "mm"), Column("largest at", unit))
+        found = []
+        for label, row in ended.items():
+            most, at, least = Number(row["largest"], "", 3), Number(row["largest_at"], decimals=1), row["smallest"]
+            found.append((label, most, at, Number(least, "", 3)))
         yield Table(
             key="play",
-            columns=(
-                words("point"),
-                Column("to either side, largest", "mm"),
-                Column("largest at", unit),
-                Column("smallest", "mm"),
-            ),
-            rows=tuple(
-                (
-                    label,
-                    Number(row["largest"], "", 3),
-                    Number(row["largest_at"], decimals=1),
-                    Number(row["smallest"], "", 3),
-                )
-                for label, row in ended.items()
-            ),
+            columns=(words("point"), *largest, Column("smallest", "mm")),
+            rows=tuple(found),
             caption=f"How far play lets points move with {drive} held, to either side (twice as much both ways)",
         )
     near = record["dead_point_distance"]

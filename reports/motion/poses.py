@@ -7,11 +7,14 @@ from typing import Any
 from alula.fea.findings.joint_paths import moving_points, path_length
 from alula.fea.findings.of_motion import MotionFindings
 from alula.fea.findings.rates import Rates
+from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
-from alula.reports.motion.charts import chart
+from alula.reports.motion.charts import chart, figures
 from alula.reports.motion.extremes import every_extreme, finite_or_none
-from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Cell, Column, Number, Part, Section, Table, Text, say, words
 from alula.reports.sections.springs import motion_springs
+
+_ENDS = ("first", "last", "smallest", "largest")
 
 
 def motion_section(found: MotionFindings, own: Rates | None) -> Section:
@@ -49,53 +52,37 @@ def range_text(moved: CaseMotion) -> Text:
     """
     motion = moved.motion
     first, last = (Number(float(motion.told(motion.angles[i])), stated=True) for i in (0, -1))
-    told = f"From {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
-    told += f"{len(motion.angles)} poses"
-    facts: dict[str, object] = {"first": first, "last": last}
-    if motion.times is not None:
-        told += " and {duration}"
-        facts["duration"] = Number(float(motion.times[-1]), "s")
-    told += "; largest gap of a loop {gap} of the longest link"
-    return say(told, **facts, gap=Number(motion.residual, "", 1))
+    took = {} if motion.times is None else {"duration": Number(float(motion.times[-1]), "s")}
+    return say(
+        f"From {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
+        f"{len(motion.angles)} poses{' and {duration}' if took else ''}; largest gap of a loop {{gap}} of the longest "
+        "link",
+        first=first,
+        last=last,
+        **took,
+        gap=Number(motion.residual, "", 1),
+    )
 
 
 def _parts(found: MotionFindings) -> Iterator[Part]:
     moved, motion = found.moved, found.moved.motion
-
-    def figure(name: str, *more: Any) -> Any:
-        from alula.reports.figures.motion import motion_figures
-
-        return getattr(motion_figures, name)(*more)
-
     yield range_text(moved)
     if motion.returns:
         yield Text("The linkage returns to its start.")
     yield from _dead_points(found)
-    yield Table(
-        key="directions",
-        columns=(words("link"), *(Column(title, "deg") for title in ("first", "last", "smallest", "largest"))),
-        rows=tuple(
-            (link, *(Number(value, decimals=3) for value in _ends(motion.angle(link)).values()))
-            for link in motion.linkage.moving
-        ),
-        caption="Directions of the links",
-    )
-    yield chart("link-angles", "Directions of the links", lambda: figure("angles_figure", moved))
-    yield chart("paths", "Paths of the joints", lambda: figure("paths_figure", motion, found.play))
+    directions: list[tuple[Cell, ...]] = [
+        (link, *(Number(value, decimals=3) for value in _directions(motion, link).values()))
+        for link in motion.linkage.moving
+    ]
+    columns = (words("link"), *(Column(title, "deg") for title in _ENDS))
+    yield Table(key="directions", columns=columns, rows=tuple(directions), caption="Directions of the links")
+    yield chart("link-angles", "Directions of the links", lambda: figures().angles_figure(moved))
+    yield chart("paths", "Paths of the joints", lambda: figures().paths_figure(motion, found.play))
     if springs := motion_springs(moved):
         yield Table(
             key="springs",
-            columns=(words("spring or tendon"), *map(Column, ("first", "last", "smallest", "largest"))),
-            rows=tuple(
-                (
-                    told,
-                    *(
-                        Number(float(value), derived=True)
-                        for value in (values[0], values[-1], values.min(), values.max())
-                    ),
-                )
-                for told, values in springs
-            ),
+            columns=(words("spring or tendon"), *map(Column, _ENDS)),
+            rows=tuple((told, *(Number(x, derived=True) for x in _ends(values))) for told, values in springs),
         )
 
 
@@ -117,10 +104,14 @@ def _dead_points(found: MotionFindings) -> Iterator[Text]:
         yield say(f"No dead point of {link} in the range, {beyond}; least distance (a ratio) {{least}}", **facts)
 
 
-def _ends(angles: Any) -> dict[str, float]:
-    """First, last, smallest and largest of angles [deg]."""
-    ends = {"first": angles[0], "last": angles[-1], "smallest": angles.min(), "largest": angles.max()}
-    return {key: math.degrees(float(value)) for key, value in ends.items()}
+def _ends(values: Any) -> list[float]:
+    """First, last, smallest and largest."""
+    return [float(value) for value in (values[0], values[-1], values.min(), values.max())]
+
+
+def _directions(motion: Motion, link: str) -> dict[str, float]:
+    """First, last, smallest and largest direction of a link [deg]."""
+    return dict(zip(_ENDS, map(math.degrees, _ends(motion.angle(link))), strict=True))
 
 
 def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
@@ -142,7 +133,7 @@ def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
         "returns_to_start": motion.returns,
         "inertia": moved.case.inert,
         "links": {
-            link: _ends(motion.angle(link)) | rates(links.get(link, {}), "angular_speed", "angular_acceleration")
+            link: _directions(motion, link) | rates(links.get(link, {}), "angular_speed", "angular_acceleration")
             for link in motion.linkage.moving
         },
         "points": {

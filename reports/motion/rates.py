@@ -6,14 +6,7 @@ from typing import Any
 from alula.fea.findings.rates import QUANTITIES, Rates
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.charts import chart
-from alula.reports.motion.extremes import (
-    SIZES,
-    every_extreme,
-    extreme_cells,
-    extreme_columns,
-    rate_cells,
-    rate_columns,
-)
+from alula.reports.motion.extremes import SIZES, every_extreme, extremes_table, rate_cells, rate_columns
 from alula.reports.sections.section import (
     Cell,
     Column,
@@ -148,35 +141,25 @@ def _size(row: Mapping[str, Any]) -> tuple[Number, Number]:
 
 def _energy(moved: CaseMotion, load_case: str, record: Mapping[str, Any]) -> Table:
     about, whole = record["about"]["joint"] or "the global origin", record["whole"]
-    return Table(
-        key="energy",
-        columns=(words("quantity"), words("unit"), *extreme_columns(moved.motion.unit, ends=False)),
-        rows=tuple(
-            (name.format(about=about), QUANTITIES[key], *extreme_cells(whole[key], ends=False))
-            for key, name in _WHOLE.items()
-            if whole[key] is not None
-        ),
-        caption="The linkage as a whole; of a vector, the largest size",
-        under=(("load case", load_case),),
-    )
+    known = [(key, name) for key, name in _WHOLE.items() if whole[key] is not None]
+    rows = ((name.format(about=about), QUANTITIES[key], whole[key]) for key, name in known)
+    caption = "The linkage as a whole; of a vector, the largest size"
+    return extremes_table("energy", load_case, rows, moved.motion.unit, ends=False, caption=caption)
+
+
+def _figures() -> Any:
+    from alula.reports.figures.motion import rate_figures
+
+    return rate_figures
 
 
 def _speeds(rates: Rates, title: str) -> Iterator[Picture]:
     """Yield what moves at a speed: links and points."""
-
-    def draw(of: str) -> Any:
-        from alula.reports.figures.motion.rate_figures import speeds_figure
-
-        return speeds_figure(rates, of, title)
-
-    yield chart("link-speeds", "Angular speeds and accelerations of the links", lambda: draw("links"))
-    yield chart("point-speeds", "Speeds and accelerations of the points, as sizes", lambda: draw("points"))
+    links, points = "Angular speeds and accelerations of the links", "Speeds and accelerations of the points, as sizes"
+    yield chart("link-speeds", links, lambda: _figures().speeds_figure(rates, "links", title))
+    yield chart("point-speeds", points, lambda: _figures().speeds_figure(rates, "points", title))
 
 
 def _energy_picture(moved: CaseMotion, load_case: str, rates: Rates, name: str) -> Picture:
-    def draw() -> Any:
-        from alula.reports.figures.motion.rate_figures import energy_figure
-
-        return energy_figure(moved, load_case, rates)
-
-    return chart(name, f"Energies, power of the drive and force on the ground, load case {load_case}", draw)
+    title = f"Energies, power of the drive and force on the ground, load case {load_case}"
+    return chart(name, title, lambda: _figures().energy_figure(moved, load_case, rates))

@@ -1,6 +1,6 @@
 """What ``alula.check`` returns."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,7 @@ from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
 from alula.reports.check.whole_check import check_sections
-from alula.reports.notebook.shown import Row, ShownPicture, ShownTable, Tabled, pick, summary, table_of
+from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, summary, table_of
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
 from alula.reports.sentences import told
@@ -365,32 +365,3 @@ class CheckReport(Tabled):
 def _applicable(checks: Sequence[CheckOutcome]) -> ShownTable:
     judged, several = [check for check in checks if check.applies], len({check.load_case for check in checks}) > 1
     return ShownTable.of([check_table(judged, several=several)], RENAMED["checks"])
-
-
-def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
-    """Return one row per check.
-
-    Parameters
-    ----------
-    checks : iterable of CheckOutcome
-
-    Returns
-    -------
-    list of Row
-    """
-    return [
-        {
-            "check": check.name,
-            "link": check.link,
-            "load case": check.load_case,
-            "quantity": check.quantity,
-            "value": check.value.value,
-            "low": check.value.told.low,
-            "high": check.value.told.high,
-            "unit": check.unit,
-            "sense": check.quantity.sense.value,
-            "limit": check.limit,
-            "verdict": check.answer,
-        }
-        for check in checks
-    ]

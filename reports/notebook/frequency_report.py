@@ -113,6 +113,3 @@ class FrequencyReport(Tabled):
 
     def __repr__(self) -> str:
         return f"<natural frequencies of {self.result.case.title!r}>"
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()

@@ -127,9 +127,6 @@ class MotionReport(Tabled):
 
         return _picture(paths_figure(self.result.motion, self._play))
 
-    def __str__(self) -> str:
-        return str(self.table())
-
     def __repr__(self) -> str:
         return f"<motion of {self.result.case.title!r}: {len(self.coordinates)} poses>"
 

@@ -58,11 +58,5 @@ class PartReport(Tabled):
             raise CannotRunError(trouble)
         return ShownPicture(picture.png())
 
-    def __str__(self) -> str:
-        return str(self.table())
-
     def __repr__(self) -> str:
         return f"<{self.result.path.name}: {len(self.result.facts.bores)} bores>"
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()

@@ -192,9 +192,15 @@ def table_of(sections: Iterable[Section], name: str, renamed: Mapping[str, str] 
 
 
 class Tabled:
-    """A report whose tables are frames of pandas on request."""
+    """A report that shows itself as its first table, and whose tables are frames of pandas on request."""
 
     table: Callable[..., ShownTable]
+
+    def __str__(self) -> str:
+        return str(self.table())
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
 
     def frame(self, *of: str) -> "DataFrame":
         """Return a table of the report as a frame of pandas, which the extra ``alula[pandas]`` installs.

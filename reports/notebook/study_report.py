@@ -54,12 +54,6 @@ class StudyReport(Tabled):
             found = pictures_of(study_sections(read_study(store)))
         return {one.alt: ShownPicture(one.draw().png()) for one in found if one.draw is not None}
 
-    def __str__(self) -> str:
-        return str(self.table())
-
     def __repr__(self) -> str:
         told = ", ".join(f"{count} {name}" for name, count in self.counts.items())
         return f"<study of {sum(self.counts.values())} points: {told}>"
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()

@@ -1,11 +1,10 @@
 """What ``alula.synthesise`` returns."""
 
-import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from alula.geometry.mechanisms.synthesis import Synthesis
-from alula.reports.commands.synthesis import draw_linkage
+from alula.reports.figures.four_bar import precision_points_png
 from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, table_of
 from alula.reports.tools.synthesis import POINTS, synthesis_section
 
@@ -38,16 +37,8 @@ class SynthesisReport(Tabled):
 
     def plot_linkage(self) -> ShownPicture:
         """Draw the linkage at the three precision points."""
-        stream = io.BytesIO()
-        draw_linkage(self.result, stream)
-        return ShownPicture(stream.getvalue())
-
-    def __str__(self) -> str:
-        return str(self.table())
+        return ShownPicture(precision_points_png(self.result))
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} {length:.4g} mm" for name, length in self.lengths.items())
         return f"<four-bar: {told}>"
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()

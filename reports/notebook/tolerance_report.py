@@ -66,11 +66,5 @@ class ToleranceReport(Tabled):
 
         return ShownPicture(spread_picture(pick(self.numbers, number, "number")).png())
 
-    def __str__(self) -> str:
-        return str(self.table())
-
     def __repr__(self) -> str:
         return f"<{self.result.samples} samples of {len(self.result.tolerances)} tolerances>"
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()

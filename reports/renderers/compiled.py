@@ -2,16 +2,14 @@
 
 import os
 import sys
-import tempfile
 from contextlib import suppress
 from importlib.resources import files
-from pathlib import Path
 
-from jinja2 import BytecodeCache
+from jinja2 import FileSystemBytecodeCache
 from jinja2.bccache import Bucket
 
 
-class CompiledTemplates(BytecodeCache):
+class CompiledTemplates(FileSystemBytecodeCache):
     """Keeps templates in ``__pycache__`` of their folder, as Python keeps modules, and only where Python keeps these.
 
     A template that changed, and another version of jinja2 or of Python, is compiled anew; where nothing can be written,
@@ -19,7 +17,8 @@ class CompiledTemplates(BytecodeCache):
     """
 
     def __init__(self) -> None:
-        self.folder = Path(str(files("alula.reports.templates"))) / "__pycache__"
+        folder = files("alula.reports.templates") / "__pycache__"
+        super().__init__(str(folder), f"%s.{sys.implementation.cache_tag}.jinja")
 
     def load_bytecode(self, bucket: Bucket) -> None:
         """Read a compiled template, if there is one.
@@ -28,8 +27,8 @@ class CompiledTemplates(BytecodeCache):
         ----------
         bucket : Bucket
         """
-        with suppress(OSError), self._of(bucket).open("rb") as stream:
-            bucket.load_bytecode(stream)
+        with suppress(OSError):
+            super().load_bytecode(bucket)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
         """Write a compiled template, whole or not at all.
@@ -38,18 +37,7 @@ class CompiledTemplates(BytecodeCache):
         ----------
         bucket : Bucket
         """
-        if sys.dont_write_bytecode:
-            return
-        with suppress(OSError):
-            self.folder.mkdir(exist_ok=True)
-            number, name = tempfile.mkstemp(dir=self.folder)
-            try:
-                with os.fdopen(number, "wb") as stream:
-                    bucket.write_bytecode(stream)
-                os.replace(name, self._of(bucket))
-            except BaseException:
-                Path(name).unlink(missing_ok=True)
-                raise
-
-    def _of(self, bucket: Bucket) -> Path:
-        return self.folder / f"{bucket.key}.{sys.implementation.cache_tag}.jinja"
+        if not sys.dont_write_bytecode:
+            with suppress(OSError):
+                os.makedirs(self.directory, exist_ok=True)
+                super().dump_bytecode(bucket)

@@ -49,17 +49,17 @@ def print_sections(sections: Iterable[Section], console: "Console", *, said: Ite
             print_parts(section.parts, console, said)
 
 
-def print_parts(parts: Iterable[Part], console: "Console", said: list[str] | None = None) -> None:
+def print_parts(parts: Iterable[Part], console: "Console", said: list[str]) -> None:
     """Print parts of a section; a table of which another of them has every row is left out.
 
     Parameters
     ----------
     parts : Iterable[Part]
     console : Console
-    said : list of str, optional
+    said : list of str
         Paragraphs that were told before, and will be here: no table tells them again below its rows.
     """
-    parts, said = tuple(parts), [] if said is None else said
+    parts = tuple(parts)
     whole = [one for part in parts if isinstance(part, Folded) and part.told for one in part.parts]
     for part in parts:
         if isinstance(part, Table) and any(_holds(one, part) for one in whole):

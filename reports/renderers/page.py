@@ -1,6 +1,5 @@
 """Sections as one HTML page, which loads nothing from elsewhere."""
 
-import base64
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -8,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from alula.geometry.base.version import alula_version
+from alula.reports.figures.sheet.drawing import data_uri
 from alula.reports.page.policy import sealed
 from alula.reports.sections.markup import as_html, code
 from alula.reports.sections.section import Beside, Cell, Column, Folded, Group, Mark, Part, Picture, Section, parts_of
@@ -198,18 +198,3 @@ def drawn(picture: Any, alt: str) -> str:
     if hasattr(picture, "element"):
         return str(picture.element(alt))
     return f'<img src="{data_uri(picture)}" alt="{as_html(alt)}">'
-
-
-def data_uri(picture: bytes) -> str:
-    """Return the bytes of a PNG, WebP or GIF file as a data URI.
-
-    Parameters
-    ----------
-    picture : bytes
-
-    Returns
-    -------
-    str
-    """
-    kind = "webp" if picture.startswith(b"RIFF") else "gif" if picture.startswith(b"GIF") else "png"
-    return f"data:image/{kind};base64," + base64.b64encode(picture).decode("ascii")

@@ -33,19 +33,18 @@ def as_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
     dict
         Infinite and undefined numbers are None, and ``nulls`` lists them.
     """
-    entries = merged(section.data for section in sections)
     nulls: dict[str, str] = {}
-    found = finite({**result_stamp(), "units": field_units(), **head, **entries}, nulls)
-    assert isinstance(found, dict)
-    return found | {"nulls": nulls}
+    return as_brief_record(sections, nulls, units=field_units(), **head) | {"nulls": nulls}
 
 
-def as_brief_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
+def as_brief_record(sections: Iterable[Section], nulls: dict[str, str] | None = None, /, **head: Any) -> dict[str, Any]:
     """Return all entries of sections as data that JSON can hold, without ``nulls`` and without the unit of each field.
 
     Parameters
     ----------
     sections : iterable of Section
+    nulls : dict, optional
+        As of ``finite``.
     **head
         Entries above theirs.
 
@@ -54,7 +53,8 @@ def as_brief_record(sections: Iterable[Section], **head: Any) -> dict[str, Any]:
     dict
         Infinite and undefined numbers are None.
     """
-    return dict(finite({**result_stamp(), **head, **merged(section.data for section in sections)}, {}))
+    entries = merged(section.data for section in sections)
+    return dict(finite({**result_stamp(), **head, **entries}, {} if nulls is None else nulls))
 
 
 def as_json(record: Mapping[str, Any]) -> str:

@@ -33,7 +33,7 @@ from alula.reports.sections.section import (
     words,
 )
 from alula.reports.sentences import told as in_words
-from alula.reports.sentences.motion import directions
+from alula.reports.sentences.places import directions
 from alula.reports.words.numbers import joined, sentence
 
 LEFT_OUT = (

@@ -1,25 +1,22 @@
 """How a reason becomes a sentence.
 
-A sentence is a text with places such as ``{share:percent}``, or a function of the facts where words depend on them.
-What follows the colon is how a fact is written: a whole number for significant digits, ``short3`` for three at most,
-``share2`` for a share in percent with two at most, ``percent``, ``plain``, ``fixed2`` for two decimals, ``and`` for a
-list of names as ``a, b and c``; each of another list is written by itself, ``a, b, c``. A band and a reason are told in
-their place.
+A sentence is a text with places such as ``{share:percent}`` in one of the TOML files of this folder, by the kind of its
+reason, or a function of ``arranged`` where a text with places would not do. ``places`` says how facts are written in
+their places. Reasons among the facts are told first.
 """
 
-import string
+import tomllib
 from collections.abc import Callable, Mapping
 from functools import cache
-from importlib import import_module
+from importlib.resources import files
 from typing import Any
 
-from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
-from alula.reports.words.numbers import band, fixed, joined, number, percent, plain, short
+from alula.reports.sentences.arranged import ARRANGED
+from alula.reports.sentences.places import FactFormatter
 
 Sentence = str | Callable[..., str]
 FILES = ("bands", "caveats", "envelopes", "frames", "hand", "links", "linkage", "motion", "runs")
-"""Of the sentences, each with a table ``SENTENCES``."""
 
 
 def told(what: Reason | str) -> str:
@@ -41,10 +38,15 @@ def told(what: Reason | str) -> str:
     """
     if isinstance(what, str):
         return what
-    sentence, facts = sentences()[what.kind], dict(what.facts)
-    if callable(sentence):
-        return sentence(**facts)
-    return _Places().vformat(sentence, (), facts)
+    sentence, facts = sentences()[what.kind], {name: _in_words(fact) for name, fact in what.facts}
+    return sentence(**facts) if callable(sentence) else FactFormatter().vformat(sentence, (), facts)
+
+
+def _in_words(fact: Any) -> Any:
+    """Return a fact with the reasons in it told."""
+    if isinstance(fact, tuple):
+        return tuple(map(_in_words, fact))
+    return told(fact) if isinstance(fact, Reason) else fact
 
 
 @cache
@@ -55,36 +57,11 @@ def sentences() -> Mapping[str, Sentence]:
     -------
     mapping
     """
-    found: dict[str, Sentence] = {}
+    found: dict[str, Sentence] = dict(ARRANGED)
     for name in FILES:
-        own: Mapping[str, Sentence] = import_module(f"alula.reports.sentences.{name}").SENTENCES
+        text = files("alula.reports.sentences").joinpath(f"{name}.toml").read_text(encoding="utf-8")
+        own: Mapping[str, str] = tomllib.loads(text)
         twice = found.keys() & own.keys()
         assert not twice, f"two sentences for {sorted(twice)}"
         found |= own
     return found
-
-
-class _Places(string.Formatter):
-    """Writes the facts of a sentence as all numbers of a report are written."""
-
-    def format_field(self, value: Any, format_spec: str) -> str:
-        """Return a fact as text; ``alula.reports.sentences.catalogue`` says how."""
-        if isinstance(value, Reason):
-            return told(value)
-        if format_spec == "and":
-            return joined([told(one) for one in value])
-        if isinstance(value, tuple):
-            return ", ".join(self.format_field(one, format_spec) for one in value)
-        if isinstance(value, Band):
-            return band(value, int(format_spec) if format_spec.isdigit() else 3)
-        if format_spec.isdigit():
-            return number(value, int(format_spec))
-        if format_spec.startswith("short"):
-            return short(value, int(format_spec.removeprefix("short")))
-        if format_spec.startswith("share"):
-            return f"{short(100.0 * value, int(format_spec.removeprefix('share')))} %"
-        if format_spec.startswith("fixed"):
-            return fixed(value, int(format_spec.removeprefix("fixed")))
-        if format_spec in ("percent", "plain"):
-            return {"percent": percent, "plain": plain}[format_spec](value)
-        return format(value, format_spec)

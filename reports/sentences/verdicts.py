@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
 from alula.loads.text.caveat import Caveat, Heading
 from alula.reports.sentences import told
-from alula.reports.sentences.caveats import caveat
+from alula.reports.sentences.caveats import by_heading
 from alula.reports.words.numbers import joined, measured, number, plain, sentence
 
 if TYPE_CHECKING:
@@ -98,12 +98,9 @@ def besides(found: Iterable[Caveat]) -> str:
     str
         Such as ``Assumed: pins of steel-wire (no pin_material stated). Not checked: vibration (no check).``
     """
-    every = list(found)
-    told = {
-        heading: [caveat(one, short=True) for one in every if one.heading is heading]
-        for heading in (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
-    }
-    return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)
+    order = (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
+    by_order = sorted(found, key=lambda one: order.index(one.heading))
+    return " ".join(f"{heading}: {told}" for heading, told in by_heading(by_order, short=True))
 
 
 def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool, names: bool = True) -> str:

@@ -8,6 +8,7 @@ from alula.fea.study.store import NAME, Store
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.version import alula_version
 from alula.reports.page.output import place, refuse_unusable, write_folder
+from alula.reports.renderers.folder import drawn_pictures
 from alula.reports.renderers.page import Page, as_page
 from alula.reports.sections.markup import code
 from alula.reports.sections.section import Picture, Section, Text, parts_of
@@ -49,7 +50,7 @@ def write_study(folder: Path, output: Path, wanted: Sequence[str] = ()) -> Path:
     if not len(study.outcome):
         raise CaseError("study: no point of it has a result yet; go on with 'alula study', then draw it")
     page = study_page(study, study_sections(study))
-    drawn = {picture.name: picture.draw() for picture in pictures_of(page.sections) if picture.draw is not None}
+    drawn = drawn_pictures(page)
 
     def fill(target: Path) -> None:
         (target / PAGE).write_text(as_page(page, drawn), encoding="utf-8")

@@ -10,6 +10,8 @@ from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import margin, nearest, sense_of
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import Store
+from alula.fea.tolerance.result import ToleranceNumber
+from alula.reports.sections.data import entries
 from alula.reports.sections.section import Number, Section
 
 
@@ -97,9 +99,7 @@ def results_section(store: Store) -> Section:
         {
             "position": row.position,
             "parameters": dict(row.parameters),
-            "state": row.answer.state,
-            "verdict": row.answer.verdict,
-            "sentence": row.answer.sentence,
+            **entries(row.answer, "state verdict sentence"),
             "attempts": row.attempts,
             "seconds": row.answer.seconds,
             "numbers": [found.__dict__ for found in row.answer.numbers],
@@ -152,6 +152,20 @@ def title(found: VariantNumber) -> str:
     return f"{found.quantity} of {found.subject}{where}{check} [{found.unit}]"
 
 
+def shown_unit(found: VariantNumber | ToleranceNumber) -> str:
+    """Return the unit of a number, "" of a pure number.
+
+    Parameters
+    ----------
+    found : VariantNumber or ToleranceNumber
+
+    Returns
+    -------
+    str
+    """
+    return "" if found.unit == "1" else found.unit
+
+
 def checked(found: VariantNumber) -> dict[str, Any]:
     """Return what a check looks at (``what``), its ``value`` with the band, and its ``limit``, as they are told.
 
@@ -165,7 +179,7 @@ def checked(found: VariantNumber) -> dict[str, Any]:
     dict
         A text and two numbers.
     """
-    unit = "" if found.unit == "1" else found.unit
+    unit = shown_unit(found)
     return {
         "what": f"{found.quantity} of {found.subject}",
         "value": Number(Band(value=found.value, low=found.low, high=found.high), unit),

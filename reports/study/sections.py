@@ -84,11 +84,8 @@ def _outcome(study: StudyColumns) -> tuple[Part, ...]:
     found: list[Part] = [Text(bold(headline(Counter(study.outcome.tolist()), study.facts["points"])))]
     for which, row in study.extremes.items():
         assert row.nearest is not None
-        end, facts = f"{which}, point {row.position}", checked(row.nearest)
-        found.append(
-            say("{end}: {outcome}, {what} {value} ({limit}); {stated}", end=end.capitalize(), outcome=row.outcome,
-                stated=row.stated, **facts)
-        )  # fmt: skip
+        facts = {"end": f"{which}, point {row.position}", "outcome": row.outcome, "stated": row.stated}
+        found.append(say("{end}: {outcome}, {what} {value} ({limit}); {stated}", **facts, **checked(row.nearest)))
     if len(study.undecided) > 1 and not study.extremes:
         found.append(Text(ALIKE))
     if study.undecided:
@@ -125,10 +122,9 @@ def _varies(study: StudyColumns) -> tuple[Part, ...]:
 def _values(one: Parameter) -> tuple[str, Number]:
     """The values of an entry, and how many there are."""
     values = list(one.words) or [plain(value) for value in np.unique(one.values).tolist()]
-    if len(values) <= _MOST_WORDS:
-        told = ", ".join(values)
-    else:
-        told = ", ".join(values[:_MOST_WORDS]) + " ..." if one.words else f"{values[0]} to {values[-1]}"
+    told = ", ".join(values[:_MOST_WORDS])
+    if len(values) > _MOST_WORDS:
+        told = f"{told} ..." if one.words else f"{values[0]} to {values[-1]}"
     return f"{told} {one.unit}".rstrip(), _count(len(values))
 
 
@@ -137,16 +133,10 @@ def _count(number: int) -> Number:
 
 
 def _limits(study: StudyColumns) -> tuple[Part, ...]:
-    if not study.limiting:
-        return ()
-    return (
-        Table(
-            key="limits",
-            columns=(words("check"), Column("points")),
-            rows=tuple((name, _count(count)) for name, count in study.limiting.items()),
-            caption="The check that is nearest to its limit, or farthest beyond, by the unfavourable end of its band",
-        ),
-    )
+    caption = "The check that is nearest to its limit, or farthest beyond, by the unfavourable end of its band"
+    rows = tuple((name, _count(count)) for name, count in study.limiting.items())
+    columns = (words("check"), Column("points"))
+    return (Table(key="limits", columns=columns, rows=rows, caption=caption),) if rows else ()
 
 
 def _lost(study: StudyColumns) -> tuple[Part, ...]:
@@ -180,25 +170,25 @@ def points_table(
         Column("point"),
         *(words(entry(path)) for path in paths),
         words("verdict"),
-        *(nearest if margins else ()),
+        *(column if margins else None for column in nearest),
         *(Column(name) for name in numbers),
-        *((Column("mass", "g"),) if weighed else ()),
+        Column("mass", "g") if weighed else None,
     )
 
-    def cells(row: Row) -> list[Cell]:
-        found: list[Cell] = [Number(float(row.position), decimals=0)]
-        found += [str(row.parameters.get(path, "")) for path in paths]
-        found.append(Mark(row.outcome, str(row.answer.verdict or "")))
-        if margins and row.nearest is None:
-            found += ["", "", "", ""]
-        elif margins and row.nearest is not None:
-            facts = checked(row.nearest)
-            found += [Number(row.margin, digits=3, derived=True), facts["what"], facts["value"], facts["limit"]]
+    def cells(row: Row) -> tuple[Cell | None, ...]:
+        facts = {} if row.nearest is None else checked(row.nearest)
         known = {title(one).removesuffix(" [1]"): one.value for one in row.answer.numbers}
-        found += [Number(known[name]) if not math.isnan(known.get(name, math.nan)) else "" for name in numbers]
-        return found + (["" if row.mass is None else Number(row.mass)] if weighed else [])
+        return (
+            Number(float(row.position), decimals=0),
+            *(str(row.parameters.get(path, "")) for path in paths),
+            Mark(row.outcome, str(row.answer.verdict or "")),
+            Number(row.margin, digits=3, derived=True) if facts else None,
+            *(facts.get(key) for key in ("what", "value", "limit")),
+            *(None if math.isnan(known.get(name, math.nan)) else Number(known[name]) for name in numbers),
+            None if row.mass is None else Number(row.mass),
+        )
 
-    return Table(key="points", columns=columns, rows=tuple(tuple(cells(row)) for row in rows))
+    return Table.of(columns, map(cells, rows), key="points")
 
 
 def _points(study: StudyColumns) -> tuple[Part, ...]:

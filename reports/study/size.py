@@ -1,6 +1,6 @@
 """What a search for a size found: of one entry, or of several the best combination."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import Any
 
@@ -12,8 +12,8 @@ from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Column, Folded, Mark, Number, Part, Section, Table, Text, say, words
 from alula.reports.sentences.verdicts import besides
-from alula.reports.study.rows import checked, number_text
-from alula.reports.words.numbers import percent
+from alula.reports.study.rows import checked, number_text, shown_unit
+from alula.reports.words.numbers import percent, sentence
 
 SOLVED = "solved"
 """Name of the table of all that the model that decides solved."""
@@ -49,30 +49,29 @@ def _least(found: Sized) -> tuple[str, list[Part]]:
         title = f"{least} {found.path} that passes: {values[found.passing]}."
         if found.passing == (0 if found.rising else len(values) - 1):
             parts.append(Text("The range begins with it; values beyond may pass, too."))
-    failing = f"The {most} that fails: {{value}}" if found.failing is not None else f"None from {span} fails"
-    parts.append(say(failing, value="" if found.failing is None else values[found.failing]))
-    if found.opened:
-        parts.append(say("Undecided: {values}", values=", ".join(str(values[step]) for step in found.opened)))
-    if found.turns:
-        again = ", ".join(str(values[step]) for step in found.turns)
-        told = "The verdict turns more than once: {again} fails again. Choose from alula study with this range"
-        parts.append(say(told, again=again))
+    failing = f"None from {span} fails" if found.failing is None else f"The {most} that fails: {values[found.failing]}"
+    parts.append(Text(sentence(failing)))
+    opened, turns = (", ".join(str(values[step]) for step in steps) for steps in (found.opened, found.turns))
+    if opened:
+        parts.append(Text(sentence(f"Undecided: {opened}")))
+    if turns:
+        told = f"The verdict turns more than once: {turns} fails again. Choose from alula study with this range."
+        parts.append(Text(told))
     # Where none passes, the undecided step on the passing side.
-    opened = max(found.opened, key=lambda step: step if found.rising else -step, default=None)
-    best = found.passing if found.passing is not None else opened
-    parts += [_limited(found, step) for step in dict.fromkeys((best, found.failing)) if _limits(found, step)]
+    nearly = max(found.opened, key=lambda step: step if found.rising else -step, default=None)
+    best = found.passing if found.passing is not None else nearly
+    for step in dict.fromkeys((best, found.failing)):
+        parts += _limited(found, step)
     solved = [({found.path: values[step]}, result) for step, result in sorted(found.results.items())]
     return title, [*parts, Folded("Values that were solved", (_table(solved),))]
 
 
-def _limits(found: Sized, step: int | None) -> bool:
-    return step is not None and found.limit(step) is not None
-
-
-def _limited(found: Sized, step: int | None) -> Text:
-    assert step is not None
-    limit, gain = found.limit(step), found.gain(step)
-    assert limit is not None
+def _limited(found: Sized, step: int | None) -> Iterator[Text]:
+    """Yield what limits a value, if anything is known to."""
+    limit = None if step is None else found.limit(step)
+    if step is None or limit is None:
+        return
+    gain = found.gain(step)
     facts: dict[str, Any] = {"at": found.values[step], **checked(limit)}
     told = "At {at} {what} {value} ({limit}) limits it"
     if gain is not None and step < len(found.values) - 1:
@@ -80,7 +79,7 @@ def _limited(found: Sized, step: int | None) -> Text:
         other = found.values[step + (1 if found.rising else -1)]
         share = Number(abs(gain), "%", digits=2, factor=100.0, derived=True)
         told, facts = told + f"; {{other}} {verb} it by some {{share}}", facts | {"other": other, "share": share}
-    return say(told, **facts)
+    yield say(told, **facts)
 
 
 def _best(found: Lightest) -> tuple[str, list[Part]]:
@@ -112,7 +111,7 @@ def _best(found: Lightest) -> tuple[str, list[Part]]:
 
 def _cost(found: Lightest, place: Place) -> Number | None:
     cost = found.objective.number(found.solved[place])
-    return None if cost is None else Number(cost.value, "" if cost.unit == "1" else cost.unit)
+    return None if cost is None else Number(cost.value, shown_unit(cost))
 
 
 def _gained(found: Lightest, gain: Gain) -> str:
@@ -155,10 +154,7 @@ def _sized_record(found: Sized) -> dict[str, Any]:
         "failing": value(found.failing),
         "undecided": [value(step) for step in found.opened],
         "fails_beyond": [value(step) for step in found.turns],
-        "solved": [
-            {"value": value(step), **_outcome(result), "limit": _plain(found.limit(step))}
-            for step, result in sorted(found.results.items())
-        ],
+        "solved": [{"value": value(step), **_outcome(result)} for step, result in sorted(found.results.items())],
     }
 
 
@@ -172,15 +168,14 @@ def _lightest_record(found: Lightest) -> dict[str, Any]:
         "limit": _plain(found.limit),
         "gains": [gain.__dict__ for gain in found.gains],
         "solved": [
-            {"values": found.point(place), **_outcome(result)}
-            | {"objective": _plain(found.objective.number(result)), "limit": _plain(nearest(result))}
+            {"values": found.point(place), **_outcome(result, objective=_plain(found.objective.number(result)))}
             for place, result in found.solved.items()
         ],
     }
 
 
-def _outcome(result: VariantResult) -> dict[str, Any]:
-    return {"state": result.state, "verdict": result.verdict, "sentence": result.sentence}
+def _outcome(result: VariantResult, **more: object) -> dict[str, Any]:
+    return {**entries(result, "state verdict sentence"), **more, "limit": _plain(nearest(result))}
 
 
 def _plain(number: VariantNumber | None) -> dict[str, Any] | None:

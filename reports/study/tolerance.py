@@ -13,6 +13,7 @@ from alula.reports.sections.data import entries
 from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, say, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import besides
+from alula.reports.study.rows import shown_unit
 from alula.reports.words.numbers import sentence
 
 MOST = 8
@@ -71,17 +72,13 @@ def _numbers(result: ToleranceResult) -> Table:
         sense = "≥" if one.at_least else "≤"
         return (
             name,
-            "" if one.unit == "1" else one.unit,
+            shown_unit(one),
             *(Number(value, digits=3) for value in (one.nominal[0], *one.percentiles(1.0, 50.0, 99.0).tolist())),
             "" if math.isnan(one.limit) else Number(one.limit, stated=True, sense=sense),
             *("" if found is None else Number(found.value, probable=True) for found in (one.certain, one.possible)),
         )
 
-    return Table(
-        key="numbers",
-        columns=tuple(columns),
-        rows=tuple(map(cells, names(result), result.numbers)),
-    )
+    return Table(key="numbers", columns=tuple(columns), rows=tuple(map(cells, names(result), result.numbers)))
 
 
 def _passes(result: ToleranceResult) -> Iterator[Text]:
@@ -98,17 +95,13 @@ def _passes(result: ToleranceResult) -> Iterator[Text]:
     if math.isnan(corner.value):
         yield say("{what}: the linkage has no equilibrium there", what=what)
     else:
-        unit = "" if closest.unit == "1" else closest.unit
-        value = Number(Band(value=corner.value, low=corner.low, high=corner.high), unit)
+        value = Number(Band(value=corner.value, low=corner.low, high=corner.high), shown_unit(closest))
         yield say("{what}: {value}, all tolerances at their worse ends", what=what, value=value)
 
 
 def _likely(what: str, found: Probability, ending: str = "") -> Text:
-    share, low, high = (Number(value, probable=True) for value in (found.value, found.low, found.high))
-    return say(
-        "{what} {share} (95 % confidence: {low} to {high}){ending}",
-        what=what, share=share, low=low, high=high, ending=ending,
-    )  # fmt: skip
+    ends = {end: Number(getattr(found, end), probable=True) for end in ("value", "low", "high")}
+    return say(f"{what} {{value}} (95 % confidence: {{low}} to {{high}}){ending}", **ends)
 
 
 def _causes(result: ToleranceResult) -> Iterator[Table]:
@@ -118,13 +111,13 @@ def _causes(result: ToleranceResult) -> Iterator[Table]:
         if (one is not closest and one.certain is not None) or not np.isfinite(one.total).any():
             continue
         order = [i for i in np.argsort(-one.total).tolist() if one.total[i] >= 0.005][:MOST]
-        shares = [(max(float(one.first[i]), 0.0), float(one.total[i])) for i in order]
+        first, total = np.maximum(one.first, 0.0), one.total
         yield Table(
             key="causes",
             columns=(words("tolerance"), Column("by itself"), Column("in all")),
             rows=tuple(
-                (result.tolerances[i], Number(first, decimals=2), Number(total, decimals=2))
-                for i, (first, total) in zip(order, shares, strict=True)
+                (result.tolerances[i], *(Number(float(share[i]), decimals=2) for share in (first, total)))
+                for i in order
             ),
             caption=f"Sobol' indices of the {one.title}, shares of its variance",
             under=(("number", name),),

@@ -3,12 +3,11 @@
 import math
 from typing import Any
 
-from alula.geometry.mechanisms.synthesis import DRIVES, Drive, LockUp, PrecisionPoint, Synthesis
+from alula.geometry.mechanisms.synthesis import DRIVES, LockUp, PrecisionPoint, Synthesis
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Column, Group, Items, Number, Part, Section, Table, Text, say, words
+from alula.reports.words.four_bar import ANGLES, seen, unit_of
 
-ANGLES = {"a": "φ", "b": "θ", "c": "ψ"}
-"""Direction of each link."""
 POINTS = "points"
 """Name of the table of the precision points."""
 
@@ -76,35 +75,6 @@ def _lock_ups(found: tuple[LockUp, ...]) -> Table:
 
 def _degrees(angle: float) -> Number:
     return Number(math.degrees(angle), decimals=4)
-
-
-def seen(point: PrecisionPoint, drive: Drive) -> str:
-    """Return on which branch a precision point lies, as seen from a driven link.
-
-    Parameters
-    ----------
-    point : PrecisionPoint
-    drive : Drive
-
-    Returns
-    -------
-    str
-    """
-    return point.branches[drive] or "dead point"
-
-
-def unit_of(synthesis: Synthesis) -> tuple[str, float]:
-    """Return the unit in which lengths are told, and the mm in it.
-
-    Parameters
-    ----------
-    synthesis : Synthesis
-
-    Returns
-    -------
-    tuple[str, float]
-    """
-    return ("m", 1000.0) if synthesis.four_bar.d >= 1000.0 else ("mm", 1.0)
 
 
 def _in_unit(text: str, synthesis: Synthesis) -> str:

@@ -30,6 +30,8 @@ _TALLEST, _LOWEST = 430.0, 70.0
 _RIGHT, _ABOVE, _BELOW, _LETTERS, _ROW = 16.0, 18.0, 40.0, 8.5, 13.0
 _MARGIN = 0.04
 """Room about the outlines over the size of what is drawn."""
+_ALONG = np.linspace(0.0, 1.0, 400)
+"""Shares of a border at which labels see it."""
 _STRETCHES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 
@@ -282,9 +284,9 @@ def border(geometry: Any) -> Real:
     -------
     array (n, 2)
     """
-    line = geometry.boundary
-    count = 400
-    return np.array([line.interpolate(share, normalized=True).coords[0] for share in np.linspace(0.0, 1.0, count)])
+    import shapely
+
+    return np.asarray(shapely.get_coordinates(geometry.boundary.interpolate(_ALONG, normalized=True)))
 
 
 def _anchors(placed: Placed, link: str) -> Real:

@@ -70,7 +70,7 @@ class Drawing(Protocol):
 
 
 def data_uri(picture: bytes) -> str:
-    """Return a PNG or a WebP as a data URI.
+    """Return the bytes of a PNG, WebP or GIF file as a data URI.
 
     Parameters
     ----------
@@ -82,5 +82,5 @@ def data_uri(picture: bytes) -> str:
     """
     import base64
 
-    kind = "webp" if picture.startswith(b"RIFF") else "png"
+    kind = "webp" if picture.startswith(b"RIFF") else "gif" if picture.startswith(b"GIF") else "png"
     return f"data:image/{kind};base64," + base64.b64encode(picture).decode("ascii")

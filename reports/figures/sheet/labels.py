@@ -82,9 +82,10 @@ class _Crowd:
         self.shape = np.array([math.ceil(sheet.width / _CELL), math.ceil(sheet.height / _CELL)])
         cells = np.floor(points / _CELL).astype(np.int64)
         cells = cells[((cells >= 0) & (cells < self.shape)).all(axis=1)]
-        counts = np.zeros(self.shape + 1, dtype=np.int64)
-        np.add.at(counts, tuple(cells.T + 1), 1)
-        self.sums = counts.cumsum(axis=0).cumsum(axis=1)
+        self.sums = np.zeros(self.shape + 1, dtype=np.int64)
+        np.add.at(self.sums, tuple(cells.T + 1), 1)
+        for axis in (0, 1):
+            np.cumsum(self.sums, axis=axis, out=self.sums)
 
     def inside(self, boxes: Real) -> NDArray[np.int64]:
         """Return the number of points in boxes (k, 4)."""

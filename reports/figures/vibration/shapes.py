@@ -12,7 +12,7 @@ from alula.fea.vibration.modes import Mode
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.plot import ticks
 from alula.reports.figures.sheet.style import GROUND, INK, LINK, LOAD, WIDTH
-from alula.reports.sentences.motion import directions
+from alula.reports.sentences.places import directions
 from alula.reports.words.numbers import band, plain
 
 Real = NDArray[np.float64]

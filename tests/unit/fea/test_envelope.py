@@ -560,19 +560,18 @@ def test_stress_along_a_link_is_that_of_its_field(result):
     assert worst.stress[link.worst.pose] == pytest.approx(of_field, rel=1e-6)
 
 
-def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch):
-    from alula.reports.commands.envelope import write_envelope
+def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch, capsys):
+    from alula.reports.commands.envelope import tell_envelope
     from alula.reports.figures import figures
 
     monkeypatch.setattr(figures, "plots_of", lambda scenes, points: ({}, ("no renderer",)))
-    told = []
-    write_envelope(result, tmp_path / "out", progress=told.append)
+    tell_envelope(result, tmp_path / "out")
     out = tmp_path / "out" / "envelope"
     assert {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()} == {
         ".alula-envelope.json", "result.json", "envelope.csv", "envelope.html", "envelope.png", "vtu/rocker.vtu"
     }  # fmt: skip
     assert (out / "envelope.png").read_bytes().startswith(b"\x89PNG")
-    assert "Warning: no renderer" in told
+    assert "Warning: no renderer\n" in capsys.readouterr().err
     page = (out / "envelope.html").read_text(encoding="utf-8")
     model = json.loads(page.split('data-model="linkage">')[1].split("</script>")[0])
     worst = result.links["rocker"].worst
@@ -603,16 +602,11 @@ def test_the_page_says_why_a_check_is_open_what_is_not_checked_and_lists_the_wor
     assert envelope_headline(open_result) in html.unescape(page)
 
 
-def test_console_names_link_angle_and_verdict(result):
-    from io import StringIO
+def test_console_names_link_angle_and_verdict(result, capsys):
+    from alula.reports.commands.envelope import tell_envelope
 
-    from rich.console import Console
-
-    from alula.reports.commands.envelope import print_envelope
-
-    stream = StringIO()
-    print_envelope(result, Console(file=stream, width=80))
-    text = stream.getvalue()
+    tell_envelope(result)
+    text = capsys.readouterr().out
     assert result.verdict.value.upper() in text
     assert "25 of 25 poses" in text
     assert "at crank" in text

@@ -22,10 +22,10 @@ from alula.geometry.placement.placed_body import bores_of
 from alula.loads.exchange.part import part_entries
 from alula.reports.commands.cli import app
 from alula.reports.commands.inspect_part import inspect_file
-from alula.reports.commands.telling import json_of
 from alula.reports.figures import figures
 from alula.reports.figures.part_picture import part_picture
 from alula.reports.figures.sheet import style
+from alula.reports.renderers.record import as_brief_record
 from alula.reports.tools.part import part_section
 
 FILES = Path(__file__).parents[2] / "data" / "step"
@@ -164,7 +164,7 @@ def test_record_entries_and_picture_go_to_the_folder(tmp_path):
 
 def test_the_record_is_as_documented():
     compare(
-        "inspect", *(json.loads(json_of([part_section(inspect_file(FILES / f"{name}.step", material))]))
+        "inspect", *(as_brief_record([part_section(inspect_file(FILES / f"{name}.step", material))])
                      for name, material in (("slotted", "pla-fdm-xy"), ("sleeve", None)))
     )  # fmt: skip
 

@@ -15,7 +15,7 @@ from told_motion import record, rows
 from alula.fea.findings.of_motion import motion_findings
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
-from alula.reports.commands.motion import print_motion, write_motion
+from alula.reports.commands.motion import tell_motion
 
 CASE = """
 schema_version = 1
@@ -197,7 +197,7 @@ def test_bad_input_ends_with_status_2_and_one_sentence(folder, override, words):
 
 
 def test_a_dead_point_of_the_drive_is_told(wing, capsys):
-    print_motion(motion_findings(wing), "owl-wing-static", json=False)
+    tell_motion(motion_findings(wing), "owl-wing-static")
     out = capsys.readouterr().out
     assert "Dead point of the driven link AE at GF = 213.5068 deg" in out
     [drive] = [line.split() for line in out.splitlines() if line.startswith("drive torque on AE")]
@@ -212,7 +212,7 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
     """Beside a standing motion: power and energies are there for every load case, in one table."""
     overrides = ["motion.inertia=false", 'motion.speed="0 rpm"', 'load_cases.idle.speed="600 rpm"', "motion.poses=25"]
     result = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), overrides))
-    print_motion(motion_findings(result), "crank", json=False)
+    tell_motion(motion_findings(result), "crank")
     standing, moving = capsys.readouterr().out.split("Load case idle")[:2]
     standing = standing.split("Load case push")[1]
     assert "without inertia" in standing
@@ -227,6 +227,6 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
 
 
 def test_a_range_is_shown_there_and_back(wing, tmp_path):
-    write_motion(motion_findings(wing), tmp_path, "owl-wing-static")
-    with Image.open(tmp_path / "linkage.gif") as picture:
+    tell_motion(motion_findings(wing), "owl-wing-static", tmp_path)
+    with Image.open(tmp_path / "motion" / "linkage.gif") as picture:
         assert picture.n_frames == 60

@@ -1,7 +1,5 @@
 """``docs/result.md`` and what the commands write name the same keys, of the same types."""
 
-import json
-
 import pytest
 from bars_in_layers import parallel_bars
 from result_paths import compare, documented
@@ -12,7 +10,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
-from alula.reports.commands.telling import json_of
+from alula.reports.renderers.record import as_brief_record
 from alula.reports.tools.synthesis import synthesis_section
 
 
@@ -33,7 +31,7 @@ def test_a_motion():
 
 
 def synthesised():
-    return json.loads(json_of([synthesis_section(read_synthesis(PUBLISHED_POINTS, PUBLISHED_GROUND))]))
+    return as_brief_record([synthesis_section(read_synthesis(PUBLISHED_POINTS, PUBLISHED_GROUND))])
 
 
 def test_a_synthesis():

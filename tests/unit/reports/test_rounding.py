@@ -14,7 +14,8 @@ from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.study.numbers import of_check
 from alula.loads.case.case_file import validate
 from alula.loads.statics.rounding import size_of, without_rounding
-from alula.reports.commands.statics import print_statics
+from alula.reports.commands.statics import statics_sections
+from alula.reports.commands.telling import tell
 from alula.reports.figures import drawings
 from alula.reports.notebook.check_report import CheckReport
 
@@ -72,7 +73,7 @@ def test_page_and_tables_tell_zero(checked, straight, capsys):
     assert not FAR.search(page)
     assert [row["size [N]"] for row in CheckReport(checked).table("joints")] == [20.0, 20.0, 20.0, 0.0]
     found = solve_case_statics(straight)
-    print_statics(replace(found, forces={"push": stained(found.forces["push"])}), json=False, matrix=False)
+    tell(statics_sections(replace(found, forces={"push": stained(found.forces["push"])}), matrix=False))
     text = capsys.readouterr().out.split("System")[0]
     assert "Drive torque on crank about O: 0 N·mm" in text
     assert re.search(r"^ *S +frame → piston +0 +0 +0 *$", text, flags=re.MULTILINE)

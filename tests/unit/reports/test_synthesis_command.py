@@ -13,11 +13,11 @@ from alula.reports.commands.cli import app
 from alula.reports.commands.synthesis import (
     PUBLISHED_GROUND,
     PUBLISHED_POINTS,
-    joints_at,
     read_synthesis,
-    write_synthesis,
 )
-from alula.reports.commands.telling import json_of, text_of
+from alula.reports.commands.telling import text_of
+from alula.reports.figures.four_bar import joints_at
+from alula.reports.renderers.record import as_brief_record
 from alula.reports.tools.synthesis import synthesis_section
 
 
@@ -39,7 +39,7 @@ def test_small_linkages_are_told_in_mm() -> None:
 
 
 def test_the_record_holds_points_branches_and_lock_ups(found) -> None:
-    data = json.loads(json_of([synthesis_section(found)]))
+    data = as_brief_record([synthesis_section(found)])
     assert data["lengths"]["b"] == pytest.approx(10343.91129, abs=5e-6)
     assert [point["branches"]["c"] for point in data["points"]] == ["open", "crossed", "open"]
     assert {lock["drive"] for lock in data["lock_ups"]} == {"a", "b", "c"}
@@ -64,14 +64,6 @@ def test_negative_lengths_are_drawn_turned() -> None:
         assert np.linalg.norm(b - a) == pytest.approx(found.four_bar.b, rel=1e-9)
 
 
-def test_record_and_drawing_are_written(found, tmp_path: Path) -> None:
-    write_synthesis(found, tmp_path)
-    assert json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["condition"] == pytest.approx(
-        76.849, abs=1e-3
-    )
-    assert (tmp_path / "linkage.png").read_bytes().startswith(b"\x89PNG")
-
-
 @pytest.mark.parametrize(
     ("points", "ground", "told"),
     [
@@ -93,3 +85,6 @@ def test_the_command_writes_into_a_subfolder_again_and_again(tmp_path: Path) -> 
         assert CliRunner().invoke(app, ["synth", "-o", str(tmp_path)]).exit_code == 0
     assert [path.name for path in tmp_path.iterdir()] == ["synth"]
     assert {path.name for path in (tmp_path / "synth").iterdir()} == {".alula-synth.json", "result.json", "linkage.png"}
+    record = json.loads((tmp_path / "synth" / "result.json").read_text(encoding="utf-8"))
+    assert record["condition"] == pytest.approx(76.849, abs=1e-3)
+    assert (tmp_path / "synth" / "linkage.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,44 @@
+"""Sentences whose words are put together from what they are told, where a text with places would not do."""
+
+from collections.abc import Callable
+
+from alula.reports.words.numbers import short
+
+Ends = tuple[float, float]
+
+
+def _span(ends: Ends) -> str:
+    return " to ".join(short(end, 3) for end in ends)
+
+
+def _limit(ends: Ends) -> str:
+    return short(ends[0], 3) if ends[0] == ends[1] else f"{_span(ends)} (with stated scatter)"
+
+
+def _limit_within(what: str, low: float, high: float, limit: Ends, unit: str) -> str:
+    return f"the {what} is {_span((low, high))} {unit}; the limit, {_limit(limit)} {unit}, lies inside"
+
+
+def _clear_by_hand(ends: Ends, place: str, limits: tuple[Ends, ...], displacement: Ends | None) -> str:
+    low, high = (short(end, 3) for end in ends)
+    text = f"by hand the peak stress lies between {low} and {high} MPa, at most at {place}"
+    if limits:
+        text += f", clear of the limit {', '.join(map(_limit, limits))} MPa"
+    if displacement is not None:
+        text += f"; the displacement, {_span(displacement)} mm, is clear of its limits"
+    return text
+
+
+def _held(ways: tuple[str, ...], free: int) -> str:
+    every = " and ".join(ways)
+    if not every:
+        return "free" if free else ""
+    left = "a rigid motion" if free == 1 else f"{free} rigid motions"
+    return f"{every}, {left} of it left free" if free else every
+
+
+ARRANGED: dict[str, Callable[..., str]] = {
+    "limit_within": _limit_within,
+    "clear_by_hand": _clear_by_hand,
+    "held": _held,
+}
