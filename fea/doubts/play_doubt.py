@@ -1,6 +1,6 @@
 """What play makes of the numbers of a check: stress through changed forces, and how much load the linkage holds."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -28,7 +28,6 @@ from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 
-_At = Callable[[Reactions, Displaced], LinkLoads]
 OUT_OF_PLANE = [2, 3, 4]
 """Components of a wrench that equilibrium in the plane does not give."""
 
@@ -72,11 +71,7 @@ def play_doubt(
     for link in links:
         body = case.body(link)
         acting = link_loads(load_case, link, body, forces.reactions, loads)
-        at = partial(_at, load_case, link, body, acting)
-
-        def told(here: Reactions, place: Displaced, link: str = link, at: _At = at) -> tuple[float, float]:
-            return measures(case, link, at(here, place))
-
+        told = partial(_told, case, load_case, link, body, acting)
         plain = told(*nominal)
         tried = {name: [told(*end) for end in each] for name, each in ends.items()}
         for i, found in enumerate((stress, displacement)):
@@ -162,6 +157,13 @@ def play_answers(
         stress=rule,
         displacement=rule,
     )
+
+
+def _told(
+    case: Case, load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced
+) -> tuple[float, float]:
+    """Stress and displacement of a link by hand, with its joints at offsets."""
+    return measures(case, link, _at(load_case, link, body, plain, here, at))
 
 
 def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:
