@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
+from alula.reports.sections.markup import as_plain
 from alula.reports.sentences import told
 from alula.reports.words.numbers import band, chance, fixed, number, percent, plain, sentence
 
@@ -167,6 +168,27 @@ def words(title: str, *, role: str = "", wraps: bool = False, hidden: bool = Fal
     return Column(title, text=True, role=role, wraps=wraps, hidden=hidden)
 
 
+def numbers(values: Iterable[float | Band | None], digits: int | None = None, **more: Any) -> list[Number]:
+    """Return the cells of a column of numbers.
+
+    Parameters
+    ----------
+    values : iterable of float, Band or None
+    digits : int, optional
+        As of ``Number``.
+    **more
+        As of ``Number``, for all of them.
+
+    Returns
+    -------
+    list of Number
+    """
+    return [
+        Number(value if value is None or isinstance(value, Band) else float(value), digits=digits, **more)
+        for value in values
+    ]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Table:
     """Rows of cells.
@@ -217,6 +239,24 @@ class Table:
         cells = tuple(tuple("" if row[i] is None else row[i] for i in kept) for row in rows)
         return cls(columns=tuple(columns[i] for i in kept), rows=cells, **more)  # type: ignore[misc, arg-type]
 
+    @classmethod
+    def by_columns(cls, columns: Mapping[Column, Iterable[Cell] | None], **more: Any) -> Self:
+        """Return a table that is given column by column.
+
+        Parameters
+        ----------
+        columns : mapping of Column to iterable of Cell
+            Column -> its cells, as many as those of the others; one with None in place of cells is left out.
+        **more
+            As of the class.
+
+        Returns
+        -------
+        Table
+        """
+        kept = {column: cells for column, cells in columns.items() if cells is not None}
+        return cls(columns=tuple(kept), rows=tuple(zip(*kept.values(), strict=True)), **more)
+
     @property
     def shown(self) -> Self:
         """The table without the columns that notebooks alone have."""
@@ -234,22 +274,20 @@ class Table:
     def _record(self, row: tuple[Cell, ...]) -> dict[str, str | float | None]:
         found: dict[str, str | float | None] = dict(self.under)
         for i, (column, cell) in enumerate(zip(self.columns, row, strict=True)):
-            name, every = as_name(column), [other[i] for other in self.rows]
-            if column.text or not any(isinstance(one, Number) for one in every):
+            name, every = as_name(column), [one for one in (other[i] for other in self.rows) if isinstance(one, Number)]
+            if column.text or not every:
                 found[name] = str(cell) if column.text or str(cell) else None
                 continue
-            shown = cell.shown if isinstance(cell, Number) else None
-            if any(isinstance(one, Number) and isinstance(one.value, Band) for one in every):
-                ends = shown.told if isinstance(shown, Band) else None
-                single = shown if isinstance(shown, float | int) else None
-                found[name] = single if ends is None else ends.value
-                found[f"{name} low"] = single if ends is None else ends.low
-                found[f"{name} high"] = single if ends is None else ends.high
-            else:
-                found[name] = None if shown is None else shown.value if isinstance(shown, Band) else float(shown)
+            value = cell.shown if isinstance(cell, Number) else None
+            ends = value.told if isinstance(value, Band) else None
+            single = float(value) if isinstance(value, float | int) else None
+            found[name] = ends.value if ends else single
+            if any(isinstance(one.value, Band) for one in every):
+                found[f"{name} low"] = ends.low if ends else single
+                found[f"{name} high"] = ends.high if ends else single
             if isinstance(cell, Number) and cell.sense:
                 found[f"{name} sense"] = cell.sense
-            if any(isinstance(one, Number) and one.unit for one in every):
+            if any(one.unit for one in every):
                 found[f"{name} unit"] = cell.unit if isinstance(cell, Number) else ""
         return found
 
@@ -265,8 +303,6 @@ def as_name(column: Column) -> str:
     -------
     str
     """
-    from alula.reports.sections.markup import as_plain
-
     return as_plain(column.head).replace(" (band)", "")
 
 
@@ -310,6 +346,25 @@ def say(template: str, kind: str = "", /, **facts: object) -> Text:
     written = {name: told(fact) if isinstance(fact, Reason) else str(fact) for name, fact in facts.items()}
     numbers = tuple(fact for fact in facts.values() if isinstance(fact, Number))
     return Text(sentence(template.format(**written)), kind, numbers)
+
+
+def paragraph(*pieces: object, kind: str = "") -> Text:
+    """Return a paragraph that is put together from pieces, and knows its numbers.
+
+    Parameters
+    ----------
+    *pieces
+        Text, ``Number``, reasons.
+    kind : str, optional
+        As of ``Text``.
+
+    Returns
+    -------
+    Text
+        With a capital at its beginning and a full stop at its end.
+    """
+    written = "".join(told(piece) if isinstance(piece, Reason) else str(piece) for piece in pieces)
+    return Text(sentence(written), kind, tuple(piece for piece in pieces if isinstance(piece, Number)))
 
 
 @dataclass(frozen=True)
@@ -518,47 +573,6 @@ def parts_of(parts: Iterable[Part]) -> Iterator[Part]:
         yield part
         if isinstance(part, Folded | Beside | Group):
             yield from parts_of(part.parts)
-
-
-def tables_of(sections: Iterable[Section]) -> dict[str, list[dict[str, str | float | None]]]:
-    """Return the rows of the tables that have a name, by it; those of tables of one name together.
-
-    Parameters
-    ----------
-    sections : iterable of Section
-
-    Returns
-    -------
-    dict of str to list of dict
-        All rows of a table have the same columns; a cell that there is not is None.
-    """
-    found: dict[str, list[dict[str, str | float | None]]] = {}
-    for section in sections:
-        for part in parts_of(section.parts):
-            if isinstance(part, Table) and part.key:
-                found.setdefault(part.key, []).extend(part.records)
-    for key, rows in found.items():
-        names = dict.fromkeys(name for row in rows for name in row)
-        found[key] = [{name: row.get(name) for name in names} for row in rows]
-    return found
-
-
-def numbers_of(parts: Iterable[Part]) -> Iterator[Number]:
-    """Yield every number that parts tell.
-
-    Parameters
-    ----------
-    parts : iterable of Part
-
-    Yields
-    ------
-    Number
-    """
-    for part in parts_of(parts):
-        if isinstance(part, Text):
-            yield from part.numbers
-        elif isinstance(part, Table):
-            yield from (cell for row in part.rows for cell in row if isinstance(cell, Number))
 
 
 def merged(records: Iterable[Mapping[str, Any]]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from html import unescape
 import pytest
 import told
 from solved import by_hand
-from told import console_parts, ends_of, flat, values_of
+from told import console_parts, ends_of, flat, numbers_of, values_of
 
 from alula.fea.common.band import Band
 from alula.reports.notebook.check_report import CheckReport
@@ -21,7 +21,6 @@ from alula.reports.sections.section import (
     Table,
     Text,
     merged,
-    numbers_of,
     parts_of,
     say,
     words,
