@@ -28,6 +28,11 @@ _MEANING = {
     Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
     "decide it. This is neither a pass nor a fail.",
 }
+_JUDGED = (
+    Column("value (band)", role="value"),
+    Column("limit", role="limit"),
+    words("verdict", role="found"),
+)
 _TELLING = (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.LAYER_GAP, Quantity.DISPLACEMENT, *UNLOADED_QUANTITIES)
 """Quantities whose reasons say more than their values."""
 _READ = (
@@ -81,9 +86,7 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
             words("quantity", role="what"),
             words("link", role="who"),
             words("load case", role="under", hidden=not several),
-            Column("value (band)", role="value"),
-            Column("limit", role="limit"),
-            words("verdict", role="found"),
+            *_JUDGED,
         ),
         [
             (
@@ -130,12 +133,7 @@ def nearest(checks: Sequence[CheckOutcome], *, several: bool, all_below: bool) -
         )
         for check in worst[:MOST]
     ]
-    columns = (
-        words("check", role="what"),
-        Column("value (band)", role="value"),
-        Column("limit", role="limit"),
-        words("verdict", role="found"),
-    )
+    columns = (words("check", role="what"), *_JUDGED)
     order = "Nearest to its limit first, by the unfavourable end of its band over the limit."
     if len(worst) > MOST:
         order = f"The {MOST} of {len(worst)} checks that decide or are nearest to their limits."

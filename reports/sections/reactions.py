@@ -16,7 +16,7 @@ from alula.loads.statics.statics import Reactions
 from alula.reports.sections.data import entries
 from alula.reports.sections.friction import friction_sentence
 from alula.reports.sections.markup import bold, sub
-from alula.reports.sections.section import Column, Number, Part, Table, Text, say, words
+from alula.reports.sections.section import Column, Number, Part, Table, Text, numbers, paragraph, say, words
 from alula.reports.sections.springs import holding_sentence, spring_sentences
 from alula.reports.words.numbers import turning
 
@@ -108,9 +108,10 @@ def thrust_texts(forces: JointForces, deformed: Reactions | None = None) -> Iter
     Text
     """
     if found := thrusts(forces, deformed):
-        facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
-        places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
-        yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
+        told: list[str | Number] = ["Thrust along the pins [N], which heads, washers or rings must hold: "]
+        for joint, thrust in found.items():
+            told += [f"{joint} ", Number(thrust), ", "]
+        yield paragraph(*told[:-1])
 
 
 def _driving(reactions: Reactions, told: Reactions, standing: Standing) -> Iterator[Text]:
@@ -189,30 +190,27 @@ def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Tabl
     -------
     Table
     """
-    forces, moments = ([axis for axis in shown if axis[0] == kind] for kind in "FM")
-    size = size_of(told)
-    return Table.of(
-        (
-            words("joint"),
-            words("by", hidden=True),
-            words("on", hidden=True),
-            words("by → on"),
-            *(Column(f"F{sub(axis[1])}", "N") for axis in forces),
-            Column("size", "N"),
-            *(Column(f"M{sub(axis[1])}", "N·mm") for axis in moments),
-        ),
-        [
-            (
-                name,
-                joint.by,
-                joint.on,
-                f"{joint.by} → {joint.on}",
-                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in forces),
-                Number(float(joint.magnitude), beside=float(size[0])),
-                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in moments),
+    forces, moments = (
+        {
+            Column(f"{axis[0]}{sub(axis[1])}", unit): numbers(
+                joint.wrench[AXES.index(axis)] for joint in told.joints.values()
             )
-            for name, joint in told.joints.items()
-        ],
+            for axis in shown
+            if axis[0] == kind
+        }
+        for kind, unit in (("F", "N"), ("M", "N·mm"))
+    )
+    size, joints = float(size_of(told)[0]), told.joints.values()
+    return Table.by_columns(
+        {
+            words("joint"): told.joints,
+            words("by", hidden=True): [joint.by for joint in joints],
+            words("on", hidden=True): [joint.on for joint in joints],
+            words("by → on"): [f"{joint.by} → {joint.on}" for joint in joints],
+            **forces,
+            Column("size", "N"): numbers((joint.magnitude for joint in joints), beside=size),
+            **moments,
+        },
         key="joints",
         caption=f"Joint forces{' and moments about the joint' if moments else ''}, global axes",
         under=(("load case", load_case),),
