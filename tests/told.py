@@ -11,7 +11,8 @@ from alula.reports.check import screen
 from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
 from alula.reports.renderers.page import as_page
 from alula.reports.sections.markup import as_plain
-from alula.reports.sections.section import Folded, Number, Table, Text, parts_of
+from alula.reports.sections.section import Folded, Text, parts_of
+from alula.reports.sections.table import Number, Table
 
 _FOUND = {}
 

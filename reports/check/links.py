@@ -11,22 +11,8 @@ from alula.reports.figures.diagrams import internal_force_diagram
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.layers import layer_parts, layer_record
 from alula.reports.sections.markup import bold
-from alula.reports.sections.section import (
-    Beside,
-    Column,
-    Folded,
-    Group,
-    Items,
-    Number,
-    Part,
-    Picture,
-    Section,
-    Table,
-    Text,
-    numbers,
-    say,
-    words,
-)
+from alula.reports.sections.section import Beside, Folded, Group, Items, Part, Picture, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import agreement, apart
 from alula.reports.words.numbers import joined, number, plain, sentence

@@ -11,7 +11,8 @@ from alula.loads.states.extent import Extent, unmeasured
 from alula.loads.states.weighed import Weighed
 from alula.reports.figures.outlines.box import box_drawing
 from alula.reports.sections.data import data
-from alula.reports.sections.section import Column, Number, Part, Picture, Section, Table, say, words
+from alula.reports.sections.section import Part, Picture, Section, say
+from alula.reports.sections.table import Column, Number, Table, words
 
 AXES = "xyz"
 

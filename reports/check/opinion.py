@@ -6,7 +6,8 @@ from typing import Any
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
 from alula.reports.sections.data import entries
-from alula.reports.sections.section import Column, Number, Section, Table, Text, numbers, words
+from alula.reports.sections.section import Section, Text
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 
 _VALUES = "von_mises von_mises_nodal displacement"

@@ -8,7 +8,8 @@ from alula.loads.case.case import Case
 from alula.loads.case.forks import forked_link
 from alula.loads.case.joint_rules import clearances, rubbing_joints
 from alula.reports.sections.data import entries
-from alula.reports.sections.section import Column, Part, Section, Table, Text, numbers, words
+from alula.reports.sections.section import Part, Section, Text
+from alula.reports.sections.table import Column, Table, numbers, words
 from alula.reports.words.numbers import joined
 
 _TRANSFER = (

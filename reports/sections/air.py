@@ -18,19 +18,8 @@ from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.flapping import flapping_loads, wing_reynolds, wing_span
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, sub
-from alula.reports.sections.section import (
-    Column,
-    Items,
-    Number,
-    Part,
-    Picture,
-    Section,
-    Table,
-    Text,
-    numbers,
-    paragraph,
-    words,
-)
+from alula.reports.sections.section import Items, Part, Picture, Section, Text, paragraph
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, number, plain, sentence
 

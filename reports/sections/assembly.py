@@ -11,7 +11,8 @@ from alula.loads.states.clearance import Clearance
 from alula.reports.figures.outlines.assembly import assembly_drawing
 from alula.reports.figures.outlines.contact import contact_drawing
 from alula.reports.sections.data import data, entries
-from alula.reports.sections.section import Column, Number, Part, Picture, Section, Table, Text, numbers, say, words
+from alula.reports.sections.section import Part, Picture, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, sentence
 

@@ -14,7 +14,8 @@ from alula.fea.common.verdict import (
 )
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, link
-from alula.reports.sections.section import Column, Folded, Items, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Folded, Items, Part, Section, Text, say
+from alula.reports.sections.table import Column, Mark, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import inapplicable, named
 from alula.reports.words.numbers import joined, sentence

@@ -4,7 +4,8 @@ import math
 from typing import Any
 
 from alula.loads.case.case import Case
-from alula.reports.sections.section import Column, Items, Number, Section, Table, Text, numbers, words
+from alula.reports.sections.section import Items, Section, Text
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 
 _FIGURES = (
     (

@@ -20,20 +20,8 @@ from alula.reports.figures.vibration.campbell import campbell_diagram
 from alula.reports.figures.vibration.shapes import shapes_drawing
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
-from alula.reports.sections.section import (
-    Cell,
-    Column,
-    Folded,
-    Number,
-    Part,
-    Picture,
-    Section,
-    Series,
-    Table,
-    Text,
-    say,
-    words,
-)
+from alula.reports.sections.section import Folded, Part, Picture, Section, Series, Text, say
+from alula.reports.sections.table import Cell, Column, Number, Table, words
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.motion import directions
 from alula.reports.words.numbers import joined, sentence

@@ -10,7 +10,8 @@ from alula.fea.solid.layers import build_directions
 from alula.fea.whole.build_directions import BuildDirections
 from alula.reports.figures.build_map import build_map
 from alula.reports.sections.data import data
-from alula.reports.sections.section import Beside, Number, Part, Picture, Text, paragraph
+from alula.reports.sections.section import Beside, Part, Picture, Text, paragraph
+from alula.reports.sections.table import Number
 from alula.reports.words.numbers import direction
 
 ALIKE = 0.05

@@ -10,7 +10,8 @@ from alula.loads.case.case import Case
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
 from alula.reports.sections.data import data
-from alula.reports.sections.section import Column, Number, Part, Table, Text, numbers, paragraph, words
+from alula.reports.sections.section import Part, Text, paragraph
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 
 
 def play_parts(case: Case, name: str, play: Play | None) -> Iterator[Part]:

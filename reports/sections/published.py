@@ -7,7 +7,8 @@ from alula.fea.claims.audit import ClaimResult, Finding
 from alula.loads.sources.published_statics import StaticsAudit
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import sub
-from alula.reports.sections.section import Column, Folded, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Folded, Part, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, words
 
 WORDS = {
     Finding.HOLDS: ("holds", "hold"),

@@ -15,7 +15,8 @@ from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.reports.motion.whole_motion import motion_page
 from alula.reports.notebook.motion_report import MotionReport
 from alula.reports.renderers.page import as_page
-from alula.reports.sections.section import Table, Text, parts_of
+from alula.reports.sections.section import Text, parts_of
+from alula.reports.sections.table import Table
 
 CASES = (
     ("flapping-wing-chosen", ["motion.poses=19"]),
