@@ -225,35 +225,29 @@ def _meshes(found: LinkResult) -> Iterator[Part]:
     """Yield mesh, solver, variants and notes."""
     parts: list[Part] = []
     if isinstance(found, SolidResult):
-        error = max(found.solution.solver_error, LEAST_TOLD)
-        parts.append(
-            say(
-                f"{found.elements:,} tetrahedra, {found.unknowns:,} unknowns. Solved by {{solver}} ({{why}}), relative "
-                f"error below {error:.0e}",
-                "small",
-                solver=found.solution.solver,
-                why=found.solution.solver_reason,
-            )
-        )
+        error, solved = max(found.solution.solver_error, LEAST_TOLD), found.solution
+        size = f"{found.elements:,} tetrahedra, {found.unknowns:,} unknowns"
+        how = f"{size}. Solved by {{solver}} ({{why}}), relative error below {error:.0e}"
+        parts.append(say(how, "small", solver=solved.solver, why=solved.solver_reason))
         if len(found.variants) > 1:
-            parts.append(
-                Table.by_columns(
-                    {
-                        words("variant"): [
-                            f"{told(variant.title)}{' (value)' if variant is found.governing else ''}"
-                            for variant in found.variants
-                        ],
-                        Column("von Mises", "MPa"): numbers(variant.von_mises for variant in found.variants),
-                        Column("principal", "MPa"): numbers(variant.principal for variant in found.variants),
-                        Column("displacement", "mm"): numbers((v.displacement for v in found.variants), 3),
-                    },
-                    caption="Variants in the band",
-                )
-            )
+            parts.append(_variants(found))
     if found.notes:
         parts.append(Items(tuple(sentence(told(note)) for note in found.notes), "notes"))
     if parts:
         yield Folded("Mesh, variants and notes" if isinstance(found, SolidResult) else "Notes", tuple(parts))
+
+
+def _variants(found: SolidResult) -> Table:
+    every = found.variants
+    return Table.by_columns(
+        {
+            words("variant"): [f"{told(one.title)}{' (value)' if one is found.governing else ''}" for one in every],
+            Column("von Mises", "MPa"): numbers(one.von_mises for one in every),
+            Column("principal", "MPa"): numbers(one.principal for one in every),
+            Column("displacement", "mm"): numbers((one.displacement for one in every), 3),
+        },
+        caption="Variants in the band",
+    )
 
 
 def discretisation_record(found: Discretisation) -> dict[str, Any]:
