@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from alula.fea.common.reason import Reason
-from alula.reports.sections.table import KEPT, Cell, Column, Mark, Number, Table, words
+from alula.reports.sections.table import Cell, Column, Mark, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import sentence
+from alula.reports.words.terminal import KEPT
 
 __all__ = [
     "KEPT", "Beside", "Cell", "Column", "Command", "Folded", "Group", "Items", "Mark", "Number", "Part", "Picture",

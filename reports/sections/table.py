@@ -8,9 +8,7 @@ from typing import Any, Self
 from alula.fea.common.band import Band
 from alula.reports.sections.markup import as_plain
 from alula.reports.words.numbers import band, chance, fixed, number, percent, plain
-
-KEPT = "\u00a0"
-"""A space at which no line is broken, such as between a name and its number."""
+from alula.reports.words.terminal import KEPT
 
 
 @dataclass(frozen=True)
