@@ -12,6 +12,7 @@ from alula.reports.check.whole_check import check_json, check_page, check_record
 from alula.reports.renderers.page import as_page
 from alula.reports.sections.markup import as_plain
 from alula.reports.sections.section import Folded, Text, parts_of
+from alula.reports.sections.table import Number, Table
 
 _FOUND = {}
 
@@ -70,6 +71,28 @@ def not_covered(result):
 
 def flat(text):
     return " ".join(as_plain(text).split())
+
+
+def tables_of(sections):
+    """The rows of the tables that have a name, by it; those of tables of one name together."""
+    found = {}
+    for one in sections:
+        for part in parts_of(one.parts):
+            if isinstance(part, Table) and part.key:
+                found.setdefault(part.key, []).extend(part.records)
+    for key, rows in found.items():
+        names = dict.fromkeys(name for row in rows for name in row)
+        found[key] = [{name: row.get(name) for name in names} for row in rows]
+    return found
+
+
+def numbers_of(parts):
+    """Every number that parts tell."""
+    for part in parts_of(parts):
+        if isinstance(part, Text):
+            yield from part.numbers
+        elif isinstance(part, Table):
+            yield from (cell for row in part.rows for cell in row if isinstance(cell, Number))
 
 
 def values_of(data):

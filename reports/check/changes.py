@@ -1,7 +1,6 @@
 """What would change a verdict: factors on loads, strengths, sources of the band, the command that finds a size."""
 
 import shlex
-from collections.abc import Iterator, Mapping
 from typing import Any
 
 from alula.fea.common.change import MaterialChange, VerdictChange, rounded
@@ -43,20 +42,13 @@ def changes_section(result: CheckResult) -> Section:
     -------
     Section
     """
-    records = change_records(result)
-    return Section(
-        key="changes",
-        title="What would change it",
-        parts=tuple(part for record in records for part in _parts(record)),
-        data={"changes": records},
-    )
-
-
-def _parts(record: Mapping[str, Any]) -> Iterator[Part]:
-    title = f"{sentence(record['title'])[:-1]} ({record['verdict']})"
-    yield Items(((title, " ".join(record["sentences"])),))
-    if record["command"]:
-        yield Command("Find the size:", record["command"])
+    records, parts = change_records(result), list[Part]()
+    for record in records:
+        title = f"{sentence(record['title'])[:-1]} ({record['verdict']})"
+        parts.append(Items(((title, " ".join(record["sentences"])),)))
+        if record["command"]:
+            parts.append(Command("Find the size:", record["command"]))
+    return Section(key="changes", title="What would change it", parts=tuple(parts), data={"changes": records})
 
 
 def change_records(result: CheckResult) -> list[dict[str, Any]]:
@@ -228,6 +220,6 @@ def _narrows(kind: SourceKind, check: CheckOutcome, result: CheckResult) -> bool
     return kind in _NARROWED
 
 
-def _rounded(value: float, *, up: bool, digits: int = 3) -> str:
+def _rounded(value: float, *, up: bool) -> str:
     """Return a number as it was tried."""
-    return number(rounded(value, up=up, digits=digits), digits)
+    return number(rounded(value, up=up, digits=3), 3)

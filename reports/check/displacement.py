@@ -14,9 +14,10 @@ from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
 from alula.reports.sections.play import play_parts, play_record
 from alula.reports.sections.reactions import reaction_records
-from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Folded, Part, Section, Text, paragraph, under_load_cases
+from alula.reports.sections.table import Column, Number, Table, words
 from alula.reports.sentences import told as told_of
-from alula.reports.words.numbers import joined
+from alula.reports.words.numbers import joined, sentence
 
 _LOST = ("no equilibrium", "unstable")
 
@@ -32,16 +33,12 @@ def displacement_section(result: CheckResult) -> Section:
     -------
     Section
     """
-    several, parts = len(result.load_cases) > 1, list[Part]()
-    for case in result.load_cases.values():
-        own = tuple(_parts(result, case))
-        parts += [Group(f"Load case {case.name}", own)] if several else own
-    parts.append(Folded("The frame model", (Text(_model(result)),)))
+    parts = under_load_cases({name: _parts(result, case) for name, case in result.load_cases.items()})
     return Section(
         key="displacement",
         title="Displacement of the linkage",
         short="Displacement",
-        parts=tuple(parts),
+        parts=(*parts, Folded("The frame model", (Text(_model(result)),))),
         data={"load_cases": {name: _data(case) for name, case in result.load_cases.items()}},
         not_covered=(("Large displacements", _large(result)), ("Buckling", _buckling(result))),
     )
@@ -49,9 +46,8 @@ def displacement_section(result: CheckResult) -> Section:
 
 def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     moved, forces = case.large_displacement, case.forces
-    article = "the" if forces.by_equilibrium else "a"
-    yield say("Joint forces by {article} {model}: {why}", article=article, model=forces.model, why=forces.reason)
-    told = say("{why}", "apart" if moved.state in _LOST else "", why=moved.reason)
+    yield paragraph(f"Joint forces by {'the' if forces.by_equilibrium else 'a'} {forces.model}: ", forces.reason)
+    told = paragraph(moved.reason)
     if moved.state in _LOST:
         below = "Forces, stresses and displacements of the links in this report belong to the"
         told = Text(f"{told.text} {below} {bold('undeformed pose')}.", "apart")
@@ -77,16 +73,14 @@ def linkage_text(case: LoadCaseResult) -> Text:
     found, drive = case.linkage, case.reactions.drive
     factor = found.limit_load
     if factor.unknowable or not math.isinf(factor.high):
-        told, facts = ["limit-load factor {factor}"], {"factor": Number(factor)}
+        told = ["Linkage: limit-load factor ", Number(factor)]
     else:
-        told, facts = ["limit-load factor at least {factor}"], {"factor": Number(factor.low, "", 3)}
+        told = ["Linkage: limit-load factor at least ", Number(factor.low, "", 3)]
     if not found.displacement.unknowable:
-        told.append(f"largest displacement {{displacement}} ({told_of(found.where)})")
-        facts["displacement"] = Number(found.displacement, "mm")
+        told += [", largest displacement ", Number(found.displacement, "mm"), f" ({told_of(found.where)})"]
     if found.dead_point_distance is not None and drive is not None:
-        told.append(f"distance to a dead point of {drive.link} (a ratio) {{distance}}")
-        facts["distance"] = Number(found.dead_point_distance, "", 3)
-    return say(f"Linkage: {', '.join(told)}", **facts)
+        told += [f", distance to a dead point of {drive.link} (a ratio) ", Number(found.dead_point_distance, "", 3)]
+    return paragraph(*told)
 
 
 def _deformed(case: LoadCaseResult) -> Iterator[Table]:
@@ -94,12 +88,11 @@ def _deformed(case: LoadCaseResult) -> Iterator[Table]:
     moved = case.large_displacement.reactions
     if moved is None:
         return
-    told, before = without_rounding(moved), without_rounding(case.reactions)
-    rows: list[tuple[str, Number, Number]] = [
-        (f"{name} [N]", Number(float(before.joints[name].magnitude), beside=float(size_of(moved)[0])),
-         Number(float(joint.magnitude)))
+    told, before, size = without_rounding(moved), without_rounding(case.reactions), float(size_of(moved)[0])
+    rows = [
+        (f"{name} [N]", Number(float(before.joints[name].magnitude), beside=size), Number(float(joint.magnitude)))
         for name, joint in told.joints.items()
-    ]  # fmt: skip
+    ]
     drive = moved.drive
     if drive is not None and drive.pushes(moved.pose.linkage):
         what = f"force of stop {drive.stop}" if drive.stop else "drive force"
@@ -168,8 +161,8 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
     return {
         "joint_forces": entries(case.forces, "model reason"),
         "large_displacement": entries(moved, "state span linear where held")
-        | {"sentence": data(moved.reason)}
         | {
+            "sentence": data(moved.reason),
             "buckling": None if moved.buckling is None or math.isinf(moved.buckling) else moved.buckling,
             "points": [
                 {"link": link, "point": point, "displacement": d.tolist()} for (link, point), d in moved.points.items()
@@ -178,12 +171,8 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
             "drive_torque": deformed and deformed.drive_torque,
             "drive_force": deformed and deformed.drive_force,
         },
-        "linkage": {
-            "limit_load": data(case.linkage.limit_load),
-            "displacement": data(case.linkage.displacement),
-            "where": data(case.linkage.where) or None,
-            "dead_point_distance": case.linkage.dead_point_distance,
-        },
+        "linkage": entries(case.linkage, "limit_load displacement where dead_point_distance")
+        | {"where": data(case.linkage.where) or None},
         "play": play_record(case.forces.play),
         "thrust": [{"joint": joint, "force": data(thrust)} for joint, thrust in thrusts(case.forces, deformed).items()],
         "pins": pin_record(case),
@@ -196,22 +185,23 @@ def _large(result: CheckResult) -> str:
     followed = [name for name, moved in states.items() if moved.followed]
     blind = [name for name, moved in states.items() if moved.state in ("off", "unknown")]
     small = [name for name in states if name not in followed and name not in blind]
+    undeformed = "forces are those of the undeformed pose"
     told = []
     if small:
-        told.append(f"{_under(result, small)}forces are those of the undeformed pose, since displacements are small")
+        told.append(f"{_under(result, small)}{undeformed}, since displacements are small")
     if blind:
-        told.append(f"{_under(result, blind)}forces are those of the undeformed pose, without check of displacements")
+        told.append(f"{_under(result, blind)}{undeformed}, without check of displacements")
     if followed:
-        told.append(
-            f"{_under(result, followed)}equilibrium is that of the deformed pose under loads of constant direction"
-        )
+        deformed = "equilibrium is that of the deformed pose under loads of constant direction"
+        told.append(f"{_under(result, followed)}{deformed}")
         stated = [result.case.load_cases[name] for name in followed]
         axes = {force.axes for case in stated for force in case.forces}
+        axes |= {spread.axes for case in stated for spread in case.spread}
         if result.case.springs or result.case.tendons:
             told.append("springs and tendons follow the points at which they are fastened")
-        if "link" in axes | {spread.axes for case in stated for spread in case.spread}:
+        if "link" in axes:
             told.append("a load in link axes turns with the pose of its link, but not with the deformation")
-    return say("{told}", told="; ".join(told)).text
+    return sentence("; ".join(told))
 
 
 def _under(result: CheckResult, names: list[str]) -> str:

@@ -7,9 +7,11 @@ from typing import Any
 from alula.fea.common.verdict import by_nearness
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
+from alula.reports.figures.drawings import linkage_drawing
 from alula.reports.sections.pose import pose_tables
 from alula.reports.sections.reactions import shown_components
-from alula.reports.sections.section import Beside, Folded, Number, Part, Picture, Section, say
+from alula.reports.sections.section import Beside, Folded, Part, Picture, Section, paragraph, say
+from alula.reports.sections.table import Number
 from alula.reports.sentences.verdicts import checks_of
 from alula.reports.words.numbers import plain
 
@@ -46,12 +48,6 @@ def linkage_picture(result: CheckResult, name: str, kind: str = "") -> Picture:
     -------
     Picture
     """
-
-    def draw() -> Any:
-        from alula.reports.figures.drawings import linkage_drawing
-
-        return linkage_drawing(result, name)
-
     stated = result.case.load_cases[name]
     told = [
         f"Load case “{name}”{f': {stated.title}' if stated.title else ''}. To scale.",
@@ -70,7 +66,7 @@ def linkage_picture(result: CheckResult, name: str, kind: str = "") -> Picture:
         name=f"linkage-{name}",
         alt=f"The linkage to scale with the joint forces of load case {name}",
         caption=" ".join(told),
-        draw=draw,
+        draw=lambda: linkage_drawing(result, name),
         kind=kind,
     )
 
@@ -107,30 +103,26 @@ def linkage_section(result: CheckResult) -> Section:
 
 
 def _held(result: CheckResult) -> Iterator[Part]:
-    pose, balanced = result.pose, result.case.pose.equilibrium
-    told, facts = "Degrees of freedom after Gruebler: {mobility}", dict[str, object](mobility=pose.linkage.mobility)
+    pose, balanced, told = result.pose, result.case.pose.equilibrium, list[str | Number]()
     if pose.slides:
-        told = f"The pose is fixed by joint {pose.coordinate}, whose travel is {{travel}}"
-        told += f"{' in balance' if balanced else ''}. Degrees of freedom after Gruebler: {{mobility}}"
-        facts["travel"] = Number(pose.held, "mm")
+        held = f"The pose is fixed by joint {pose.coordinate}, whose travel is "
+        told = [held, Number(pose.held, "mm"), " in balance. " if balanced else ". "]
     elif pose.coordinate is not None:
-        told = f"The pose is {'in balance with' if balanced else 'fixed by'} link {pose.coordinate}, whose axis points "
-        told += "to {angle}° (counter-clockwise from x). Degrees of freedom after Gruebler: {mobility}"
-        facts["angle"] = Number(math.degrees(pose.angles[pose.coordinate]) % 360.0, "", 6)
-    yield say(told, **facts)
+        angle = Number(math.degrees(pose.angles[pose.coordinate]) % 360.0, "", 6)
+        held = f"The pose is {'in balance with' if balanced else 'fixed by'} link {pose.coordinate}, whose axis points "
+        told = [f"{held}to ", angle, "° (counter-clockwise from x). "]
+    yield paragraph(*told, f"Degrees of freedom after Gruebler: {pose.linkage.mobility}")
 
 
 def _dead_points(result: CheckResult) -> Iterator[Part]:
-    told, facts = list[str](), dict[str, object]()
-    for i, (what, link, distance) in enumerate(dead_points(result)):
-        told.append(f"{what} {link} {{n{i}}}")
-        facts[f"n{i}"] = Number(distance, "", 3)
-    if told:
-        yield say(
-            "Distance to a dead point: the smallest singular value of the scaled constraint Jacobian with that link "
-            f"held (0 at the dead point; below {plain(NEAR_DEAD_POINT)} there is a warning): {', '.join(told)}",
-            **facts,
-        )
+    told: list[str | Number] = [
+        "Distance to a dead point: the smallest singular value of the scaled constraint Jacobian with that link held "
+        f"(0 at the dead point; below {plain(NEAR_DEAD_POINT)} there is a warning): "
+    ]
+    for what, link, distance in dead_points(result):
+        told += [f"{what} {link} ", Number(distance, "", 3), ", "]
+    if len(told) > 1:
+        yield paragraph(*told[:-1])
 
 
 def dead_points(result: CheckResult) -> Iterator[tuple[str, str, float]]:

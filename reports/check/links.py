@@ -7,24 +7,12 @@ from typing import Any
 from alula.fea.outcomes.result import CheckResult, HandResult, LinkResult, LoadCaseResult, SolidResult
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.whole.build_directions import BuildDirections, build_directions_of
+from alula.reports.figures.diagrams import internal_force_diagram
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.layers import layer_parts, layer_record
 from alula.reports.sections.markup import bold
-from alula.reports.sections.section import (
-    Beside,
-    Column,
-    Folded,
-    Group,
-    Items,
-    Number,
-    Part,
-    Picture,
-    Section,
-    Table,
-    Text,
-    say,
-    words,
-)
+from alula.reports.sections.section import Beside, Folded, Group, Items, Part, Picture, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import agreement, apart
 from alula.reports.words.numbers import joined, number, plain, sentence
@@ -93,30 +81,21 @@ def _summary(result: CheckResult, names: Sequence[str]) -> Iterator[Part]:
 
 
 def _table(rows: Sequence[tuple[LoadCaseResult, LinkResult]], *, several: bool, key: str = "") -> Table:
-    return Table.of(
-        (
-            words("link"),
-            words("load case", hidden=not several),
-            words("model"),
-            words("stress"),
-            Column("stress (band)", "MPa"),
-            Column("safety factor (band)"),
-            Column("displacement (band)", "mm"),
-            Column("largest at x", "mm"),
-        ),
-        [
-            (
-                link.link,
-                case.name,
-                link.model,
-                link.measure,
-                Number(link.decisive),
-                Number(link.safety_factor),
-                Number(link.displacement_max, beside=1000.0 * case.reactions.pose.linkage.longest),
-                Number(float(link.location[0]), decimals=1),
-            )
-            for case, link in rows
-        ],
+    links = [link for _, link in rows]
+    sizes = (1000.0 * case.reactions.pose.linkage.longest for case, _ in rows)
+    return Table.by_columns(
+        {
+            words("link"): [link.link for link in links],
+            words("load case", hidden=not several): [case.name for case, _ in rows],
+            words("model"): [link.model for link in links],
+            words("stress"): [link.measure for link in links],
+            Column("stress (band)", "MPa"): numbers(link.decisive for link in links),
+            Column("safety factor (band)"): numbers(link.safety_factor for link in links),
+            Column("displacement (band)", "mm"): [
+                Number(link.displacement_max, beside=size) for link, size in zip(links, sizes, strict=True)
+            ],
+            Column("largest at x", "mm"): numbers((link.location[0] for link in links), decimals=1),
+        },
         key=key,
     )
 
@@ -125,41 +104,39 @@ def _group(result: CheckResult, name: str, layers: Mapping[str, BuildDirections]
     """Return all of one link under the load case that stresses it most."""
     worst = result.governing(name)
     found = worst.links[name]
-    parts: list[Part] = []
+    measure = f"{found.measure[:1].upper()}{found.measure[1:]}"
+    case = f", {told(found.governing.title)}" if isinstance(found, SolidResult) else ""
     picture = Picture(
         name=f"stress-{name}",
         model=f"link-{name}",
-        alt=f"{found.measure[:1].upper()}{found.measure[1:]} stress of link {name} on its deformed shape",
-        caption=f"{found.measure[:1].upper()}{found.measure[1:]} stress of link {name} [MPa]"
-        f"{f', {told(found.governing.title)}' if isinstance(found, SolidResult) else ''}. The picture states the scale "
-        "of the displacements.",
+        alt=f"{measure} stress of link {name} on its deformed shape",
+        caption=f"{measure} stress of link {name} [MPa]{case}. The picture states the scale of the displacements.",
     )
-    parts.append(Beside((picture, _numbers(result, found))))
-    parts += _decided(found)
-    if name in layers:
-        parts += layer_parts(layers[name])
-    parts += _by_hand(result, found)
-    parts += _meshes(found)
-    several = len(result.load_cases) > 1
-    remark = f"under load case {worst.name}, which stresses it most" if several else ""
+    parts = [
+        Beside((picture, _numbers(result, found))),
+        *_decided(found),
+        *(layer_parts(layers[name]) if name in layers else ()),
+        *_by_hand(result, found),
+        *_meshes(found),
+    ]
+    remark = f"under load case {worst.name}, which stresses it most" if len(result.load_cases) > 1 else ""
     return Group(f"Link {name}", tuple(parts), key=f"link-{name}", remark=remark)
 
 
 def _numbers(result: CheckResult, found: LinkResult) -> Table:
     material = result.case.material_of(found.link)
-    size = 1000.0 * result.pose.linkage.longest
-    first, second = (found.principal_max, found.von_mises_max)[:: 1 if found.brittle else -1]
-    kinds = ("principal", "von Mises")[:: 1 if found.brittle else -1]
+    largest = {"von Mises": found.von_mises_max, "principal": found.principal_max}
+    first, second = sorted(largest, reverse=not found.brittle)
     heading = "Solid model" if isinstance(found, SolidResult) else "Hand calculation" if found.decided_by else ""
-    rows = (
-        (f"safety factor n on {material.strength} strength {plain(material.allowable)} MPa", found.safety_factor, 0.0),
-        (f"largest {kinds[0]} stress (decides n) [MPa]", first, 0.0),
-        (f"largest {kinds[1]} stress [MPa]", second, 0.0),
-        ("largest displacement [mm]", found.displacement_max, size),
-    )
+    strength = f"{material.strength} strength {plain(material.allowable)} MPa"
+    rows = {
+        f"safety factor n on {strength}": Number(found.safety_factor),
+        f"largest {first} stress (decides n) [MPa]": Number(largest[first]),
+        f"largest {second} stress [MPa]": Number(largest[second]),
+        "largest displacement [mm]": Number(found.displacement_max, beside=1000.0 * result.pose.linkage.longest),
+    }
     return Table(
-        columns=(words(heading or "beam theory", wraps=True), Column("value (band)")),
-        rows=tuple((title, Number(value, beside=beside)) for title, value, beside in rows),
+        columns=(words(heading or "beam theory", wraps=True), Column("value (band)")), rows=tuple(rows.items())
     )
 
 
@@ -182,51 +159,34 @@ def _decided(found: LinkResult) -> Iterator[Part]:
 
 def _by_hand(result: CheckResult, found: LinkResult) -> Iterator[Part]:
     """Yield diagram and beam stress of a link, beside its solid where there is one."""
-    right: list[Part] = []
-    if not found.beam.without:
-        worst = found.beam.worst
-        right.append(
-            say(
-                "Largest section stress by beam theory {stress} at x = {x} mm (axial {axial}, bending {bending}), "
-                "safety factor {factor} without stress concentration",
-                "small",
-                stress=Number(worst.equivalent, "MPa"),
-                x=Number(found.beam.worst_x, decimals=1),
-                axial=Number(worst.axial, "", 3, beside=worst.equivalent, derived=True),
-                bending=Number(worst.bending, "MPa", 3, beside=worst.equivalent, derived=True),
-                factor=Number(found.beam.safety_factor),
-            )
-        )
-    if isinstance(found, SolidResult):
-        right += _compared(found)
-    if not right:
-        return
+    compared = _compared(found) if isinstance(found, SolidResult) else ()
     if found.beam.without:
-        yield from right
+        yield from compared
         return
+    worst = found.beam.worst
+    stress = say(
+        "Largest section stress by beam theory {stress} at x = {x} mm (axial {axial}, bending {bending}), "
+        "safety factor {factor} without stress concentration",
+        "small",
+        stress=Number(worst.equivalent, "MPa"),
+        x=Number(found.beam.worst_x, decimals=1),
+        axial=Number(worst.axial, "", 3, beside=worst.equivalent, derived=True),
+        bending=Number(worst.bending, "MPa", 3, beside=worst.equivalent, derived=True),
+        factor=Number(found.beam.safety_factor),
+    )
     cut = (
         " Moments are those about the centroids of the sections that were cut; the lowest row is the largest stress of "
         "each."
     )
-    yield Beside(
-        (
-            Picture(
-                name=f"diagram-{found.link}",
-                alt=f"Normal force, shear force and bending moment along link {found.link}",
-                caption=f"Hand calculation of link {found.link}: normal force N (tension positive), shear force V and "
-                f"bending moment M. A positive M compresses the side y > 0.{cut if found.beam.cuts else ''}",
-                draw=lambda: _diagram(result, found),
-            ),
-            *right,
-        )
-    )
-
-
-def _diagram(result: CheckResult, found: LinkResult) -> Any:
-    from alula.reports.figures.diagrams import internal_force_diagram
-
     stations = {point: x for point, (x, _) in result.case.links[found.link].points.items()}
-    return internal_force_diagram(found.beam, stations)
+    diagram = Picture(
+        name=f"diagram-{found.link}",
+        alt=f"Normal force, shear force and bending moment along link {found.link}",
+        caption=f"Hand calculation of link {found.link}: normal force N (tension positive), shear force V and "
+        f"bending moment M. A positive M compresses the side y > 0.{cut if found.beam.cuts else ''}",
+        draw=lambda: internal_force_diagram(found.beam, stations),
+    )
+    yield Beside((diagram, stress, *compared))
 
 
 def _compared(found: SolidResult) -> Iterator[Part]:
@@ -237,20 +197,21 @@ def _compared(found: SolidResult) -> Iterator[Part]:
             f"No section of this link is {what}, so there is no comparison of hand calculation and solid model.", "note"
         )
         return
-    kind, far = found.comparisons[0].kind, apart(found.comparisons)
-    yield Table(
+    every, kind, far = found.comparisons, found.comparisons[0].kind, apart(found.comparisons)
+    yield Table.by_columns(
+        {
+            Column("x", "mm"): numbers((c.x for c in every), decimals=1),
+            Column("hand", "MPa"): numbers(c.hand for c in every),
+            Column("solid", "MPa"): numbers(c.solid for c in every),
+            Column("difference"): numbers((c.difference for c in every), share=True),
+        },
         key="comparisons",
-        columns=(Column("x", "mm"), Column("hand", "MPa"), Column("solid", "MPa"), Column("difference")),
-        rows=tuple(
-            (Number(c.x, decimals=1), Number(c.hand), Number(c.solid), Number(c.difference, share=True))
-            for c in found.comparisons
-        ),
         caption=f"Hand calculation and solid model: {kind} stress at sections away from eyes and holes",
-        apart=frozenset(i for i, c in enumerate(found.comparisons) if c in far),
+        apart=frozenset(i for i, c in enumerate(every) if c in far),
         under=(("link", found.link), ("kind", kind)),
     )
     text = f"The difference is relative to the largest {kind} stress of the link by hand calculation. "
-    told_of = agreement(found.comparisons)
+    told_of = agreement(every)
     if far:
         places = joined([number(c.x, 3) for c in far])
         text += bold(f"{told_of[:1].upper()}{told_of[1:]} at x = {places} mm")
@@ -264,41 +225,29 @@ def _meshes(found: LinkResult) -> Iterator[Part]:
     """Yield mesh, solver, variants and notes."""
     parts: list[Part] = []
     if isinstance(found, SolidResult):
-        error = max(found.solution.solver_error, LEAST_TOLD)
-        parts.append(
-            say(
-                f"{found.elements:,} tetrahedra, {found.unknowns:,} unknowns. Solved by {{solver}} ({{why}}), relative "
-                f"error below {error:.0e}",
-                "small",
-                solver=found.solution.solver,
-                why=found.solution.solver_reason,
-            )
-        )
+        error, solved = max(found.solution.solver_error, LEAST_TOLD), found.solution
+        size = f"{found.elements:,} tetrahedra, {found.unknowns:,} unknowns"
+        how = f"{size}. Solved by {{solver}} ({{why}}), relative error below {error:.0e}"
+        parts.append(say(how, "small", solver=solved.solver, why=solved.solver_reason))
         if len(found.variants) > 1:
-            parts.append(
-                Table(
-                    columns=(
-                        words("variant"),
-                        Column("von Mises", "MPa"),
-                        Column("principal", "MPa"),
-                        Column("displacement", "mm"),
-                    ),
-                    rows=tuple(
-                        (
-                            f"{told(variant.title)}{' (value)' if variant is found.governing else ''}",
-                            Number(variant.von_mises),
-                            Number(variant.principal),
-                            Number(variant.displacement, "", 3),
-                        )
-                        for variant in found.variants
-                    ),
-                    caption="Variants in the band",
-                )
-            )
+            parts.append(_variants(found))
     if found.notes:
         parts.append(Items(tuple(sentence(told(note)) for note in found.notes), "notes"))
     if parts:
         yield Folded("Mesh, variants and notes" if isinstance(found, SolidResult) else "Notes", tuple(parts))
+
+
+def _variants(found: SolidResult) -> Table:
+    every = found.variants
+    return Table.by_columns(
+        {
+            words("variant"): [f"{told(one.title)}{' (value)' if one is found.governing else ''}" for one in every],
+            Column("von Mises", "MPa"): numbers(one.von_mises for one in every),
+            Column("principal", "MPa"): numbers(one.principal for one in every),
+            Column("displacement", "mm"): numbers((one.displacement for one in every), 3),
+        },
+        caption="Variants in the band",
+    )
 
 
 def discretisation_record(found: Discretisation) -> dict[str, Any]:
@@ -336,18 +285,15 @@ def solver_record(answer: object) -> dict[str, Any]:
 
 
 def _link(result: LinkResult) -> dict[str, Any]:
-    bands = "von_mises_max principal_max safety_factor displacement_max"
+    bands, beam = "von_mises_max principal_max safety_factor displacement_max", None
+    if not result.beam.without:
+        beam = {"equivalent_max": result.beam.worst.equivalent, "x": result.beam.worst_x}
+        beam |= entries(result.beam, "safety_factor")
     return entries(result, f"fidelity {bands} location notes") | {
         "decided_by": result.decided_by or None,
         "why": data(result.why) or None,
         "layers": layer_record(result.layers),
-        "beam": None
-        if result.beam.without
-        else {
-            "equivalent_max": result.beam.worst.equivalent,
-            "x": result.beam.worst_x,
-            "safety_factor": result.beam.safety_factor,
-        },
+        "beam": beam,
         **_by_model(result),
     }
 
@@ -394,8 +340,7 @@ def _bands(result: CheckResult) -> str:
         reasons = [told(link.safety_factor.without) for link in loaded]
         why = joined(list(dict.fromkeys(filter(None, reasons))))
         found.append(f"{joined(alone)} {'has' if len(alone) == 1 else 'have'} no band for model error ({why})")
-    text = "; ".join(found)
-    return f"{text[:1].upper()}{text[1:]}." if text else "No load acts on any checked link."
+    return sentence("; ".join(found) or "No load acts on any checked link")
 
 
 def _names(links: Iterable[LinkResult]) -> list[str]:

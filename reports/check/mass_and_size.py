@@ -9,8 +9,10 @@ from alula.fea.whole.size import size_band, size_limits
 from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.extent import Extent, unmeasured
 from alula.loads.states.weighed import Weighed
+from alula.reports.figures.outlines.box import box_drawing
 from alula.reports.sections.data import data
-from alula.reports.sections.section import Column, Number, Part, Picture, Section, Table, say, words
+from alula.reports.sections.section import Part, Picture, Section, say
+from alula.reports.sections.table import Column, Number, Table, words
 
 AXES = "xyz"
 
@@ -49,7 +51,7 @@ def _parts(result: CheckResult) -> Iterator[Part]:
             name="box",
             alt=f"Outlines of links and pins {over} with the box about them, from above and from the side",
             caption=f"The box about all parts {over}, of rigid links. Links without a part count by their points.",
-            draw=lambda: _box(size, limits),
+            draw=lambda: box_drawing(size, limits),
         )
 
 
@@ -65,12 +67,6 @@ def _masses(found: Weighed, others: float | None) -> Table:
         rows.append(("all links and others", "", "", "", whole))
     columns = (words("link"), *(Column(what, "g") for what in ("part", "pins", "carried", "total")))
     return Table(key="masses", columns=columns, rows=tuple(rows), caption="Mass of each link")
-
-
-def _box(size: Extent, limits: tuple[float, ...]) -> Any:
-    from alula.reports.figures.outlines.box import box_drawing
-
-    return box_drawing(size, limits)
 
 
 def _mass(found: Weighed | None) -> dict[str, Any] | None:

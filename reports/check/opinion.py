@@ -1,14 +1,17 @@
 """A second opinion: CalculiX on the same meshes."""
 
 from dataclasses import replace
+from typing import Any
 
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.result import CheckResult
-from alula.reports.sections.data import data, entries
-from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, words
+from alula.reports.sections.data import entries
+from alula.reports.sections.section import Section, Text
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 
 _VALUES = "von_mises von_mises_nodal displacement"
+_ANSWER = f"{_VALUES} stress_gap displacement_gap agrees seconds"
 
 
 def opinion_section(result: CheckResult) -> Section:
@@ -24,13 +27,26 @@ def opinion_section(result: CheckResult) -> Section:
         Without parts where it was not asked.
     """
     found = result.second_opinions
-    numbers = [
-        Column(f"{what}, {whose}", unit) if unit else Column(f"difference of {what}", "%")
-        for what, unit in (("von Mises", "MPa"), ("displacement", "mm"))
-        for whose, unit in (("alula", unit), ("CalculiX", unit), ("", ""))
-    ]
-    reason = words("reason", wraps=True) if any(one.reason for one in found) else None
-    table = Table.of((words("link"), words("load case"), *numbers, reason), map(_row, found), key="second opinions")
+    answers = [entries(one.answer, _ANSWER) if one.answer else {} for one in found]
+    reasons = [told(one.reason or "") for one in found]
+
+    def theirs(name: str, **as_number: Any) -> list[Number]:
+        return numbers((answer.get(name) for answer in answers), **as_number)
+
+    table = Table.by_columns(
+        {
+            words("link"): [one.link if one.known else f"{one.link} (no result)" for one in found],
+            words("load case"): [one.load_case for one in found],
+            Column("von Mises, alula", "MPa"): numbers(one.von_mises for one in found),
+            Column("von Mises, CalculiX", "MPa"): theirs("von_mises"),
+            Column("difference of von Mises", "%"): theirs("stress_gap", decimals=2, factor=100.0),
+            Column("displacement, alula", "mm"): numbers(one.displacement for one in found),
+            Column("displacement, CalculiX", "mm"): theirs("displacement"),
+            Column("difference of displacement", "%"): theirs("displacement_gap", decimals=3, factor=100.0),
+            words("reason", wraps=True): reasons if any(reasons) else None,
+        },
+        key="second opinions",
+    )
     text = (
         "CalculiX solved the same mesh with the same material, supports and nodal loads. The table compares the "
         "largest von Mises stress at the integration points and the largest displacement. A difference is the "
@@ -45,28 +61,9 @@ def opinion_section(result: CheckResult) -> Section:
     )
 
 
-def _row(opinion: SecondOpinion) -> tuple[Cell, ...]:
-    theirs = opinion.answer
-    return (
-        opinion.link if opinion.known else f"{opinion.link} (no result)",
-        opinion.load_case,
-        Number(opinion.von_mises),
-        Number(None if theirs is None else theirs.von_mises),
-        Number(None if theirs is None else theirs.stress_gap, decimals=2, factor=100.0),
-        Number(opinion.displacement),
-        Number(None if theirs is None else theirs.displacement),
-        Number(None if theirs is None else theirs.displacement_gap, decimals=3, factor=100.0),
-        told(opinion.reason or ""),
-    )
-
-
 def _record(opinion: SecondOpinion) -> dict[str, object]:
-    calculix = None
-    if opinion.answer is not None:
-        calculix = entries(opinion.answer, f"{_VALUES} stress_gap displacement_gap agrees seconds")
-    return entries(opinion, f"load_case variant deck {_VALUES} known") | {
-        "reason": data(opinion.reason),
-        "calculix": calculix,
+    return entries(opinion, f"load_case variant deck {_VALUES} known reason") | {
+        "calculix": entries(opinion.answer, _ANSWER) if opinion.answer else None,
     }
 
 

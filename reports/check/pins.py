@@ -8,7 +8,8 @@ from alula.loads.case.case import Case
 from alula.loads.case.forks import forked_link
 from alula.loads.case.joint_rules import clearances, rubbing_joints
 from alula.reports.sections.data import entries
-from alula.reports.sections.section import Column, Number, Part, Section, Table, Text, words
+from alula.reports.sections.section import Part, Section, Text
+from alula.reports.sections.table import Column, Table, numbers, words
 from alula.reports.words.numbers import joined
 
 _TRANSFER = (
@@ -40,29 +41,18 @@ def pin_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
     if not case.pins:
         return
     deformed = ". Forces of the deformed pose" if case.large_displacement.reactions else ""
-    yield Table(
+    joints, pins = [stated.joints[name] for name in case.pins], case.pins.values()
+    yield Table.by_columns(
+        {
+            words("pin"): case.pins,
+            words("material"): [joint.pin_material for joint in joints],
+            Column("diameter", "mm"): numbers((joint.pin_diameter for joint in joints), stated=True, derived=True),
+            Column("lever", "mm"): numbers((pin.lever for pin in pins), stated=True),
+            Column("moment", "N·mm"): numbers(pin.moment for pin in pins),
+            Column("bending", "MPa"): numbers(pin.bending for pin in pins),
+            Column("shear", "MPa"): numbers((pin.shear for pin in pins), 3),
+        },
         key="pins",
-        columns=(
-            words("pin"),
-            words("material"),
-            Column("diameter", "mm"),
-            Column("lever", "mm"),
-            Column("moment", "N·mm"),
-            Column("bending", "MPa"),
-            Column("shear", "MPa"),
-        ),
-        rows=tuple(
-            (
-                joint,
-                stated.joints[joint].pin_material,
-                Number(stated.joints[joint].pin_diameter, stated=True, derived=True),
-                Number(pin.lever, stated=True),
-                Number(pin.moment),
-                Number(pin.bending),
-                Number(pin.shear, "", 3),
-            )
-            for joint, pin in case.pins.items()
-        ),
         caption="Pins; the lever is the distance between the middles of the two eyes, and in a fork from a cheek to "
         f"the middle of half the eye{deformed}",
         under=(("load case", case.name),),

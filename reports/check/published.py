@@ -10,7 +10,7 @@ from alula.reports.renderers.markdown import cell, table_lines
 from alula.reports.renderers.page import Page, as_page
 from alula.reports.sections.markup import code, link
 from alula.reports.sections.published import WORDS, claims_section, count, statics_count, statics_section
-from alula.reports.sections.section import Table, words
+from alula.reports.sections.table import Table, words
 
 CLAIMS = "claims.html"
 LONGEST_TABLE = 300

@@ -8,7 +8,8 @@ from alula.geometry.materials.material import Material
 from alula.loads.sources.published_statics import StaticsAudit
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold, code, link
-from alula.reports.sections.section import Column, Group, Items, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Group, Items, Part, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import by_heading, not_checked
 from alula.reports.words.numbers import joined, sentence
@@ -23,6 +24,7 @@ _PROPERTIES = (
     ("strength_across_layers", "strength across layers", "MPa", 1.0),
     ("shear_strength_between_layers", "shear strength between layers", "MPa", 1.0),
 )
+_HAND = ("name", "link", "load_case", "kind", "x", "unit", "hand", "solid", "difference")
 _IMPACT = "A sudden load causes higher stresses than the same load applied slowly."
 
 
@@ -157,16 +159,18 @@ def _scatter(result: CheckResult, used: list[str]) -> str:
     text = "The safety factor must cover voids, print layers, notches and scatter of dimensions"
     if missing:
         text += f", and scatter of {joined(missing)}, for which the case states no range"
-    parts = {name: case.part_of(name) for name in case.checked_links if case.part_of(name).build_direction is None}
     unknown = [
-        name for name, part in parts.items() if case.all_materials[part.material].strength_across_layers is not None
+        name
+        for name in case.checked_links
+        for part in [case.part_of(name)]
+        if part.build_direction is None and case.all_materials[part.material].strength_across_layers is not None
     ]
-    layers = (
-        f" Safety factors of {joined(unknown)} hold layers of any direction, since no build_direction is stated."
-        if unknown
-        else ""
-    )
-    return f"{text}. Stated ranges are part of the bands.{layers}"
+    text += ". Stated ranges are part of the bands."
+    if unknown:
+        text += (
+            f" Safety factors of {joined(unknown)} hold layers of any direction, since no build_direction is stated."
+        )
+    return text
 
 
 def hand_section(result: CheckResult) -> Section:
@@ -212,17 +216,8 @@ def _cantilevers(result: CheckResult) -> Iterator[dict[str, Any]]:
             ("bending stress at the root", "MPa", hand.stress),
             ("safety factor", "1", hand.safety_factor),
         ):
-            yield {
-                "name": f"{name}: {what}",
-                "link": None,
-                "load_case": None,
-                "kind": "cantilever",
-                "x": 0.0,
-                "unit": unit,
-                "hand": value,
-                "solid": None,
-                "difference": None,
-            }
+            row = {"name": f"{name}: {what}", "kind": "cantilever", "x": 0.0, "unit": unit, "hand": value}
+            yield dict.fromkeys(_HAND) | row
 
 
 def _comparisons(result: CheckResult) -> Iterator[dict[str, Any]]:
@@ -268,13 +263,9 @@ def audit_record(audit: StaticsAudit) -> dict[str, Any]:
     -------
     dict
     """
+    columns = zip(audit.columns, data(audit.published), data(audit.exact), data(audit.printed), strict=True)
     return entries(audit, "source reproduced printed_error rounding_bound") | {
-        "columns": [
-            {"name": name, "published": float(published), "exact": float(exact), "printed": float(printed)}
-            for name, published, exact, printed in zip(
-                audit.columns, audit.published, audit.exact, audit.printed, strict=True
-            )
-        ],
+        "columns": [dict(zip(("name", "published", "exact", "printed"), row, strict=True)) for row in columns],
         "rows": [entries(row, "number link defect valid") for row in audit.rows],
         "imbalances": [entries(left, "link force moment") for left in audit.imbalances],
     }

@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.loads.case.case import Case
-from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.case.layers import pin_masses
 from alula.loads.records.carried import CarriedSpread
 from alula.loads.statics.statics import Reactions
-from alula.reports.sections.friction import friction_record
+from alula.reports.sections.data import entries
 from alula.reports.sections.markup import code, sub
-from alula.reports.sections.reactions import reaction_parts, reaction_records
-from alula.reports.sections.section import Column, Folded, Group, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.reactions import friction_record, reaction_parts, reaction_records
+from alula.reports.sections.section import Folded, Part, Section, Text, say, under_load_cases
 from alula.reports.sections.springs import holding_sentence, standing_record
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.words.numbers import joined, plain
 
 
@@ -32,18 +32,14 @@ def statics_section(result: CheckResult) -> Section:
     -------
     Section
     """
-    first, several = next(iter(result.load_cases.values())), len(result.load_cases) > 1
-    parts: list[Part] = []
-    for case in result.load_cases.values():
-        own = tuple(_parts(result, case))
-        parts += [Group(f"Load case {case.name}", own)] if several else own
-    parts.append(Folded("How they are solved", (_method(result, first),)))
+    first = next(iter(result.load_cases.values()))
+    parts = under_load_cases({name: _parts(result, case) for name, case in result.load_cases.items()})
     sprung = result.case.sprung
     return Section(
         key="statics",
         title="Statics",
         short="Statics",
-        parts=tuple(parts),
+        parts=(*parts, Folded("How they are solved", (_method(result, first),))),
         data={
             "statics": _system(first),
             "reactions": [
@@ -155,14 +151,16 @@ def ground_section(result: CheckResult) -> Section:
     Section
     """
     several = len(result.load_cases) > 1
+    ground = result.pose.linkage.ground
     parts: list[Part] = [
         Text(
-            f"Force and moment that the linkage exerts on its ground {result.pose.linkage.ground}: at each joint, with "
-            "the moment about that joint, and in total. The moment about z at the joint of the drive contains the "
-            "reaction of the drive torque. Global axes: x and y in the plane of the linkage, z out of it.",
+            f"Force and moment that the linkage exerts on its ground {ground}: at each joint, with the moment about "
+            "that joint, and in total. The moment about z at the joint of the drive contains the reaction of the drive "
+            "torque. Global axes: x and y in the plane of the linkage, z out of it.",
             "note",
         )
     ]
+    components = [Column(f"{kind}{sub(axis)}", unit) for kind, unit in (("F", "N"), ("M", "N·mm")) for axis in "xyz"]
     records = {}
     for name, case in result.load_cases.items():
         anchor = anchor_loads(case)
@@ -171,26 +169,17 @@ def ground_section(result: CheckResult) -> Section:
             shape = ", in the undeformed pose, since the deformed one has no stable equilibrium"
         rows = {**anchor.joints, f"total, about {anchor.about}": anchor.total}
         parts.append(
-            Table.of(
-                (
-                    words("at"),
-                    *(Column(f"F{sub(axis)}", "N") for axis in "xyz"),
-                    *(Column(f"M{sub(axis)}", "N·mm") for axis in "xyz"),
-                ),
-                [(at, *(Number(float(value)) for value in wrench)) for at, wrench in rows.items()],
+            Table(
                 key="ground",
+                columns=(words("at"), *components),
+                rows=tuple((at, *numbers(wrench)) for at, wrench in rows.items()),
                 under=(("load case", name),),
                 caption=f"{f'Load case {name}' if several else 'On the ground'}{shape}",
             )
         )
-        records[name] = {
-            "anchor": {
-                "joints": [{"joint": at} | _wrench(values) for at, values in anchor.joints.items()],
-                "total": {"about": anchor.about} | _wrench(anchor.total),
-                "deformed": anchor.deformed,
-                "unstable": anchor.unstable,
-            }
-        }
+        joints = [{"joint": at} | _wrench(values) for at, values in anchor.joints.items()]
+        total = {"about": anchor.about} | _wrench(anchor.total)
+        records[name] = {"anchor": {"joints": joints, "total": total, **entries(anchor, "deformed unstable")}}
     return Section(
         key="anchor",
         title="Loads on the ground",
@@ -202,19 +191,3 @@ def ground_section(result: CheckResult) -> Section:
 
 def _wrench(values: NDArray[np.float64]) -> dict[str, list[float]]:
     return {"force": values[:3].tolist(), "moment": values[3:].tolist()}
-
-
-def friction_left_out(case: Case) -> str:
-    """Return at which joints friction is left out, in words; "" where none is.
-
-    Parameters
-    ----------
-    case : Case
-
-    Returns
-    -------
-    str
-    """
-    rubbing = rubbing_joints(case)
-    smooth = [name for name in case.joints if name not in rubbing]
-    return "friction" if not rubbing else f"friction at {joined(smooth)}" if smooth else ""

@@ -1,6 +1,5 @@
 """A check as a whole: which sections it has, in which order, on which page, with which pictures."""
 
-import json as text_of
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -17,7 +16,7 @@ from alula.reports.check.pins import pins_left_out
 from alula.reports.check.stated import audit_section, case_section, hand_section, limits_section, materials_section
 from alula.reports.check.statics import ground_section, statics_section
 from alula.reports.renderers.page import Page
-from alula.reports.renderers.record import as_record
+from alula.reports.renderers.record import as_json, as_record
 from alula.reports.sections.air import air_section, flapping_section
 from alula.reports.sections.assembly import assembly_section
 from alula.reports.sections.checks import checks_section, has_all, nearest
@@ -113,7 +112,7 @@ def check_json(result: CheckResult, sections: Sequence[Section]) -> str:
     -------
     str
     """
-    return text_of.dumps(check_record(result, sections), indent=2, ensure_ascii=False, allow_nan=False)
+    return as_json(check_record(result, sections))
 
 
 def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:

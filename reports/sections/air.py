@@ -18,13 +18,24 @@ from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.flapping import flapping_loads, wing_reynolds, wing_span
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, sub
-from alula.reports.sections.section import Column, Items, Number, Part, Picture, Section, Table, Text, say, words
+from alula.reports.sections.section import Items, Part, Picture, Section, Text, paragraph
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, number, plain, sentence
 
 Real = NDArray[np.float64]
 _AT = ("without", "least", "stated", "largest")
 """Air of a drive: none, and the least, the stated and the largest C_N."""
+_NUMBERS = (
+    (Column("V", "m/s"), "speed", 1e-3),
+    (Column("q", "Pa"), "dynamic_pressure", 1e6),
+    (Column("S", "m²"), "area", 1e-6),
+    (Column(f"C{sub('L')}"), "lift_coefficient", 1.0),
+    (Column(f"C{sub('D')}"), "drag_coefficient", 1.0),
+    (Column("L", "N"), "lift", 1.0),
+    (Column("D", "N"), "drag", 1.0),
+)
+"""Numbers of an air load: column, entry of ``result.json``, factor on it."""
 _WINGS = (
     "All force of the air acts on the axis of {links}: what turns a wing about that axis, the chordwise twist of wing "
     "and link, and the give of the wing's plate are not modelled."
@@ -62,32 +73,20 @@ def _parts(stated: dict[str, list[dict[str, Any]]]) -> Iterator[Part]:
         "note",
     )
     every = [(name, row) for name, rows in stated.items() for row in rows]
-    numbers = (
-        (Column("V", "m/s"), "speed", 1e-3),
-        (Column("q", "Pa"), "dynamic_pressure", 1e6),
-        (Column("S", "m²"), "area", 1e-6),
-        (Column(f"C{sub('L')}"), "lift_coefficient", 1.0),
-        (Column(f"C{sub('D')}"), "drag_coefficient", 1.0),
-        (Column("L", "N"), "lift", 1.0),
-        (Column("D", "N"), "drag", 1.0),
-    )
-    yield Table(
+    rows = [row for _, row in every]
+    yield Table.by_columns(
+        {
+            words("load case"): [name for name, _ in every],
+            words("given as"): ["forces" if row["given"] else "coefficients" for row in rows],
+            **{column: numbers((row[key] for row in rows), factor=factor) for column, key, factor in _NUMBERS},
+            **{
+                Column(f"force {axis}", "N"): [
+                    Number(row["force"][i], beside=1e3 * (abs(row["lift"]) + abs(row["drag"]))) for row in rows
+                ]
+                for i, axis in enumerate("xyz")
+            },
+        },
         key="air",
-        columns=(
-            words("load case"),
-            words("given as"),
-            *(column for column, _, _ in numbers),
-            *(Column(f"force {axis}", "N") for axis in "xyz"),
-        ),
-        rows=tuple(
-            (
-                name,
-                "forces" if row["given"] else "coefficients",
-                *(Number(row[key], factor=factor) for _, key, factor in numbers),
-                *(Number(x, beside=1e3 * (abs(row["lift"]) + abs(row["drag"]))) for x in row["force"]),
-            )
-            for name, row in every
-        ),
     )
     yield Items(tuple(_spread(name, row) for name, row in every), "small")
 
@@ -123,25 +122,21 @@ def air_records(result: CheckResult, name: str) -> list[dict[str, Any]]:
     found = []
     for air, forces in zip(result.case.load_cases[name].air, result.case.air_forces(name), strict=True):
         lift, drag = forces.coefficients or (None, None)
+        spread = [
+            {
+                "link": patch.link,
+                "where": patch.at or f"{patch.start} to {patch.end}",
+                "shape": "point" if patch.at else patch.shape,
+                "span": list(patch.span) if patch.at is None and patch.shape == "elliptic" else None,
+                "share": share,
+            }
+            for patch, share in zip(air.spread, shares(air, points), strict=True)
+        ]
         found.append(
             entries(air, "title speed density area")
             | entries(forces, "given lift drag lift_direction drag_direction warnings")
-            | {
-                "dynamic_pressure": forces.pressure,
-                "lift_coefficient": lift,
-                "drag_coefficient": drag,
-                "force": forces.total.tolist(),
-                "spread": [
-                    {
-                        "link": patch.link,
-                        "where": patch.at or f"{patch.start} to {patch.end}",
-                        "shape": "point" if patch.at else patch.shape,
-                        "span": list(patch.span) if patch.at is None and patch.shape == "elliptic" else None,
-                        "share": share,
-                    }
-                    for patch, share in zip(air.spread, shares(air, points), strict=True)
-                ],
-            }
+            | {"dynamic_pressure": forces.pressure, "lift_coefficient": lift, "drag_coefficient": drag}
+            | {"force": forces.total.tolist(), "spread": spread}
         )
     return found
 
@@ -218,19 +213,18 @@ def drive_in_air(name: str, record: dict[str, Any]) -> Text:
     Text
     """
     low, high = record["normal_coefficient_range"]
-    drive = record["drive"]
-    spread = f" ({low:g} to {high:g})" if low != high else ""
-    text = f"{name}: C{sub('N')} {record['normal_coefficient']:g}{spread}, at most {{force}} on a wing, Reynolds "
-    text += "number up to {reynolds}"
-    facts: dict[str, object] = {
-        "force": Number(max(wing["largest_force"] for wing in record["wings"]), "N", 3),
-        "reynolds": Number(max(wing["reynolds"] for wing in record["wings"]), "", 2),
-    }
+    drive, wide = record["drive"], low != high
+    text: list[str | Number] = [
+        f"{name}: C{sub('N')} {record['normal_coefficient']:g}{f' ({low:g} to {high:g})' if wide else ''}, at most ",
+        Number(max(wing["largest_force"] for wing in record["wings"]), "N", 3),
+        " on a wing, Reynolds number up to ",
+        Number(max(wing["reynolds"] for wing in record["wings"]), "", 2),
+    ]
     for what, key in (("on average", "mean_power"), ("at most", "peak_power")):
-        text += f"; drive power {what} {{{key}_without}} without air, {{{key}_stated}} with it"
-        facts |= {f"{key}_{at}": Number(drive[at][key], "W", 3) for at in ("without", "stated", "least", "largest")}
-        text += f" ({{{key}_least}} to {{{key}_largest}})" if low != high else ""
-    return say(text, **facts)
+        without, least, told, largest = (Number(drive[at][key], "W", 3) for at in _AT)
+        text += [f"; drive power {what} ", without, " without air, ", told, " with it"]
+        text += [" (", least, " to ", largest, ")"] if wide else []
+    return paragraph(*text)
 
 
 def wing_table(records: dict[str, dict[str, Any]]) -> Table:
@@ -245,28 +239,17 @@ def wing_table(records: dict[str, dict[str, Any]]) -> Table:
     -------
     Table
     """
-    return Table(
+    wings = [(name, wing) for name, record in records.items() for wing in record["wings"]]
+    return Table.by_columns(
+        {
+            words("load case"): [name for name, _ in wings],
+            words("link"): [wing["link"] for _, wing in wings],
+            Column("span, along x", "mm"): [" to ".join(map(plain, wing["span"])) for _, wing in wings],
+            Column("chord", "mm"): [" to ".join(map(plain, dict.fromkeys(wing["chord"]))) for _, wing in wings],
+            Column("largest force", "N"): numbers((wing["largest_force"] for _, wing in wings), 3),
+            Column("Reynolds number"): numbers((wing["reynolds"] for _, wing in wings), 2),
+        },
         key="wings",
-        columns=(
-            words("load case"),
-            words("link"),
-            Column("span, along x", "mm"),
-            Column("chord", "mm"),
-            Column("largest force", "N"),
-            Column("Reynolds number"),
-        ),
-        rows=tuple(
-            (
-                name,
-                wing["link"],
-                " to ".join(map(plain, wing["span"])),
-                " to ".join(map(plain, dict.fromkeys(wing["chord"]))),
-                Number(wing["largest_force"], "", 3),
-                Number(wing["reynolds"], "", 2),
-            )
-            for name, record in records.items()
-            for wing in record["wings"]
-        ),
         caption="Wings over the motion",
     )
 

@@ -8,8 +8,11 @@ from alula.fea.whole.clearance import SOURCES, clearance_band, gap_reason
 from alula.geometry.clearance.least import Gap
 from alula.loads.case.joint_rules import clearances
 from alula.loads.states.clearance import Clearance
-from alula.reports.sections.data import data
-from alula.reports.sections.section import Column, Number, Part, Picture, Section, Table, Text, say, words
+from alula.reports.figures.outlines.assembly import assembly_drawing
+from alula.reports.figures.outlines.contact import contact_drawing
+from alula.reports.sections.data import data, entries
+from alula.reports.sections.section import Part, Picture, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.sentences import told
 from alula.reports.words.numbers import joined, sentence
 
@@ -56,7 +59,7 @@ def assembly_section(result: CheckResult) -> Section:
                 caption="Links and pins in the stated pose, from above and from the side, a colour for each layer. "
                 "From above, what is higher covers what is lower. Pins (dark) reach from the lowest to the highest "
                 "face of the two links that they join.",
-                draw=lambda: _assembly(found),
+                draw=lambda: assembly_drawing(found),
             ),
             *gap_parts(found),
         ),
@@ -90,7 +93,7 @@ def gap_parts(found: Clearance) -> tuple[Part, ...]:
                 name="clearance",
                 alt=f"The two outlines {where}",
                 caption=f"The two outlines {where}, as seen from above, and a close-up. Thin lines: the others.",
-                draw=lambda: _contact(found),
+                draw=lambda: contact_drawing(found),
             )
         )
     if found.gaps:
@@ -117,28 +120,20 @@ def gap_table(found: Clearance) -> Table:
     -------
     Table
     """
-    motion = found.motion
+    motion, gaps = found.motion, found.gaps[:MOST]
+    bands = (Band(value=gap.value, low=gap.low, high=gap.high, sources=SOURCES) for gap in gaps)
+    at = [_at(found, gap) for gap in gaps]
+    coordinate = Column("") if motion is None else Column(motion.coordinate, motion.unit)
     smallest = f", the {MOST} smallest" if len(found.gaps) > MOST else ""
-    return Table.of(
-        (
-            words("between"),
-            Column("gap (band)", "mm"),
-            None if motion is None else Column(motion.coordinate, motion.unit),
-            Column("x", "mm"),
-            Column("y", "mm"),
-            words(""),
-        ),
-        [
-            (
-                joined(gap.names),
-                Number(Band(value=gap.value, low=gap.low, high=gap.high, sources=SOURCES)),
-                None if record["at"] is None else Number(record["at"], decimals=2),
-                *(Number(float(x), decimals=2) for x in gap.place),
-                "touch" if gap.touches else "",
-            )
-            for gap in found.gaps[:MOST]
-            for record in [_gap(found, gap)]
-        ],
+    return Table.by_columns(
+        {
+            words("between"): [joined(gap.names) for gap in gaps],
+            Column("gap (band)", "mm"): numbers(bands),
+            coordinate: None if motion is None else ["" if x is None else Number(x, decimals=2) for x in at],
+            Column("x", "mm"): numbers((gap.place[0] for gap in gaps), decimals=2),
+            Column("y", "mm"): numbers((gap.place[1] for gap in gaps), decimals=2),
+            words(""): ["touch" if gap.touches else "" for gap in gaps],
+        },
         key="gaps",
         caption=f"Least gaps{smallest}; pairs that stay further apart than another are left out",
     )
@@ -160,18 +155,6 @@ def clearance_text(found: Clearance) -> Text:
         return Text(where)
     gap = Number(clearance_band(found), "mm")
     return say("Least gap between links in layers: {gap}. {where}", gap=gap, where=where)
-
-
-def _assembly(found: Clearance) -> Any:
-    from alula.reports.figures.outlines.assembly import assembly_drawing
-
-    return assembly_drawing(found)
-
-
-def _contact(found: Clearance) -> Any:
-    from alula.reports.figures.outlines.contact import contact_drawing
-
-    return contact_drawing(found)
 
 
 def clearance_record(found: Clearance | None) -> dict[str, Any] | None:
@@ -201,16 +184,16 @@ def clearance_record(found: Clearance | None) -> dict[str, Any] | None:
 
 
 def _gap(found: Clearance, gap: Gap) -> dict[str, Any]:
-    at = None if gap.at is None or found.motion is None else float(found.motion.told(gap.at))
     return {
         "between": list(gap.names),
-        "value": gap.value,
-        "low": gap.low,
-        "high": gap.high,
-        "touches": gap.touches,
-        "at": at,
+        **entries(gap, "value low high touches"),
+        "at": _at(found, gap),
         "place": list(gap.place),
     }
+
+
+def _at(found: Clearance, gap: Gap) -> float | None:
+    return None if gap.at is None or found.motion is None else float(found.motion.told(gap.at))
 
 
 def _left_out(result: CheckResult) -> tuple[str, str]:

@@ -14,7 +14,8 @@ from alula.fea.common.verdict import (
 )
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, link
-from alula.reports.sections.section import Column, Folded, Items, Mark, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Folded, Items, Part, Section, Text, say
+from alula.reports.sections.table import Column, Mark, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import inapplicable, named
 from alula.reports.words.numbers import joined, sentence
@@ -28,6 +29,11 @@ _MEANING = {
     Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
     "decide it. This is neither a pass nor a fail.",
 }
+_JUDGED = (
+    Column("value (band)", role="value"),
+    Column("limit", role="limit"),
+    words("verdict", role="found"),
+)
 _TELLING = (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.LAYER_GAP, Quantity.DISPLACEMENT, *UNLOADED_QUANTITIES)
 """Quantities whose reasons say more than their values."""
 _READ = (
@@ -81,9 +87,7 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
             words("quantity", role="what"),
             words("link", role="who"),
             words("load case", role="under", hidden=not several),
-            Column("value (band)", role="value"),
-            Column("limit", role="limit"),
-            words("verdict", role="found"),
+            *_JUDGED,
         ),
         [
             (
@@ -130,12 +134,7 @@ def nearest(checks: Sequence[CheckOutcome], *, several: bool, all_below: bool) -
         )
         for check in worst[:MOST]
     ]
-    columns = (
-        words("check", role="what"),
-        Column("value (band)", role="value"),
-        Column("limit", role="limit"),
-        words("verdict", role="found"),
-    )
+    columns = (words("check", role="what"), *_JUDGED)
     order = "Nearest to its limit first, by the unfavourable end of its band over the limit."
     if len(worst) > MOST:
         order = f"The {MOST} of {len(worst)} checks that decide or are nearest to their limits."

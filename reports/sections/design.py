@@ -1,9 +1,11 @@
 """Design figures of a flapping wing, by the source's definitions and by the meaning of their names."""
 
 import math
+from typing import Any
 
 from alula.loads.case.case import Case
-from alula.reports.sections.section import Column, Items, Number, Section, Table, Text, words
+from alula.reports.sections.section import Items, Section, Text
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 
 _FIGURES = (
     (
@@ -54,16 +56,17 @@ def design_section(case: Case) -> Section:
         return Section(key="design", data={"design": None})
     wing = case.flapping_wing.wing(case.linkage)
     theirs, ours, criteria = wing.published_metrics(), wing.metrics(), wing.criteria()
-    rows = [
-        (
-            name,
-            math.degrees(getattr(theirs, field)) if source else None,
-            source,
-            math.degrees(getattr(ours, field)),
-            own,
-        )
+    figures: list[dict[str, Any]] = [
+        {
+            "name": name,
+            "published_definition": math.degrees(getattr(theirs, field)) if source else None,
+            "proper": math.degrees(getattr(ours, field)),
+            "published_as": source or None,
+            "proper_as": own,
+        }
         for name, field, source, own in _FIGURES
     ]
+    published = (row["published_definition"] for row in figures)
     return Section(
         key="design",
         title="The design of the flapping wing",
@@ -73,37 +76,25 @@ def design_section(case: Case) -> Section:
                 "from the closed form of one side’s four-bar over a full turn of the crank.",
                 "note",
             ),
-            Table(
+            Table.by_columns(
+                {
+                    words("figure"): [row["name"] for row in figures],
+                    Column("as the source defines it", "deg"): [
+                        "" if value is None else Number(value, decimals=4) for value in published
+                    ],
+                    words("source's definition", wraps=True): [row["published_as"] or "" for row in figures],
+                    Column("as its name means", "deg"): numbers((row["proper"] for row in figures), decimals=4),
+                    words("definition", wraps=True): [row["proper_as"] for row in figures],
+                },
                 key="design",
-                columns=(
-                    words("figure"),
-                    Column("as the source defines it", "deg"),
-                    words("source's definition", wraps=True),
-                    Column("as its name means", "deg"),
-                    words("definition", wraps=True),
-                ),
-                rows=tuple(
-                    (name, "" if published is None else Number(published, decimals=4), source,
-                     Number(proper, decimals=4), own)
-                    for name, published, source, proper, own in rows
-                ),
             ),
             Text("The source’s criteria, judged by the figures as their names mean:"),
             Items(tuple(f"{'Met' if one.fulfilled else 'Not met'}: {one.sentence}" for one in criteria)),
         ),
         data={
             "design": {
-                "figures": [
-                    {
-                        "name": name,
-                        "published_definition": published,
-                        "proper": proper,
-                        "published_as": source or None,
-                        "proper_as": own,
-                    }
-                    for name, published, source, proper, own in rows
-                ],
+                "figures": figures,
                 "criteria": [{"fulfilled": one.fulfilled, "sentence": one.sentence} for one in criteria],
             }
         },
-    )  # fmt: skip
+    )

@@ -16,22 +16,12 @@ from alula.fea.vibration.frequency_outcomes import (
 from alula.fea.vibration.harmonics import HIGHEST, meetings
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
 from alula.loads.case.case import Case
+from alula.reports.figures.vibration.campbell import campbell_diagram
+from alula.reports.figures.vibration.shapes import shapes_drawing
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
-from alula.reports.sections.section import (
-    Cell,
-    Column,
-    Folded,
-    Number,
-    Part,
-    Picture,
-    Section,
-    Series,
-    Table,
-    Text,
-    say,
-    words,
-)
+from alula.reports.sections.section import Folded, Part, Picture, Section, Series, Text, say
+from alula.reports.sections.table import Cell, Column, Number, Table, words
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.places import directions
 from alula.reports.words.numbers import joined, sentence
@@ -118,17 +108,7 @@ def _pictures(found: CaseFrequencies, name: str) -> Iterator[Picture]:
     """Yield the pictures of a load case."""
     case, history, moves = found.case, found.histories[name], found.case.motion is not None
 
-    def campbell() -> Any:
-        from alula.reports.figures.vibration.campbell import campbell_diagram
-
-        coordinate = case.motion_coordinate if moves else "pose"
-        return campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name)
-
-    def shapes() -> Any:
-        from alula.reports.figures.vibration.shapes import shapes_drawing
-
-        return shapes_drawing(history.lowest)
-
+    coordinate = case.motion_coordinate if moves else "pose"
     lines = [f"Load case “{name}”."]
     if moves:
         lines.append("Left: natural frequencies with their bands over the motion.")
@@ -143,7 +123,7 @@ def _pictures(found: CaseFrequencies, name: str) -> Iterator[Picture]:
         name=f"campbell-{name}",
         alt=f"Natural frequencies over the motion and over the speed of the drive, load case {name}",
         caption=" ".join(lines),
-        draw=campbell,
+        draw=lambda: campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name),
     )
     pose = " in the pose where the lowest is least" if moves else ""
     yield Picture(
@@ -152,7 +132,7 @@ def _pictures(found: CaseFrequencies, name: str) -> Iterator[Picture]:
         caption=f"Load case “{name}”: shapes of the lowest natural frequencies [Hz]{pose}, with their bands. "
         "Displacements are enlarged, each shape by a factor of its own. Shapes in the plane are seen along the pins, "
         "others from the side.",
-        draw=shapes,
+        draw=lambda: shapes_drawing(history.lowest),
     )
 
 

@@ -8,8 +8,10 @@ import numpy as np
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.solid.layers import build_directions
 from alula.fea.whole.build_directions import BuildDirections
+from alula.reports.figures.build_map import build_map
 from alula.reports.sections.data import data
-from alula.reports.sections.section import Beside, Number, Part, Picture, Text, say
+from alula.reports.sections.section import Beside, Part, Picture, Text, paragraph
+from alula.reports.sections.table import Number
 from alula.reports.words.numbers import direction
 
 ALIKE = 0.05
@@ -27,20 +29,20 @@ def layer_text(found: BuildDirections) -> Text:
     -------
     Text
     """
-    built = f"Layers of {found.link}: built along {direction(found.layers.normal)}, its layers have a safety factor "
-    built += "of {factor}"
-    facts: dict[str, object] = {"factor": Number(found.safety_factor)}
+    built: list[str | Number] = [
+        f"Layers of {found.link}: built along {direction(found.layers.normal)}, its layers have a safety factor of ",
+        Number(found.safety_factor),
+    ]
     if found.best is None and found.safety_factor.unknowable:
-        built += "; no direction of building is proposed"
+        built.append("; no direction of building is proposed")
     elif found.best is None:
-        built += " by tension alone; no direction of building is proposed, since the card has no shear strength"
+        built.append(" by tension alone; no direction of building is proposed, since the card has no shear strength")
     elif found.best[1] <= (1.0 + ALIKE) * found.safety_factor.value:
-        built += "; no direction of building holds noticeably more"
+        built.append("; no direction of building holds noticeably more")
     else:
-        built += f"; built along {direction(found.best[0])} it would be {{best}}, the largest of all directions "
-        built += "(steps of 5°, by the same solution, without a band)"
-        facts["best"] = Number(found.best[1], "", 3, derived=True)
-    return say(built, **facts)
+        built += [f"; built along {direction(found.best[0])} it would be ", Number(found.best[1], "", 3, derived=True)]
+        built.append(", the largest of all directions (steps of 5°, by the same solution, without a band)")
+    return paragraph(*built)
 
 
 def layer_parts(found: BuildDirections) -> Iterator[Part]:
@@ -54,19 +56,13 @@ def layer_parts(found: BuildDirections) -> Iterator[Part]:
     ------
     Part
     """
-
-    def draw() -> Any:
-        from alula.reports.figures.build_map import build_map
-
-        return build_map(found)
-
     picture = Picture(
         name=f"layers-{found.link}",
         alt=f"Safety factor of the layers of link {found.link} over the direction of building",
         caption=f"Safety factor of the layers of link {found.link} over the direction of building, least of all load "
         "cases. Centre: along the pins; circles: 30 and 60° to them; rim: in the plane of the linkage. x runs along "
         "the link. A direction and its opposite are the same.",
-        draw=draw,
+        draw=lambda: build_map(found),
         kind="map",
     )
     counted = Text(

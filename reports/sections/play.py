@@ -10,7 +10,8 @@ from alula.loads.case.case import Case
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
 from alula.reports.sections.data import data
-from alula.reports.sections.section import Column, Number, Part, Table, Text, say, words
+from alula.reports.sections.section import Part, Text, paragraph
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 
 
 def play_parts(case: Case, name: str, play: Play | None) -> Iterator[Part]:
@@ -31,36 +32,29 @@ def play_parts(case: Case, name: str, play: Play | None) -> Iterator[Part]:
     if play is None:
         return
     yield _told(play)
-    yield Table(
+    free = {pair: play.free_motion(*pair) for pair in tips(case)}
+    rest = [(size, _at_rest(play, *pair) or (None, None)) for pair, size in free.items()]
+    yield Table.by_columns(
+        {
+            words("point"): [f"{point} of {link}" for link, point in free],
+            Column("to either side", "mm"): numbers(free.values(), 3),
+            Column("both ways", "mm"): numbers((2.0 * size for size in free.values()), 3, derived=True),
+            Column("at rest x", "mm"): [Number(at[0], "", 3, beside=size) for size, at in rest],
+            Column("at rest y", "mm"): [Number(at[1], "", 3, beside=size) for size, at in rest],
+        },
         key="play",
-        columns=(
-            words("point"),
-            Column("to either side", "mm"),
-            Column("both ways", "mm"),
-            Column("at rest x", "mm"),
-            Column("at rest y", "mm"),
-        ),
-        rows=tuple(
-            (
-                f"{point} of {link}",
-                Number(free, "", 3),
-                Number(2.0 * free, "", 3, derived=True),
-                *(Number(at, "", 3, beside=free) for at in _at_rest(play, link, point) or (None, None)),
-            )
-            for link, point in tips(case)
-            for free in [play.free_motion(link, point)]
-        ),
         caption="Play: how far points can move to either side, each joint standing worst in its hole, and where they "
         "rest under the load",
         under=(("load case", name),),
     )
-    yield Table(
+    clearances = (play.clearances.get(joint, 0.0) for joint in play.forces)
+    yield Table.by_columns(
+        {
+            words("joint"): play.forces,
+            Column("play", "mm"): numbers(clearances, stated=True, derived=True),
+            Column("force (band)", "N"): numbers((_band(play, span) for span in play.forces.values()), 4),
+        },
         key="joints with play",
-        columns=(words("joint"), Column("play", "mm"), Column("force (band)", "N")),
-        rows=tuple(
-            (name, Number(play.clearances.get(name, 0.0), stated=True, derived=True), Number(_band(play, span), "", 4))
-            for name, span in play.forces.items()
-        ),
         caption="Joint forces in the undeformed pose, with play anywhere",
         under=(("load case", name),),
     )
@@ -71,22 +65,21 @@ def _told(play: Play) -> Text:
     link, point = max(free, key=lambda pair: free[pair])
     most, drive = free[link, point], play.drive
     held = "" if drive is None else f" with {drive.link} held"
-    told = f"Play of pins: {point} of {link} can move by {{most}} to either side{held}, {{both}} both ways"
-    facts: dict[str, object] = {"most": Number(most, "mm", 3), "both": Number(2.0 * most, "mm", 3, derived=True)}
+    told = [f"Play of pins: {point} of {link} can move by ", Number(most, "mm", 3), f" to either side{held}, "]
+    told += [Number(2.0 * most, "mm", 3, derived=True), " both ways"]
     if play.settled is not None:
-        told += "; under the load it rests {off} off"
-        facts["off"] = Number(abs(complex(play.shift(link, point))), "mm", 3, derived=True)
+        off = Number(abs(complex(play.shift(link, point))), "mm", 3, derived=True)
+        told += ["; under the load it rests ", off, " off"]
     if play.case.layered:
-        told += (
+        told += [
             ". That is with pins along z; where they tilt in their holes points move further, as checks of points hold"
-        )
+        ]
     if drive is not None and play.nominal is not None:
         pushes = drive.pushes(play.case.linkage)
-        told += f". Drive {'force' if pushes else 'torque'} {{effort}}, distance to a dead point of {drive.link} "
-        told += "(a ratio) {distance}"
-        facts["effort"] = Number(_band(play, play.effort), "N" if pushes else "N·mm")
-        facts["distance"] = Number(_band(play, play.distance))
-    return say(told, **facts)
+        effort = Number(_band(play, play.effort), "N" if pushes else "N·mm")
+        told += [f". Drive {'force' if pushes else 'torque'} ", effort]
+        told += [f", distance to a dead point of {drive.link} (a ratio) ", Number(_band(play, play.distance))]
+    return paragraph(*told)
 
 
 def play_record(play: Play | None) -> dict[str, Any] | None:
@@ -103,8 +96,10 @@ def play_record(play: Play | None) -> dict[str, Any] | None:
     """
     if play is None:
         return None
-    pushes = play.drive is not None and play.drive.pushes(play.case.linkage)
-    effort = None if play.drive is None else data(_band(play, play.effort))
+    driven, effort, distance = "drive_torque", None, None
+    if play.drive is not None:
+        driven = "drive_force" if play.drive.pushes(play.case.linkage) else "drive_torque"
+        effort, distance = data(_band(play, play.effort)), data(_band(play, play.distance))
     return {
         "clearances": play.clearances,
         "through_dead_point": play.through_dead_point,
@@ -119,9 +114,8 @@ def play_record(play: Play | None) -> dict[str, Any] | None:
             for point in play.case.links[link].points
         ],
         "joints": [{"joint": name, "force": data(_band(play, span))} for name, span in play.forces.items()],
-        "drive_torque": None if pushes else effort,
-        "drive_force": effort if pushes else None,
-        "dead_point_distance": None if play.drive is None else data(_band(play, play.distance)),
+        **({"drive_torque": None, "drive_force": None} | {driven: effort}),
+        "dead_point_distance": distance,
     }
 
 

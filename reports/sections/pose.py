@@ -4,7 +4,7 @@ import math
 
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
-from alula.reports.sections.section import Column, Number, Table, words
+from alula.reports.sections.table import Column, Number, Table, words
 
 
 def pose_tables(pose: Pose, case: Case) -> tuple[Table, Table]:

@@ -7,7 +7,8 @@ from alula.fea.claims.audit import ClaimResult, Finding
 from alula.loads.sources.published_statics import StaticsAudit
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import sub
-from alula.reports.sections.section import Column, Folded, Number, Part, Section, Table, Text, say, words
+from alula.reports.sections.section import Folded, Part, Section, Text, say
+from alula.reports.sections.table import Column, Number, Table, words
 
 WORDS = {
     Finding.HOLDS: ("holds", "hold"),
@@ -102,7 +103,6 @@ def statics_section(audit: StaticsAudit, tolerance: float) -> Section:
     Section
     """
     wrong = [row for row in audit.rows if not row.valid]
-    several = len(wrong) > 1
     parts: list[Part] = [
         say(
             "{source}: {size} equations for as many unknowns, solved here. The unrounded coefficients {exact}; "
@@ -116,7 +116,7 @@ def statics_section(audit: StaticsAudit, tolerance: float) -> Section:
             bound=Number(audit.rounding_bound, digits=2),
         ),
         Text(
-            f"{statics_count(audit)}{_no_choice(several)}"
+            f"{statics_count(audit)} No choice of moment point and sign makes {'them' if len(wrong) > 1 else 'it'} one."
             if wrong
             else "Every equation is one of equilibrium of its link."
         ),
@@ -155,10 +155,6 @@ def statics_section(audit: StaticsAudit, tolerance: float) -> Section:
         ),
     ]
     return Section(key="published", title="Published statics, solved and checked", parts=tuple(parts))
-
-
-def _no_choice(several: bool) -> str:
-    return f" No choice of moment point and sign makes {'them' if several else 'it'} one."
 
 
 def statics_count(audit: StaticsAudit) -> str:

@@ -1,5 +1,6 @@
 """Joint forces of a load case, what drives or holds its pose, springs, friction: of a check and of statics alone."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -9,18 +10,18 @@ from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.thrust import thrusts
 from alula.loads.records.applied import Load
 from alula.loads.states.drive_work import DriveWork
+from alula.loads.states.rubbing import told_direction
 from alula.loads.states.standing import Standing
 from alula.loads.statics.friction import friction_wrenches
 from alula.loads.statics.rounding import rounded, size_of, without_rounding
 from alula.loads.statics.statics import Reactions
 from alula.reports.sections.data import entries
-from alula.reports.sections.friction import friction_sentence
 from alula.reports.sections.markup import bold, sub
-from alula.reports.sections.section import Column, Number, Part, Table, Text, say, words
+from alula.reports.sections.section import Part, Text, paragraph, say
 from alula.reports.sections.springs import holding_sentence, spring_sentences
-from alula.reports.words.numbers import turning
+from alula.reports.sections.table import Column, Number, Table, numbers, words
+from alula.reports.words.numbers import number, turning
 
-Loads = Sequence[Load]
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 _ROUNDING = 1e-9
 
@@ -31,7 +32,7 @@ def reaction_parts(
     forces: JointForces,
     standing: Standing,
     work: DriveWork | None,
-    loads: Loads,
+    loads: Sequence[Load],
     deformed: Reactions | None = None,
 ) -> Iterator[Part]:
     """Yield joint forces, what drives or holds the pose, springs and friction under a load case.
@@ -71,24 +72,18 @@ def reaction_parts(
     yield say("Residual of the equilibrium: {share} of the load", "note", share=Number(reactions.residual, "", 2))
     if work is not None:
         yield Text(f"{friction_sentence(work, reactions)}.")
-        rubbed = {joint: rounded(wrench, size_of(reactions)) for joint, wrench in friction_wrenches(loads).items()}
-        yield Table(
+        found = friction_wrenches(loads)
+        joints, size = [reactions.joints[name] for name in found], size_of(reactions)
+        rubbed = [rounded(wrench, size) for wrench in found.values()]
+        yield Table.by_columns(
+            {
+                words("joint"): found,
+                words("by → on"): [f"{joint.by} → {joint.on}" for joint in joints],
+                Column(f"F{sub('x')}", "N"): numbers(wrench[0] for wrench in rubbed),
+                Column(f"F{sub('y')}", "N"): numbers(wrench[1] for wrench in rubbed),
+                Column(f"M{sub('z')}", "N·mm"): numbers(wrench[5] for wrench in rubbed),
+            },
             key="friction",
-            columns=(
-                words("joint"),
-                words("by → on"),
-                Column(f"F{sub('x')}", "N"),
-                Column(f"F{sub('y')}", "N"),
-                Column(f"M{sub('z')}", "N·mm"),
-            ),
-            rows=tuple(
-                (
-                    joint,
-                    f"{reactions.joints[joint].by} → {reactions.joints[joint].on}",
-                    *(Number(float(wrench[i])) for i in (0, 1, 5)),
-                )
-                for joint, wrench in rubbed.items()
-            ),
             caption="Friction, part of the joint forces",
             under=(("load case", name),),
         )
@@ -108,9 +103,10 @@ def thrust_texts(forces: JointForces, deformed: Reactions | None = None) -> Iter
     Text
     """
     if found := thrusts(forces, deformed):
-        facts = {f"n{i}": Number(thrust) for i, thrust in enumerate(found.values())}
-        places = ", ".join(f"{joint} {{n{i}}}" for i, joint in enumerate(found))
-        yield say(f"Thrust along the pins [N], which heads, washers or rings must hold: {places}", **facts)
+        told: list[str | Number] = ["Thrust along the pins [N], which heads, washers or rings must hold: "]
+        for joint, thrust in found.items():
+            told += [f"{joint} ", Number(thrust), ", "]
+        yield paragraph(*told[:-1])
 
 
 def _driving(reactions: Reactions, told: Reactions, standing: Standing) -> Iterator[Text]:
@@ -189,32 +185,104 @@ def joint_table(told: Reactions, shown: tuple[str, ...], load_case: str) -> Tabl
     -------
     Table
     """
-    forces, moments = ([axis for axis in shown if axis[0] == kind] for kind in "FM")
-    size = size_of(told)
-    return Table.of(
-        (
-            words("joint"),
-            words("by", hidden=True),
-            words("on", hidden=True),
-            words("by → on"),
-            *(Column(f"F{sub(axis[1])}", "N") for axis in forces),
-            Column("size", "N"),
-            *(Column(f"M{sub(axis[1])}", "N·mm") for axis in moments),
-        ),
-        [
-            (
-                name,
-                joint.by,
-                joint.on,
-                f"{joint.by} → {joint.on}",
-                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in forces),
-                Number(float(joint.magnitude), beside=float(size[0])),
-                *(Number(float(joint.wrench[AXES.index(axis)])) for axis in moments),
+    forces, moments = (
+        {
+            Column(f"{axis[0]}{sub(axis[1])}", unit): numbers(
+                joint.wrench[AXES.index(axis)] for joint in told.joints.values()
             )
-            for name, joint in told.joints.items()
-        ],
+            for axis in shown
+            if axis[0] == kind
+        }
+        for kind, unit in (("F", "N"), ("M", "N·mm"))
+    )
+    size, joints = float(size_of(told)[0]), told.joints.values()
+    return Table.by_columns(
+        {
+            words("joint"): told.joints,
+            words("by", hidden=True): [joint.by for joint in joints],
+            words("on", hidden=True): [joint.on for joint in joints],
+            words("by → on"): [f"{joint.by} → {joint.on}" for joint in joints],
+            **forces,
+            Column("size", "N"): numbers((joint.magnitude for joint in joints), beside=size),
+            **moments,
+        },
         key="joints",
         caption=f"Joint forces{' and moments about the joint' if moments else ''}, global axes",
         under=(("load case", load_case),),
         kind="keep",
     )
+
+
+def friction_record(work: DriveWork, loads: Sequence[Load]) -> dict[str, Any]:
+    """Return friction at one pose as plain data.
+
+    Parameters
+    ----------
+    work : DriveWork
+        At that pose.
+    loads : sequence of Load
+        All loads of the load case, friction among them.
+
+    Returns
+    -------
+    dict
+        Efforts of the drive [N mm or N], efficiency, and by joint the force [N] and moment [N mm] of its first link on
+        its second by friction.
+    """
+    return {
+        "direction": work.way,
+        "drive_without": float(work.without[0]),
+        "drive": float(work.effort[0]),
+        "drive_band": None if work.ends is None else [_finite(end) for end in _ends(work)],
+        "efficiency": _finite(work.efficiency[0]),
+        "holds_itself": bool(work.holds_itself[0]),
+        "joints": {
+            joint: {"force": wrench[:2].tolist(), "moment": float(wrench[5])}
+            for joint, wrench in friction_wrenches(loads).items()
+        },
+    }
+
+
+def friction_sentence(work: DriveWork, reactions: Reactions) -> str:
+    """Tell what friction does to the drive at one pose.
+
+    Parameters
+    ----------
+    work : DriveWork
+        At that pose.
+    reactions : Reactions
+        With friction.
+
+    Returns
+    -------
+    str
+    """
+    pose, drive = reactions.pose, reactions.drive
+    pushes = drive is not None and drive.pushes(pose.linkage)
+    unit, size = ("N", size_of(reactions)[0]) if pushes else ("N·mm", size_of(reactions)[5])
+    between = ""
+    if work.ends is not None:
+        low, high = (
+            number(end, beside=size) if math.isfinite(end) else "−∞" if end < 0.0 else "∞" for end in _ends(work)
+        )
+        between = f" ({low} to {high})"
+    found = (
+        f"Friction, driven {told_direction(work.way, pose.coordinate, pose.slides)}: drive "
+        f"{number(float(work.effort[0]), beside=size)}{between} {unit}, without friction "
+        f"{number(float(work.without[0]), beside=size)} {unit}"
+    )
+    if bool(work.holds_itself[0]):
+        return f"{found}; the linkage holds itself: the load does not drive it this way"
+    share = float(work.efficiency[0])
+    return found if math.isnan(share) else f"{found}; efficiency {100.0 * share:.1f} %"
+
+
+def _ends(work: DriveWork) -> tuple[float, float]:
+    """Return the least and the largest effort of all poses at which it is known as stated."""
+    assert work.ends is not None
+    known = work.ends[:, np.isfinite(work.effort)]
+    return (float(known[0].min()), float(known[1].max())) if known.size else (math.nan, math.nan)
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

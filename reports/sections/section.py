@@ -3,271 +3,23 @@
 Console, page, notebook, ``result.json`` and CSV show sections and know no feature: ``alula.reports.renderers``.
 """
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
+from alula.reports.sections.table import Cell, Column, Mark, Number, Table, words
 from alula.reports.sentences import told
-from alula.reports.words.numbers import band, chance, fixed, number, percent, plain, sentence
+from alula.reports.words.numbers import sentence
+from alula.reports.words.terminal import KEPT
 
-KEPT = "\u00a0"
-"""A space at which no line is broken, such as between a name and its number."""
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number as it is told: the same digits wherever it stands.
-
-    Attributes
-    ----------
-    value : float, Band or None
-        In the unit of ``result.json``; None where there is none.
-    unit : str
-        Of the number that is told; "" for a pure number, and where the table's column has it.
-    digits : int or None
-        Significant ones; None for 4, and 3 of a band.
-    decimals : int or None
-        In place of significant digits.
-    stated : bool
-        A number of the case: told as it was written.
-    share : bool
-        Told as a signed percentage.
-    probable : bool
-        A probability: told as a percentage.
-    beside : float
-        A number of which this one is a part: below its rounding error it is 0.
-    factor : float
-        Of the unit of ``result.json`` in that of the number told.
-    sense : str
-        Of a limit: ``≥`` or ``≤``, told before it.
-    derived : bool
-        True for what does not stand in ``result.json`` itself but follows from what does.
-    """
-
-    value: float | Band | None
-    unit: str = ""
-    digits: int | None = None
-    decimals: int | None = field(default=None, kw_only=True)
-    stated: bool = field(default=False, kw_only=True)
-    share: bool = field(default=False, kw_only=True)
-    probable: bool = field(default=False, kw_only=True)
-    beside: float = field(default=0.0, kw_only=True)
-    factor: float = field(default=1.0, kw_only=True)
-    sense: str = field(default="", kw_only=True)
-    derived: bool = field(default=False, kw_only=True)
-
-    @property
-    def shown(self) -> float | Band | None:
-        """The value in the unit that is told."""
-        if self.value is None or self.factor == 1.0:
-            return self.value
-        return self.value.times(self.factor) if isinstance(self.value, Band) else self.value * self.factor
-
-    @property
-    def figures(self) -> str:
-        """Its digits, without the unit."""
-        value = self.shown
-        if value is None:
-            return "–"
-        if isinstance(value, Band):
-            return band(value, self.digits or 3)
-        value = float(value)
-        if self.stated:
-            return plain(value)
-        if self.share:
-            return percent(value)
-        if self.probable:
-            return chance(value)
-        if self.decimals is not None and math.isfinite(value):
-            return fixed(value, self.decimals)
-        return number(value, self.digits or 4, self.beside)
-
-    def __str__(self) -> str:
-        """With its unit, where it is known."""
-        value = self.value.value if isinstance(self.value, Band) else self.value
-        known = value is not None and not math.isnan(value)
-        figures = f"{self.sense}{KEPT}{self.figures}" if self.sense else self.figures
-        return f"{figures} {self.unit}" if self.unit and known else figures
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A verdict in a table, in its colour.
-
-    Attributes
-    ----------
-    text : str
-    kind : str
-        ``pass``, ``fail``, ``undecided``; "" for what is not applicable.
-    """
-
-    text: str
-    kind: str = ""
-
-    def __str__(self) -> str:
-        return self.text
-
-
-Cell = str | Number | Mark
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column of a table.
-
-    Attributes
-    ----------
-    title : str
-    unit : str
-        Of all its numbers; "" for pure numbers, for text, and where each number has its own.
-    role : str
-        What its cells are on a narrow page, on which a row is no row: ``what``, ``who``, ``under``, ``value``,
-        ``limit``, ``found`` or ``note``; "" elsewhere.
-    text : bool
-        True for text, which stands at the left.
-    wraps : bool
-        True for text of which lines may break.
-    hidden : bool
-        True for one that notebooks alone have.
-    """
-
-    title: str
-    unit: str = ""
-    role: str = field(default="", kw_only=True)
-    text: bool = field(default=False, kw_only=True)
-    wraps: bool = field(default=False, kw_only=True)
-    hidden: bool = field(default=False, kw_only=True)
-
-    @property
-    def head(self) -> str:
-        """Title and unit."""
-        return f"{self.title} [{self.unit}]" if self.unit else self.title
-
-
-def words(title: str, *, role: str = "", wraps: bool = False, hidden: bool = False) -> Column:
-    """Return a column of text.
-
-    Parameters
-    ----------
-    title : str
-    role : str
-    wraps : bool
-    hidden : bool
-
-    Returns
-    -------
-    Column
-    """
-    return Column(title, text=True, role=role, wraps=wraps, hidden=hidden)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Table:
-    """Rows of cells.
-
-    Attributes
-    ----------
-    key : str
-        Its name for notebooks; "" for one that is on pages and consoles alone.
-    columns : tuple of Column
-    rows : tuple of tuple of Cell
-    caption : str
-    below : mapping of int to str
-        A line of text below some rows, by their places.
-    apart : frozenset of int
-        Rows that stand out.
-    under : tuple of (str, str)
-        What is the same in all rows and told above the table, such as the load case, as columns for notebooks.
-    kind : str
-        ``checks`` for one that a narrow page shows as cards, ``keep`` for one that is not broken in print, or "".
-    """
-
-    key: str = ""
-    columns: tuple[Column, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    caption: str = ""
-    below: Mapping[int, str] = field(default_factory=dict)
-    apart: frozenset[int] = frozenset()
-    under: tuple[tuple[str, str], ...] = ()
-    kind: str = ""
-
-    @classmethod
-    def of(cls, columns: Sequence[Column | None], rows: Iterable[Sequence[Cell | None]], **more: Any) -> Self:
-        """Return a table without the columns that are None, and without their cells.
-
-        Parameters
-        ----------
-        columns : sequence of Column or None
-        rows : iterable of sequence of Cell or None
-            As long as ``columns``.
-        **more
-            As of the class.
-
-        Returns
-        -------
-        Table
-        """
-        kept = [i for i, column in enumerate(columns) if column is not None]
-        cells = tuple(tuple("" if row[i] is None else row[i] for i in kept) for row in rows)
-        return cls(columns=tuple(columns[i] for i in kept), rows=cells, **more)  # type: ignore[misc, arg-type]
-
-    @property
-    def shown(self) -> Self:
-        """The table without the columns that notebooks alone have."""
-        kept = [i for i, column in enumerate(self.columns) if not column.hidden]
-        if len(kept) == len(self.columns):
-            return self
-        rows = tuple(tuple(row[i] for i in kept) for row in self.rows)
-        return replace(self, columns=tuple(self.columns[i] for i in kept), rows=rows)
-
-    @property
-    def records(self) -> list[dict[str, str | float | None]]:
-        """Rows as plain data for notebooks: of a band value, ``low`` and ``high``; a cell's own unit in ``unit``."""
-        return [self._record(row) for row in self.rows]
-
-    def _record(self, row: tuple[Cell, ...]) -> dict[str, str | float | None]:
-        found: dict[str, str | float | None] = dict(self.under)
-        for i, (column, cell) in enumerate(zip(self.columns, row, strict=True)):
-            name, every = as_name(column), [other[i] for other in self.rows]
-            if column.text or not any(isinstance(one, Number) for one in every):
-                found[name] = str(cell) if column.text or str(cell) else None
-                continue
-            shown = cell.shown if isinstance(cell, Number) else None
-            if any(isinstance(one, Number) and isinstance(one.value, Band) for one in every):
-                ends = shown.told if isinstance(shown, Band) else None
-                single = shown if isinstance(shown, float | int) else None
-                found[name] = single if ends is None else ends.value
-                found[f"{name} low"] = single if ends is None else ends.low
-                found[f"{name} high"] = single if ends is None else ends.high
-            else:
-                found[name] = None if shown is None else shown.value if isinstance(shown, Band) else float(shown)
-            if isinstance(cell, Number) and cell.sense:
-                found[f"{name} sense"] = cell.sense
-            if any(isinstance(one, Number) and one.unit for one in every):
-                found[f"{name} unit"] = cell.unit if isinstance(cell, Number) else ""
-        return found
-
-
-def as_name(column: Column) -> str:
-    """Return the name of a column for a script: without marks, without what its cells show anyway.
-
-    Parameters
-    ----------
-    column : Column
-
-    Returns
-    -------
-    str
-    """
-    from alula.reports.sections.markup import as_plain
-
-    return as_plain(column.head).replace(" (band)", "")
+__all__ = [
+    "KEPT", "Beside", "Cell", "Column", "Command", "Folded", "Group", "Items", "Mark", "Number", "Part", "Picture",
+    "Section", "Series", "Table", "Text", "merged", "paragraph", "parts_of", "say", "under_load_cases", "words",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -310,6 +62,25 @@ def say(template: str, kind: str = "", /, **facts: object) -> Text:
     written = {name: told(fact) if isinstance(fact, Reason) else str(fact) for name, fact in facts.items()}
     numbers = tuple(fact for fact in facts.values() if isinstance(fact, Number))
     return Text(sentence(template.format(**written)), kind, numbers)
+
+
+def paragraph(*pieces: object, kind: str = "") -> Text:
+    """Return a paragraph that is put together from pieces, and knows its numbers.
+
+    Parameters
+    ----------
+    *pieces
+        Text, ``Number``, reasons.
+    kind : str, optional
+        As of ``Text``.
+
+    Returns
+    -------
+    Text
+        With a capital at its beginning and a full stop at its end.
+    """
+    written = "".join(told(piece) if isinstance(piece, Reason) else str(piece) for piece in pieces)
+    return Text(sentence(written), kind, tuple(piece for piece in pieces if isinstance(piece, Number)))
 
 
 @dataclass(frozen=True)
@@ -427,6 +198,23 @@ class Command:
 Part = Text | Items | Table | Picture | Folded | Beside | Group | Command
 
 
+def under_load_cases(parts: Mapping[str, Iterable[Part]]) -> tuple[Part, ...]:
+    """Return what is told of each load case, under a heading of its own where there are several.
+
+    Parameters
+    ----------
+    parts : mapping of str to iterable of Part
+        Load case -> what is told of it.
+
+    Returns
+    -------
+    tuple of Part
+    """
+    if len(parts) > 1:
+        return tuple(Group(f"Load case {name}", tuple(own)) for name, own in parts.items())
+    return tuple(part for own in parts.values() for part in own)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Series:
     """Columns of numbers for a file, too long to be told.
@@ -518,47 +306,6 @@ def parts_of(parts: Iterable[Part]) -> Iterator[Part]:
         yield part
         if isinstance(part, Folded | Beside | Group):
             yield from parts_of(part.parts)
-
-
-def tables_of(sections: Iterable[Section]) -> dict[str, list[dict[str, str | float | None]]]:
-    """Return the rows of the tables that have a name, by it; those of tables of one name together.
-
-    Parameters
-    ----------
-    sections : iterable of Section
-
-    Returns
-    -------
-    dict of str to list of dict
-        All rows of a table have the same columns; a cell that there is not is None.
-    """
-    found: dict[str, list[dict[str, str | float | None]]] = {}
-    for section in sections:
-        for part in parts_of(section.parts):
-            if isinstance(part, Table) and part.key:
-                found.setdefault(part.key, []).extend(part.records)
-    for key, rows in found.items():
-        names = dict.fromkeys(name for row in rows for name in row)
-        found[key] = [{name: row.get(name) for name in names} for row in rows]
-    return found
-
-
-def numbers_of(parts: Iterable[Part]) -> Iterator[Number]:
-    """Yield every number that parts tell.
-
-    Parameters
-    ----------
-    parts : iterable of Part
-
-    Yields
-    ------
-    Number
-    """
-    for part in parts_of(parts):
-        if isinstance(part, Text):
-            yield from part.numbers
-        elif isinstance(part, Table):
-            yield from (cell for row in part.rows for cell in row if isinstance(cell, Number))
 
 
 def merged(records: Iterable[Mapping[str, Any]]) -> dict[str, Any]:

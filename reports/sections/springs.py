@@ -60,29 +60,32 @@ def spring_sentences(standing: Standing) -> Iterator[str]:
         yield f"{state.kind.capitalize()} {state.name}: {_size(standing, state)}, {_effort(standing, state)}"
     for name, value in standing.stops.items():
         stop = standing.case.stops[name]
-        limit = stop.limit.value if stop.limit.slides else math.degrees(stop.limit.value)
-        unit = "mm" if stop.limit.slides else "deg"
-        shown = value if stop.limit.slides else math.degrees(value)
-        yield (
-            f"Stop {name}: joint {stop.joint} at {number(shown)} {unit}, at {'least' if stop.sense > 0.0 else 'most'} "
-            f"{number(limit)} {unit}"
-        )
+        at, limit = _told(standing, name, value), _told(standing, name, stop.limit.value)
+        unit, most = "mm" if stop.limit.slides else "deg", "least" if stop.sense > 0.0 else "most"
+        yield f"Stop {name}: joint {stop.joint} at {number(at)} {unit}, at {most} {number(limit)} {unit}"
+
+
+def _told(standing: Standing, stop: str, value: float) -> float:
+    """Return a coordinate at a stop in the unit that is told [mm or deg]."""
+    return value if standing.case.stops[stop].limit.slides else math.degrees(value)
 
 
 def _size(standing: Standing, state: SpringState) -> str:
     if not state.turns:
         return f"{number(float(state.size))} mm long"
+    return f"joint {_turned(standing, state).joint} at {number(math.degrees(float(state.size)))} deg"
+
+
+def _turned(standing: Standing, state: SpringState) -> TurnSpring:
     spring = standing.case.springs[state.name]
     assert isinstance(spring, TurnSpring)
-    return f"joint {spring.joint} at {number(math.degrees(float(state.size)))} deg"
+    return spring
 
 
 def _effort(standing: Standing, state: SpringState) -> str:
     effort = float(state.effort)
     if state.turns:
-        spring = standing.case.springs[state.name]
-        assert isinstance(spring, TurnSpring)
-        second = standing.case.joints[spring.joint].links[1]
+        second = standing.case.joints[_turned(standing, state).joint].links[1]
         return f"{number(abs(effort))} N·mm {turning(effort)} on {second}" if effort else "not wound"
     if effort == 0.0:
         return "slack" if state.kind == "tendon" else "neither pulls nor pushes"
@@ -148,7 +151,7 @@ def standing_record(standing: Standing) -> dict[str, Any]:
                 {
                     "name": name,
                     "joint": standing.case.stops[name].joint,
-                    "value": value if standing.case.stops[name].limit.slides else math.degrees(value),
+                    "value": _told(standing, name, value),
                     "reached": name == standing.stop,
                 }
                 for name, value in standing.stops.items()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import solved
 from edited_cases import PLANAR
+from told import tables_of
 
 from alula.fea.check.run import check_case
 from alula.fea.common.source import COUPLES
@@ -18,7 +19,6 @@ from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.statics.statics import solve_statics
 from alula.reports.sections.design import design_section
-from alula.reports.sections.section import tables_of
 
 PUBLISHED = {
     "flapping-wing-reference": (1.9474, 39.085, 21.962),

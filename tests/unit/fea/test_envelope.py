@@ -14,6 +14,7 @@ import solid_meshes
 from edited_cases import edited
 from materials import with_material
 from result_paths import compare
+from told import tables_of
 
 from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import check_beam
@@ -583,7 +584,6 @@ def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch
 def test_the_page_says_why_a_check_is_open_what_is_not_checked_and_lists_the_worst_link_first(result):
     from alula.reports.motion.envelope import envelope_headline, envelope_page, envelope_sections
     from alula.reports.renderers.page import as_page
-    from alula.reports.sections.section import tables_of
 
     strong = result.links["rocker"]
     weak = {name: replace(one, safety_factor=one.safety_factor.times(0.5)) for name, one in strong.load_cases.items()}

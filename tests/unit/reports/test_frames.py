@@ -17,7 +17,8 @@ from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_text, validate
-from alula.reports.sections.section import Table, parts_of
+from alula.reports.sections.section import parts_of
+from alula.reports.sections.table import Table
 from alula.reports.sentences import told as in_words
 
 WING = "owl-wing-static"

@@ -7,7 +7,7 @@ from html import unescape
 import pytest
 import told_motion
 from edited_cases import edited
-from told import console_parts, ends_of, flat, values_of
+from told import console_parts, ends_of, flat, numbers_of, values_of
 
 import alula
 from alula.fea.findings.of_motion import motion_findings
@@ -15,7 +15,8 @@ from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.reports.motion.whole_motion import motion_page
 from alula.reports.notebook.motion_report import MotionReport
 from alula.reports.renderers.page import as_page
-from alula.reports.sections.section import Table, Text, numbers_of, parts_of
+from alula.reports.sections.section import Text, parts_of
+from alula.reports.sections.table import Table
 
 CASES = (
     ("flapping-wing-chosen", ["motion.poses=19"]),

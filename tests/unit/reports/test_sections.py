@@ -8,24 +8,13 @@ from html import unescape
 import pytest
 import told
 from solved import by_hand
-from told import console_parts, ends_of, flat, values_of
+from told import console_parts, ends_of, flat, numbers_of, values_of
 
 from alula.fea.common.band import Band
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.sections.markup import as_html, as_plain, bold, code, link, sub
-from alula.reports.sections.section import (
-    Column,
-    Number,
-    Section,
-    Series,
-    Table,
-    Text,
-    merged,
-    numbers_of,
-    parts_of,
-    say,
-    words,
-)
+from alula.reports.sections.section import Section, Series, Text, merged, parts_of, say
+from alula.reports.sections.table import Column, Number, Table, words
 
 CASES = (
     ("owl-wing-static",),

@@ -13,7 +13,7 @@ import pytest
 from edited_cases import PLANAR
 from html_pages import Page, stands_alone
 from rich.console import Console
-from told import ends_of, values_of
+from told import ends_of, numbers_of, tables_of, values_of
 
 from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import least_margin, margin, margin_band, nearest
@@ -30,7 +30,7 @@ from alula.reports.figures.study.style import LOOKS
 from alula.reports.notebook.study_report import StudyReport
 from alula.reports.renderers.console import print_sections
 from alula.reports.renderers.record import as_record
-from alula.reports.sections.section import Command, numbers_of, parts_of, tables_of
+from alula.reports.sections.section import Command, parts_of
 from alula.reports.study.choice import picture_sections
 from alula.reports.study.columns import read_study
 from alula.reports.study.page import pictures_of, write_study

@@ -8,12 +8,13 @@ import numpy as np
 import programs
 import pytest
 from rich.console import Console
-from told import ends_of, values_of
+from told import ends_of, numbers_of, values_of
 
 import alula
 from alula.reports.renderers.console import print_sections
 from alula.reports.renderers.record import as_record
-from alula.reports.sections.section import Number, numbers_of, parts_of
+from alula.reports.sections.section import parts_of
+from alula.reports.sections.table import Number
 from alula.reports.study.tolerance import tolerance_sections
 
 LOAD = "load_cases.lift.forces.0=10 %"
