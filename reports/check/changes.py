@@ -1,6 +1,7 @@
 """What would change a verdict: factors on loads, strengths, sources of the band, the command that finds a size."""
 
 import shlex
+from collections.abc import Sequence
 from typing import Any
 
 from alula.fea.common.change import MaterialChange, VerdictChange, rounded
@@ -49,6 +50,29 @@ def changes_section(result: CheckResult) -> Section:
         if record["command"]:
             parts.append(Command("Find the size:", record["command"]))
     return Section(key="changes", title="What would change it", parts=tuple(parts), data={"changes": records})
+
+
+def first_change(sections: Sequence[Section], *, said: str) -> tuple[str, str]:
+    """Return what would change the check that decides, but for what was said, and the command that finds its size.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+        Of a check.
+    said : str
+        The verdict and its reason.
+
+    Returns
+    -------
+    tuple of (str, str)
+        Each "" where there is none.
+    """
+    records = next(section for section in sections if section.key == "changes").data["changes"]
+    for change in records[:1]:
+        fresh = [text for text in change["sentences"] if text[1:] not in said]
+        text = f"What would change it ({change['title']}): {' '.join(fresh)}" if fresh else ""
+        return text, change["command"] or ""
+    return "", ""
 
 
 def change_records(result: CheckResult) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from alula.fea.common.verdict import CheckOutcome, worst_of_each
 from alula.fea.outcomes.result import CheckResult
+from alula.reports.check.changes import first_change
 from alula.reports.renderers.console import print_sections, print_table, verdict_line
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
@@ -57,7 +58,7 @@ def print_screen(result: CheckResult, sections: Sequence[Section], console: "Con
     checks, several = checks_of(result), len(result.load_cases) > 1
     why = shortened(console, brief(result.verdict, checks, several=several), _REASON)
     besides_it = shortened(console, besides(result.caveats), _BESIDES)
-    change, command = _change(sections, said=why)
+    change, command = first_change(sections, said=why)
     change = shortened(console, change, _CHANGE)
     taken = 1 + sum(height(console, text) for text in (why, change, besides_it) if text) + 2 * bool(command)
     left = SCREEN - taken - 1  # the last line counts what is not told
@@ -100,13 +101,3 @@ def _table_height(checks: Sequence[CheckOutcome], console: "Console", *, several
 def _print_checks(checks: Sequence[CheckOutcome], console: "Console", *, several: bool) -> None:
     table = check_table(checks, several=several)
     print_table(type(table)(columns=table.columns, rows=table.rows), console)
-
-
-def _change(sections: Sequence[Section], *, said: str) -> tuple[str, str]:
-    """Return what would change the check that decides, but for what was said, and the command that finds its size."""
-    records = next(section for section in sections if section.key == "changes").data["changes"]
-    for change in records[:1]:
-        fresh = [text for text in change["sentences"] if text[1:] not in said]
-        text = f"What would change it ({change['title']}): {' '.join(fresh)}" if fresh else ""
-        return text, change["command"] or ""
-    return "", ""

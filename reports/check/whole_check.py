@@ -6,7 +6,7 @@ from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.base.version import alula_version
-from alula.reports.check.changes import changes_section
+from alula.reports.check.changes import changes_section, first_change
 from alula.reports.check.displacement import displacement_section
 from alula.reports.check.linkage import governing_load_cases, linkage_picture, linkage_section
 from alula.reports.check.links import links_section
@@ -24,7 +24,7 @@ from alula.reports.sections.design import design_section
 from alula.reports.sections.frequencies import frequencies_section
 from alula.reports.sections.markup import code
 from alula.reports.sections.section import Picture, Section, parts_of
-from alula.reports.sentences.verdicts import checks_of, headline
+from alula.reports.sentences.verdicts import besides, brief, checks_of
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from alula.reports.words.numbers import fixed
 
@@ -129,6 +129,9 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
     Page
     """
     checks, several = checks_of(result), len(result.load_cases) > 1
+    why = brief(result.verdict, checks, several=several)
+    change, command = first_change(sections, said=why)
+    alone = len(sections[0].data["changes"]) <= 1 and not command  # then the first lines say all of it
     picture = linkage_picture(result, governing_load_cases(result)[0])
     case = f" Case {code(result.name)}." if result.name else ""
     times = ", ".join(f"{stage} {fixed(seconds, 1)} s" for stage, seconds in result.timings.items())
@@ -137,12 +140,12 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
         kind="Structural check of a planar linkage",
         heading=result.case.title,
         verdict=result.verdict.value,
-        lead=(headline(result, short=True),),
+        lead=tuple(filter(None, (why, change, besides(result.caveats)))),
         first=(
             Section(key="picture", parts=(picture,)),
             nearest(checks, several=several, all_below=has_all(checks)),
         ),
-        opening=(sections[0],),
+        opening=() if alone else (sections[0],),
         sections=tuple(sections[1:]),
         footer=(
             f"alula {alula_version()}.{case} Time: {times}.",

@@ -67,22 +67,20 @@ BRIEF = 320
 """Characters of a verdict and its reason, four lines of a terminal, beyond which checks are counted alone."""
 
 
-def headline(result: "CheckResult", *, short: bool = False) -> str:
+def headline(result: "CheckResult") -> str:
     """Return the verdict, what decides it and what no check looks at.
 
     Parameters
     ----------
     result : CheckResult
         All outcomes of a check.
-    short : bool
-        As ``brief``.
 
     Returns
     -------
     str
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
-    told = (brief if short else decision)(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
+    told = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
     return " ".join(filter(None, (told, besides(result.caveats))))
 
 
