@@ -19,6 +19,7 @@ from enum import Enum
 from typing import Any
 
 from alula.fea.claims.data import look_up
+from alula.fea.common.reason import Reason, reason
 from alula.geometry.base.errors import CaseError
 from alula.loads.sources.claim import Claim, Printed, read_printed
 from alula.loads.sources.expression import Path, evaluate
@@ -58,14 +59,14 @@ class ClaimResult:
         What became of it.
     ours : str or None
         Our value in the unit of the published figure, as text; None where there is none.
-    note : str
-        One plain sentence or two.
+    notes : tuple of Reason or str
+        What was found, and what the file of claims says to it.
     """
 
     claim: Claim
     finding: Finding
     ours: str | None
-    note: str
+    notes: tuple[Reason | str, ...]
 
 
 class _NotStatedError(Exception):
@@ -137,34 +138,33 @@ def check_claim(claim: Claim, names: Callable[[Path], Value | str]) -> ClaimResu
     allowed = claim.allowed(printed)
     shown = _shown(ours if ours is not None else stated, claim, printed)
     if stated is not None and not _agrees(stated, claim, printed, allowed):
-        finding = Finding.DOES_NOT_FOLLOW
-        subject = "it" if printed else "the answer"
-        note = f"By the source's own figures {subject} is {_shown(stated, claim, printed)}{_off(stated, printed)}."
+        finding, own = Finding.DOES_NOT_FOLLOW, _shown(stated, claim, printed)
+        notes = [reason("by_the_sources_own_figures", figure=bool(printed), shown=own, off=_off(stated, printed))]
         if ours is not None and _agrees(ours, claim, printed, allowed):
-            note += " The printed figure itself is right."
-        elif ours is not None and shown != _shown(stated, claim, printed):
-            note += f" Re-derived, {subject} is {shown}."
+            notes.append(reason("printed_figure_is_right"))
+        elif ours is not None and shown != own:
+            notes.append(reason("rederived", figure=bool(printed), shown=shown, off=None))
     elif ours is not None and not _agrees(ours, claim, printed, allowed):
         finding = Finding.DOES_NOT_HOLD
-        note = f"Re-derived, {'it' if printed else 'the answer'} is {shown}{_off(ours, printed)}."
+        notes = [reason("rederived", figure=bool(printed), shown=shown, off=_off(ours, printed))]
         if stated is not None:
-            note += " The printed figure does follow from the source's own relation."
+            notes.append(reason("figure_follows_from_own_relation"))
     elif ours is None and stated is None:
         finding = Finding.CANNOT_BE_REDERIVED
-        note = f"The source does not state {' and '.join(dict.fromkeys(missing))}."
+        notes = [reason("source_does_not_state", missing=tuple(dict.fromkeys(missing)))]
         if SOLID_LEFT_OUT in missing:
-            note = f"This run leaves out {SOLID_LEFT_OUT}."
+            notes = [reason("run_leaves_out_solid")]
     else:
         finding = Finding.HOLDS
-        how = " within its printed digits" if not claim.tolerance else f" within {claim.tolerance}"
-        if any(_cut_off(value, claim, printed, allowed) for value in (stated, ours)):
-            how = ", cut off after its printed digits and not rounded"
-        note = f"It follows{how}." if printed else "So it is."
         if means is not None and _apart(means, claim, printed):
-            note = (
-                f"It follows from the source's own definition; what its name says is {_shown(means, claim, printed)}."
-            )
-    return ClaimResult(claim=claim, finding=finding, ours=shown, note=f"{note} {claim.note}".strip())
+            notes = [reason("follows_from_own_definition", shown=_shown(means, claim, printed))]
+        elif printed is None:
+            notes = [reason("so_it_is")]
+        elif any(_cut_off(value, claim, printed, allowed) for value in (stated, ours)):
+            notes = [reason("follows_cut_off")]
+        else:
+            notes = [reason("follows_within", tolerance=claim.tolerance or None)]
+    return ClaimResult(claim=claim, finding=finding, ours=shown, notes=(*notes, *((claim.note,) if claim.note else ())))
 
 
 def _agrees(value: Value | str, claim: Claim, printed: Printed | None, allowed: float) -> bool:
@@ -217,26 +217,24 @@ def _shown(value: Value | str | None, claim: Claim, printed: Printed | None) -> 
     return f"{number:.{min(max(digits, 4), 15)}g} {printed.unit}".strip()
 
 
-def _off(value: Value | str, printed: Printed | None) -> str:
-    """Say how far off the printed figure is: a factor, a share, or a wrong sign."""
+def _off(value: Value | str, printed: Printed | None) -> Reason | None:
+    """Return how far off the printed figure is: a factor, a share, or a wrong sign."""
     if printed is None or isinstance(value, str):
-        return ""
+        return None
     ours = value.to(printed.unit)
     if printed.number == 0.0 or abs(ours) < ZERO * abs(printed.number):
-        return ", where the source prints zero" if printed.number == 0.0 else ""
+        return reason("source_prints_zero") if printed.number == 0.0 else None
     if value.dimensions == ANGLE:
         apart = printed.number - ours
-        much = f"{float(f'{abs(apart):.2g}'):g}"  # 110, not 1.1e+02
-        return f": the printed figure is {much} {printed.unit} too {'large' if apart > 0.0 else 'small'}"
+        return reason("figure_is_off_by", much=float(f"{abs(apart):.2g}"), unit=printed.unit, large=apart > 0.0)
     ratio = printed.number / ours
     if ratio < 0.0:
         turned = abs(abs(ours) - abs(printed.number)) <= printed.half * 1.000001
-        return ", so only the sign is wrong" if turned else ", of the other sign"
+        return reason("only_the_sign_is_wrong") if turned else reason("of_the_other_sign")
     power = round(math.log10(ratio)) if ratio > 0.0 else 0
     if power and abs(ratio / 10.0**power - 1.0) < 0.01:
-        much = "large" if power > 0 else "small"
-        return f": the printed figure is {10 ** abs(power)} times too {much}"
+        return reason("figure_is_off_by_power", times=10 ** abs(power), large=power > 0)
     if ratio > 1.5 or ratio < 1.0 / 1.5:
-        much, factor = ("large", ratio) if ratio > 1.0 else ("small", 1.0 / ratio if ratio else math.inf)
-        return f": the printed figure is {factor:.3g} times too {much}"
-    return f": the printed figure is {abs(ratio - 1.0) * 100.0:.2g} % too {'large' if ratio > 1.0 else 'small'}"
+        factor = ratio if ratio > 1.0 else 1.0 / ratio if ratio else math.inf
+        return reason("figure_is_off_by_times", times=factor, large=ratio > 1.0)
+    return reason("figure_is_off_by", much=float(f"{abs(ratio - 1.0) * 100.0:.2g}"), unit="%", large=ratio > 1.0)

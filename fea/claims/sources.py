@@ -9,6 +9,7 @@ from typing import Any
 
 from alula.fea.claims.audit import ClaimResult, Finding, Names, check_claim
 from alula.fea.claims.data import Tree, case_tree, flapping_tree, system_tree
+from alula.fea.common.reason import reason
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.base.errors import CaseError
 from alula.geometry.mechanisms.flapping import FlappingWing
@@ -210,6 +211,4 @@ def _with_twin(result: ClaimResult, all_cells: list[ClaimResult]) -> ClaimResult
     if not twins:
         return result
     near = min(twins, key=lambda twin: twin.split(".")[0] != table)
-    return replace(
-        result, note=f"{result.note} The same figure stands in row {near.rpartition('.')[0]}, where it holds."
-    )
+    return replace(result, notes=(*result.notes, reason("holds_in_row", row=near.rpartition(".")[0])))

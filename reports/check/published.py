@@ -9,7 +9,7 @@ from alula.fea.outcomes.result import CheckResult
 from alula.reports.renderers.markdown import cell, table_lines
 from alula.reports.renderers.page import Page, as_page
 from alula.reports.sections.markup import code, link
-from alula.reports.sections.published import WORDS, claims_section, count, statics_count, statics_section
+from alula.reports.sections.published import WORDS, claims_section, count, note_of, statics_count, statics_section
 from alula.reports.sections.table import Table, words
 
 CLAIMS = "claims.html"
@@ -103,6 +103,6 @@ def as_markdown(found: Mapping[str, Sequence[ClaimResult]], titles: Mapping[str,
         lines += ["", f"## {cell(titles[name])}", "", count(results)]
         if len(shown) < len(results):
             lines.append(f"Listed are those that do not hold; `alula claims {name}` lists all.")
-        rows = [(r.claim.name, r.claim.published, r.ours or "", WORDS[r.finding][0], r.note) for r in shown]
+        rows = [(r.claim.name, r.claim.published, r.ours or "", WORDS[r.finding][0], note_of(r)) for r in shown]
         lines += ["", *table_lines(Table(columns=tuple(map(words, _HEADS)), rows=tuple(rows)))]
     return "\n".join(lines) + "\n"

@@ -9,6 +9,8 @@ from alula.reports.sections.data import entries
 from alula.reports.sections.markup import sub
 from alula.reports.sections.section import Folded, Part, Section, Text, say
 from alula.reports.sections.table import Column, Number, Table, words
+from alula.reports.sentences import told
+from alula.reports.words.numbers import sentence
 
 WORDS = {
     Finding.HOLDS: ("holds", "hold"),
@@ -42,8 +44,8 @@ def count(results: Sequence[ClaimResult]) -> str:
     str
     """
     found = Counter(result.finding for result in results)
-    told = ", ".join(f"{found[kind]} {one if found[kind] == 1 else several}" for kind, (one, several) in WORDS.items())
-    return f"{len(results)} {'claim' if len(results) == 1 else 'claims'}: {told}."
+    each = ", ".join(f"{found[kind]} {one if found[kind] == 1 else several}" for kind, (one, several) in WORDS.items())
+    return f"{len(results)} {'claim' if len(results) == 1 else 'claims'}: {each}."
 
 
 def claims_section(results: Sequence[ClaimResult], title: str = "Published figures") -> Section:
@@ -59,7 +61,7 @@ def claims_section(results: Sequence[ClaimResult], title: str = "Published figur
     Section
         Its only entry of data, ``claims``, is what ``alula claims --json`` lists.
     """
-    told = Text(
+    note = Text(
         "A figure that cannot be re-derived from its source is not necessarily wrong. Figures that need a solid model "
         "of the source’s own parts are not judged, since the source states neither eyes nor pins nor meshes.",
         "note",
@@ -68,11 +70,11 @@ def claims_section(results: Sequence[ClaimResult], title: str = "Published figur
         entries(result.claim, "name")
         | {"quantity": result.claim.quantity or result.claim.stated, "published": result.claim.published}
         | entries(result, "ours finding")
-        | {"source": result.claim.source, "note": result.note}
+        | {"source": result.claim.source, "note": note_of(result)}
         for result in results
     ]
     # A console ends with the number, which a long list would carry away.
-    parts: tuple[Part, ...] = (Text(count(results), "note"), told, *_lists(results))
+    parts: tuple[Part, ...] = (Text(count(results), "note"), note, *_lists(results))
     return Section(key="claims", title=title, parts=parts, data={"claims": claims})
 
 
@@ -84,9 +86,23 @@ def _lists(results: Sequence[ClaimResult]) -> Iterator[Folded]:
             yield Folded(f"{title} ({len(rows)})", (table,), opened=opened, told=True)
 
 
+def note_of(result: ClaimResult) -> str:
+    """Return what was found of a figure, in plain sentences.
+
+    Parameters
+    ----------
+    result : ClaimResult
+
+    Returns
+    -------
+    str
+    """
+    return " ".join(note if isinstance(note, str) else sentence(told(note)) for note in result.notes)
+
+
 def _row(result: ClaimResult) -> tuple[str, ...]:
     found, _ = WORDS[result.finding]
-    return result.claim.name, result.claim.published, result.ours or "–", found, result.note
+    return result.claim.name, result.claim.published, result.ours or "–", found, note_of(result)
 
 
 def statics_section(audit: StaticsAudit, tolerance: float) -> Section:

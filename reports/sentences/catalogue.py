@@ -16,7 +16,7 @@ from alula.reports.sentences.arranged import ARRANGED
 from alula.reports.sentences.places import FactFormatter
 
 Sentence = str | Callable[..., str]
-FILES = ("bands", "caveats", "envelopes", "frames", "hand", "links", "linkage", "motion", "runs")
+FILES = ("bands", "caveats", "claims", "envelopes", "frames", "hand", "links", "linkage", "motion", "runs")
 
 
 def told(what: Reason | str) -> str:

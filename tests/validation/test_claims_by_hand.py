@@ -7,6 +7,7 @@ import pytest
 import solved
 
 from alula.fea.claims.audit import Finding
+from alula.reports.sections.published import note_of
 
 HOLDS, NOT_HOLD, NOT_FOLLOW = Finding.HOLDS, Finding.DOES_NOT_HOLD, Finding.DOES_NOT_FOLLOW
 MISSING = Finding.CANNOT_BE_REDERIVED
@@ -91,7 +92,7 @@ def test_pose_and_statics_of_the_owl_wing(findings):
     assert exact == pytest.approx(29.46, abs=0.005)
     assert rounded != pytest.approx(29.46, abs=0.005)
     assert float(owl["pose.AH"].ours.split()[0]) == pytest.approx(exact, abs=5e-5)
-    assert f"{rounded:.3f} cm" in owl["pose.AH"].note
+    assert f"{rounded:.3f} cm" in note_of(owl["pose.AH"])
     assert owl["pose.AH"].finding is HOLDS
     assert pytest.approx(867.8, abs=0.15) == 29.46**2  # so circuit 5 means the line from A to H, not link CH
     assert float(owl["reaction.T"].ours.split()[0]) == pytest.approx(torque / 1000, rel=1e-4)
@@ -113,7 +114,7 @@ def test_no_figure_is_refuted_by_less_than_the_rounding_of_its_lengths(findings)
         for name in names:
             assert owl[name].finding is HOLDS
             shown = f"{stated:.3f}" if name.startswith("hand") else f"{more - stated:.2f}°"
-            assert shown in owl[name].note
+            assert shown in note_of(owl[name])
     assert math.degrees(math.atan2(0.4222, 1.1549)) == pytest.approx(20.08, abs=0.005)
 
 
@@ -122,7 +123,7 @@ def test_hand_calculations_of_the_owl_wing(findings):
     stress = 37.15 * 2.5 / SECOND_MOMENT
     assert stress == pytest.approx(3.229, abs=1e-3)  # printed 1.2916 MPa
     assert owl["hand.DE.stress"].finding is NOT_FOLLOW
-    assert float(owl["hand.DE.stress"].note.split(" it is ")[1].split()[0]) == pytest.approx(stress * 1e6, rel=1e-5)
+    assert float(note_of(owl["hand.DE.stress"]).split(" it is ")[1].split()[0]) == pytest.approx(stress * 1e6, rel=1e-5)
     assert pytest.approx(1.2916, abs=5e-5) == 37.15 * 1.0 / SECOND_MOMENT  # with 1 mm for 2.5 mm
     assert owl["hand.DE.safety-factor"].finding is NOT_HOLD
     assert pytest.approx(32.05, abs=0.005) == 4.14e7 / 1.2916e6
@@ -135,8 +136,8 @@ def test_hand_calculations_of_the_owl_wing(findings):
     assert pytest.approx(1.9356, abs=1e-3) == 33.75 * 1.65 / SECOND_MOMENT
     assert owl["hand.wing.c"].finding is NOT_FOLLOW
     assert owl["hand.wing.safety-factor"].finding is NOT_FOLLOW
-    assert "21.4508" in owl["hand.wing.safety-factor"].note  # 41.4 / 1.93, printed 69.2
-    assert f"Re-derived, it is {41.4 / wing:.4f}" in owl["hand.wing.safety-factor"].note
+    assert "21.4508" in note_of(owl["hand.wing.safety-factor"])  # 41.4 / 1.93, printed 69.2
+    assert f"Re-derived, it is {41.4 / wing:.4f}" in note_of(owl["hand.wing.safety-factor"])
     assert owl["hand.wing.moment"].finding is HOLDS
 
 
@@ -150,9 +151,9 @@ def test_safety_factors_of_the_finite_elements(findings):
     # With ten times the yield strength the first follows within its rounded stress, the second from Table 14 alone.
     assert pytest.approx(36.41, abs=0.01) == 414 / 11.37
     assert pytest.approx(15.92, abs=0.01) == 414 / 26
-    assert "10 times too large" in owl["fe.flight.safety-factor"].note
+    assert "10 times too large" in note_of(owl["fe.flight.safety-factor"])
     assert owl["fe.limit"].finding is NOT_FOLLOW
-    assert "10 times too large" in owl["fe.limit"].note
+    assert "10 times too large" in note_of(owl["fe.limit"])
     assert owl["fe.static.stress"].finding is MISSING
 
 
@@ -185,7 +186,7 @@ def test_published_reactions_follow_from_the_published_equations_and_do_not_hold
     assert len(reactions) == 15
     for result in reactions:
         assert result.finding is NOT_HOLD
-        assert "does follow from the source's own relation" in result.note
+        assert "does follow from the source's own relation" in note_of(result)
 
 
 def test_weight_of_the_owl_wing(findings):
@@ -203,7 +204,7 @@ def test_weight_of_the_owl_wing(findings):
     assert owl["weight.density-annex"].finding is NOT_FOLLOW
     assert owl["weight.plumage-and-bones"].finding is HOLDS
     assert pytest.approx(0.6664) == 0.5096 + 0.1568
-    assert "what its name says is 0.05027" in owl["weight.humerus"].note
+    assert "what its name says is 0.05027" in note_of(owl["weight.humerus"])
     # One position: 25 g and 0.25 N are the bare mechanism, 0.25 kg is one wing's plumage.
     assert owl["weight.prosthesis"].finding is HOLDS
     assert float(owl["weight.prosthesis"].ours.split()[0]) == pytest.approx(0.52 * 0.98 / 2, rel=1e-3)
@@ -219,7 +220,7 @@ def test_circuits_of_the_owl_wing(findings):
         "circuit5.sum": (77.44 - 5.98 - 867.8) / 200.318,
     }
     for name, cosine in cosines.items():
-        assert f"a cosine of {cosine:.2f}" in owl[name].note
+        assert f"a cosine of {cosine:.2f}" in note_of(owl[name])
         assert owl[name].finding is NOT_FOLLOW
     assert owl["circuit1.sum"].finding is NOT_FOLLOW
     # Circuit 4 with 798.26 has no angle; with the sum of its two constants it has two, neither of them the printed one.
@@ -228,11 +229,11 @@ def test_circuits_of_the_owl_wing(findings):
     assert (60.80 - 798.26 + square) / factor < -1.0
     cosine = (60.80 - constant + square) / factor
     angle = math.degrees(math.acos(cosine))
-    assert f"a cosine of {cosine:.3f}, at {angle:.1f}° or {360 - angle:.1f}°" in owl["circuit4.sum"].note
-    assert f"for {(60.80 - constant - square) / factor:.2f}, which no angle has" in owl["circuit4.sum"].note
+    assert f"a cosine of {cosine:.3f}, at {angle:.1f}° or {360 - angle:.1f}°" in note_of(owl["circuit4.sum"])
+    assert f"for {(60.80 - constant - square) / factor:.2f}, which no angle has" in note_of(owl["circuit4.sum"])
     assert min(abs(angle - 205), abs(360 - angle - 205)) > 10
     assert owl["circuit4.sum"].finding is NOT_FOLLOW
-    for first, shown in ((constant, owl["circuit4.sum"].ours), (798.26, owl["circuit4.sum"].note)):
+    for first, shown in ((constant, owl["circuit4.sum"].ours), (798.26, note_of(owl["circuit4.sum"]))):
         assert f"{first + factor * math.cos(math.radians(205)) - square:.4g}"[:4] in shown
     assert math.hypot(160.02, 194) < 440.91
     # Chace, circuit 4: the body closes the triangle of 8.7 cm and 7.7 cm, the annex takes their difference with 7.6 cm.
@@ -242,7 +243,7 @@ def test_circuits_of_the_owl_wing(findings):
     assert math.hypot(x, y + 8.7) == pytest.approx(14.7, abs=0.05)
     for name in ("chace4.angle8", "chace4.angle8-annex"):
         assert owl[name].finding is NOT_HOLD
-        assert "does follow from the source's own relation" in owl[name].note
+        assert "does follow from the source's own relation" in note_of(owl[name])
 
 
 def test_displacements_of_the_finite_elements(findings):
@@ -268,7 +269,7 @@ def test_rival_statements_refute_none_of_each_other(findings):
         mass = owl[f"mass.{link}"]
         rod, tube = (area * length * 1.45e-3 for area in (math.pi * 2.0**2, math.pi * (2.5**2 - 1.25**2)))
         assert float(mass.ours.split()[0]) == pytest.approx(rod, rel=1e-4)
-        assert f" {tube:.2f} g" in mass.note
+        assert f" {tube:.2f} g" in note_of(mass)
         fits = any(abs(grams - 2.23) < 0.02 * 2.23 for grams in (rod, tube))
         assert mass.finding is (HOLDS if fits else NOT_HOLD)
         assert fits == (link == "CH")
@@ -305,12 +306,12 @@ def test_aerodynamic_coefficients(findings):
     ):
         for kind in ("Cd", "Cl"):  # each angle has areas of its own
             assert owl[f"air.{angle}deg.22.{kind}"].finding is MISSING
-            assert "one of their own for each angle" in owl[f"air.{angle}deg.22.{kind}"].note
+            assert "one of their own for each angle" in note_of(owl[f"air.{angle}deg.22.{kind}"])
         for speed, drag in ((15, drags[1]), (7, drags[2])):
             result = owl[f"air.{angle}deg.{speed}.Cd"]
             of_drag = printed * drag / drags[0] * (22 / speed) ** 2
             if angle:  # refuted as it is labelled, but as a force it grows with the square of the speed
-                assert f"{of_drag:.4g} would follow" in result.note
+                assert f"{of_drag:.4g} would follow" in note_of(result)
                 assert float(result.ours) == pytest.approx(printed * (speed / 22) ** 2, rel=2e-4)
             else:
                 assert float(result.ours) == pytest.approx(of_drag, rel=1e-4)
@@ -320,8 +321,8 @@ def test_aerodynamic_coefficients(findings):
         low, high = (0.9515 * (force + half) / (2.78 - half) * (22 / speed) ** 2 for half in (-0.005, 0.005))
         assert low < float(result.claim.published.split()[0]) < high
         assert result.finding is HOLDS
-        assert "labels swapped" in result.note
-        assert f"{0.9515 * (speed / 22) ** 2:.4f} N would follow" in result.note
+        assert "labels swapped" in note_of(result)
+        assert f"{0.9515 * (speed / 22) ** 2:.4f} N would follow" in note_of(result)
     # A lift from 0.45 to 0.46 N, cut off, reaches the printed 0.0988.
     low, high = (0.09863 * lift / 4.51 * (22 / 7) ** 2 for lift in (0.45, 0.46))
     assert low < 0.0988 < high
@@ -352,10 +353,10 @@ def test_phase_lag_and_oscillation_of_the_reference_design(findings):
     assert abs(sum(mirrored) - sum(turn)) == pytest.approx(1.9474, abs=5e-5)
     assert lag.finding is HOLDS
     assert float(lag.ours.split()[0]) == pytest.approx(abs(mirrored[0] - turn[0]), abs=1e-6)
-    assert "what its name says is 10.393" in lag.note
+    assert "what its name says is 10.393" in note_of(lag)
     assert max(turn) + abs(min(turn)) == pytest.approx(39.085, abs=5e-4)
     assert cells["1.9.oscillation_deg"].finding is HOLDS
-    assert cells["1.9.oscillation_deg"].note == "It follows within its printed digits."
+    assert note_of(cells["1.9.oscillation_deg"]) == "It follows within its printed digits."
 
 
 def test_the_mean_lag_of_the_chosen_design(findings):
@@ -365,7 +366,7 @@ def test_the_mean_lag_of_the_chosen_design(findings):
     result = findings["flapping-wing"]["chosen.mean-lag"]
     assert result.finding is HOLDS
     assert mean == pytest.approx(1.162, abs=5e-4)
-    assert float(result.note.split("name says is ")[1].split()[0]) == pytest.approx(mean, abs=2e-4)
+    assert float(note_of(result).split("name says is ")[1].split()[0]) == pytest.approx(mean, abs=2e-4)
 
 
 def test_oscillation_of_a_rocker_that_stays_above_the_horizontal(findings):
@@ -374,7 +375,7 @@ def test_oscillation_of_a_rocker_that_stays_above_the_horizontal(findings):
     assert min(turn) > 0
     result = findings["flapping-wing-tables"]["2.2.oscillation_deg"]
     assert result.finding is HOLDS
-    assert "what its name says is 46.32" in result.note
+    assert "what its name says is 46.32" in note_of(result)
     assert max(turn) - min(turn) == pytest.approx(46.32, abs=0.01)
 
 
@@ -398,8 +399,8 @@ def test_cells_of_the_flapping_wing_tables(findings):
     ]
     assert math.hypot(13, 20.5) == pytest.approx(24.27, abs=5e-3)  # printed 24.7
     for name in wrong[2:]:
-        assert "The same figure stands in row 4.16, where it holds." in cells[name].note
-    assert "row 5.20" in cells["5.10.ground_d_mm"].note
+        assert "The same figure stands in row 4.16, where it holds." in note_of(cells[name])
+    assert "row 5.20" in note_of(cells["5.10.ground_d_mm"])
 
 
 def test_the_ornithopter(findings):

@@ -31,7 +31,7 @@ from alula.loads.sources.expression import evaluate
 from alula.loads.sources.quantity import Value
 from alula.reports.check.published import as_json, as_markdown
 from alula.reports.commands.telling import text_of
-from alula.reports.sections.published import claims_section, count
+from alula.reports.sections.published import claims_section, count, note_of
 
 TREE = {
     "pose": {
@@ -121,7 +121,7 @@ def test_a_figure_may_be_cut_off(published, stated, finding):
     found = judge(published, stated=stated)
     assert found.finding is finding
     cut = finding is Finding.HOLDS and published != "1.94"
-    assert found.note.startswith("It follows, cut off after its printed digits and not rounded.") == cut
+    assert note_of(found).startswith("It follows, cut off after its printed digits and not rounded.") == cut
     if finding is Finding.HOLDS and cut:  # a stated tolerance stands instead
         assert judge(published, stated=stated, tolerance="0.1 %").finding is Finding.DOES_NOT_FOLLOW
 
@@ -138,23 +138,25 @@ def test_a_stated_quotient_is_evaluated_with_its_units():
     found = judge("36.42", stated="41.4 MPa / 11.37 MPa", quantity="")
     assert found.finding is Finding.DOES_NOT_FOLLOW
     assert found.ours == "3.64116"
-    assert found.note == "By the source's own figures it is 3.64116: the printed figure is 10 times too large."
+    assert note_of(found) == "By the source's own figures it is 3.64116: the printed figure is 10 times too large."
 
 
 def test_following_from_the_source_is_not_enough():
     found = judge("2.00 mm", stated="1 mm + 1 mm", quantity="pose.x")
     assert found.finding is Finding.DOES_NOT_HOLD
-    assert found.note.endswith("6.17 times too small. The printed figure does follow from the source's own relation.")
+    assert note_of(found).endswith(
+        "6.17 times too small. The printed figure does follow from the source's own relation."
+    )
     right = judge("12.34 mm", stated="1 mm + 1 mm", quantity="pose.x")
     assert right.finding is Finding.DOES_NOT_FOLLOW
-    assert right.note.endswith("The printed figure itself is right.")
+    assert note_of(right).endswith("The printed figure itself is right.")
 
 
 def test_a_figure_that_is_not_what_its_name_says_is_told_as_both():
     found = judge("12.34 mm", quantity="pose.x", means="2 * pose.x")
     assert found.finding is Finding.HOLDS
-    assert found.note == "It follows from the source's own definition; what its name says is 24.68 mm."
-    assert "definition" not in judge("12.34 mm", quantity="pose.x", means="pose.x + 0.006 mm").note
+    assert note_of(found) == "It follows from the source's own definition; what its name says is 24.68 mm."
+    assert "definition" not in note_of(judge("12.34 mm", quantity="pose.x", means="pose.x + 0.006 mm"))
 
 
 @pytest.mark.parametrize(
@@ -169,12 +171,12 @@ def test_a_figure_that_is_not_what_its_name_says_is_told_as_both():
     ],
 )
 def test_how_far_off(published, how):
-    assert how in judge(published, quantity="pose.x").note
+    assert how in note_of(judge(published, quantity="pose.x"))
 
 
 def test_angles_are_off_by_degrees():
-    assert judge("29 deg", quantity="pose.angle").note.endswith("the printed figure is 1 deg too small.")
-    assert judge("2 mm", quantity="pose.zero").note == "Re-derived, it is 0 mm."
+    assert note_of(judge("29 deg", quantity="pose.angle")).endswith("the printed figure is 1 deg too small.")
+    assert note_of(judge("2 mm", quantity="pose.zero")) == "Re-derived, it is 0 mm."
 
 
 def test_what_is_not_stated_is_named_and_not_called_wrong():
@@ -183,7 +185,7 @@ def test_what_is_not_stated_is_named_and_not_called_wrong():
     assert found.finding is Finding.CANNOT_BE_REDERIVED
     assert not found.finding.refutes
     assert found.ours is None
-    assert found.note == "The source does not state the reference area S."
+    assert note_of(found) == "The source does not state the reference area S."
     # What the source shows of its arithmetic is checked all the same.
     assert judge("0.87", quantity="not_stated.S", not_stated=missing, stated="0.87").finding is Finding.HOLDS
     assert judge("0.87", quantity="not_stated.S", not_stated=missing, stated="1").finding is Finding.DOES_NOT_FOLLOW
@@ -192,7 +194,11 @@ def test_what_is_not_stated_is_named_and_not_called_wrong():
 def test_words_are_compared_as_words():
     assert judge("Open", quantity="pose.branch").finding is Finding.HOLDS
     found = judge("crossed", quantity="pose.branch")
-    assert (found.finding, found.ours, found.note) == (Finding.DOES_NOT_HOLD, "open", "Re-derived, the answer is open.")
+    assert (found.finding, found.ours, note_of(found)) == (
+        Finding.DOES_NOT_HOLD,
+        "open",
+        "Re-derived, the answer is open.",
+    )
 
 
 def test_given_figures_may_build_on_each_other():
@@ -298,7 +304,7 @@ def test_only_what_a_claim_asks_for_is_computed(case_file, monkeypatch):
     left_out = check_claims(str(case_file), fidelity="beam")[-1]
     assert asked == []
     assert left_out.finding is Finding.CANNOT_BE_REDERIVED
-    assert left_out.note == "This run leaves out the solid model, which runs with --fidelity solid."
+    assert note_of(left_out) == "This run leaves out the solid model, which runs with --fidelity solid."
     assert check_claims(str(case_file))[-1].finding is Finding.HOLDS
     assert asked == ["solid"]
 
@@ -357,7 +363,7 @@ def test_every_source_has_its_claims_under_names_of_their_own(found):
     for results in found.values():
         names = [result.claim.name for result in results]
         assert len(set(names)) == len(names)
-        assert all(result.claim.source and result.note.endswith(".") for result in results)
+        assert all(result.claim.source and note_of(result).endswith(".") for result in results)
     # An accusation gives its reason; that of a cell of a table is the number beside it.
     refuted = [r for name in sources() if name != "flapping-wing-tables" for r in found[name] if r.finding.refutes]
     assert not [result.claim.name for result in refuted if not result.claim.note]
