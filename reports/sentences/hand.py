@@ -87,6 +87,10 @@ SENTENCES: dict[str, Sentence] = {
     "left_out_of_what_gives_way": (
         "no link passes where the linkage gives way, so its solid was not solved; --fidelity solid solves it"
     ),
+    "open_whatever_solid_tells": (
+        "what its checks hold besides leaves them open wherever in its band the stress by hand lies, so its solid was "
+        "not solved; --fidelity solid solves it"
+    ),
     "layers_open_by_hand": ("by hand only the least of layers in any direction is known, so finite elements decided"),
     "limit_within": _limit_within,
     "open_by_hand": "by hand {open_limit}, so finite elements decided",

@@ -71,6 +71,10 @@ SENTENCES: dict[str, Sentence] = {
     "mesh_of_file": "the mesh is that of the part's file, which is not refined",
     "most_meshes_reached": "the largest number of meshes, {most}, is reached",
     "time_limit_used_up": "the time limit of {limit:plain} s is used up",
+    "no_finer_mesh_decides": (
+        "what its checks hold besides leaves them open wherever in the band of the meshes its numbers lie, so no finer "
+        "one decides them"
+    ),
     "next_mesh_too_large": "the next mesh has {unknowns:,} unknowns, more than the {allowed:,} allowed",
     "mesh_too_coarse_for_buckling": (
         "its mesh is too coarse for a buckling factor, which may be off by more than {error:.0%}"
