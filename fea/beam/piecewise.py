@@ -133,7 +133,8 @@ class Piecewise:
         """Distances of the samples from each interval's first station."""
         bent = np.any(self.coefficients[:, :, 2:], axis=(1, 2))
         lengths = np.diff(self.breaks)
-        return [np.linspace(0.0, h, SAMPLES if curved else 2) for h, curved in zip(lengths, bent, strict=True)]
+        fine = np.linspace(0.0, lengths, SAMPLES, axis=-1)
+        return [grid if curved else grid[[0, -1]] for grid, curved in zip(fine, bent, strict=True)]
 
     def largest(self, measure: Measure, bound: Measure | None = None) -> tuple[float, Side, float]:
         """Find the largest measure of the functions over the beam.

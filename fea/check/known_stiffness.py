@@ -9,7 +9,7 @@ Links that are no beams buckle otherwise than the frame's strips do: the factor 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from alula.fea.common.band import Band
@@ -71,7 +71,36 @@ def with_known_stiffness(
     def known_of(one: LargeDisplacement) -> LargeDisplacement:
         return replace(one, softness=soft, alone=alone, blind="")
 
-    return replace(known_of(moved), causes=tuple(cause.told_by(known_of) for cause in moved.causes))
+    return _everywhere(moved, known_of)
+
+
+def as_stiff_as_may_be(moved: LargeDisplacement) -> LargeDisplacement:
+    """Return what becomes of a load case if the solids of its links are as stiff as the frame's beams may be.
+
+    No solid moves the stiffer end of what its links' stiffness is (``with_known_stiffness``). So this tells whether
+    solids of links could decide what the linkage holds.
+
+    Parameters
+    ----------
+    moved : LargeDisplacement
+        By the frame's beams.
+
+    Returns
+    -------
+    LargeDisplacement
+    """
+
+    def stiff(one: LargeDisplacement) -> LargeDisplacement:
+        return replace(one, softness=Band.exact(one.eyes.low))
+
+    return _everywhere(moved, stiff)
+
+
+def _everywhere(
+    moved: LargeDisplacement, changed: Callable[[LargeDisplacement], LargeDisplacement]
+) -> LargeDisplacement:
+    """Return a load case changed as stated, and under all conditions that may be."""
+    return replace(changed(moved), causes=tuple(cause.told_by(changed) for cause in moved.causes))
 
 
 def _tells(case: Case, link: str, result: SolidResult) -> bool:

@@ -10,12 +10,14 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from alula.fea.doubts.load_growth import Growths
-from alula.fea.links.fidelity import DecidedLink, Decision, HandBands, left_out
+from alula.fea.links.fidelity import DecidedLink, Decision, HandBands
 from alula.fea.links.link_by_hand import LinkByHand
 from alula.fea.links.solid_result import solid_result
 from alula.fea.outcomes.layers import in_any_direction
+from alula.fea.outcomes.limits import displacement_limits, layer_limits, stress_limits
 from alula.fea.outcomes.result import HandResult, LinkResult, SolidResult
 from alula.fea.outcomes.solid_buckling import solid_buckling, solid_growth
+from alula.fea.refine.beyond_meshes import Ends, OpenRanges
 from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.superposition.solid_shares import Shares
 from alula.geometry.base.ties import first_largest
@@ -67,16 +69,13 @@ def link_result(
         why, solid = decided.decision.why, decided.solid
         result = solid_result(case, link, name, hand.check, solid, why=why, remarks=hand.remarks)
     else:
-        left = name in decided.left
-        bands = decided.hands.get(name) if left or decided.solid is None else None
-        decision = left_out(case.body(link)) if left else decided.decision
+        bands = decided.hands.get(name) if name in decided.left or decided.solid is None else None
+        decision = decided.left.get(name, decided.decision)
         result = _hand_result(link, material, hand, bands, decision)
     grown = solid_growth(solid_buckling(result))
-    stated = load_scatter(case, load_case).times(grown)
 
     def widened(quantity: PeakQuantity) -> Scatter:
-        growth = uneven.displacement if quantity == "displacement" else uneven.stress
-        return stated.times(growth.get(link, Scatter())).times(shares.get(quantity, Scatter()))
+        return spread(case, link, load_case, quantity, uneven, shares, grown)
 
     layers = result.layers
     if layers is not None:
@@ -93,6 +92,60 @@ def link_result(
         safety_factor=in_any_direction(case, link, factor, principal, von_mises),
         displacement_max=compliance_scatter(material).times(widened("displacement")).on(result.displacement_max),
     )
+
+
+def spread(
+    case: Case,
+    link: str,
+    load_case: str,
+    quantity: PeakQuantity,
+    uneven: Growths,
+    shares: Shares,
+    grown: Scatter | None = None,
+) -> Scatter:
+    """Return what multiplies a number of a link besides its model and its material: scatter of the load, and doubts.
+
+    Parameters
+    ----------
+    case, link, load_case, uneven, shares
+        As of ``link_result``.
+    quantity : PeakQuantity
+        Which number.
+    grown : Scatter, optional
+        What bending that goes with the load may exceed that of the solid.
+
+    Returns
+    -------
+    Scatter
+    """
+    growth = uneven.displacement if quantity == "displacement" else uneven.stress
+    stated = load_scatter(case, load_case).times(grown or Scatter())
+    return stated.times(growth.get(link, Scatter())).times(shares.get(quantity, Scatter()))
+
+
+def open_ranges(case: Case, link: str, load_case: str, uneven: Growths, shares: Shares) -> OpenRanges:
+    """Return within what numbers the checks of a link are open whatever its meshes tell.
+
+    Parameters
+    ----------
+    case, link, load_case, uneven, shares
+        As of ``link_result``.
+
+    Returns
+    -------
+    OpenRanges
+    """
+
+    def widened(quantity: PeakQuantity) -> Scatter:
+        return spread(case, link, load_case, quantity, uneven, shares)
+
+    deciding = STRESS[case.material_of(link).brittle]
+    limits: dict[PeakQuantity, tuple[Ends, ...]] = {
+        deciding: stress_limits(case, link, widened(deciding)),
+        "layers": layer_limits(case, link, widened("layers")),
+        "displacement": displacement_limits(case, link, widened("displacement")),
+    }
+    return OpenRanges(limits=limits)
 
 
 def by_hand_shares(shared: Growths, link: str) -> Shares:

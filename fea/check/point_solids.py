@@ -38,17 +38,22 @@ def decide_point(
     Returns
     -------
     dict of str to DecidedLink
-        Those that changed; a link whose refinement was stopped before is left as it is.
+        Those that changed; a link whose refinement was stopped before is left as it is. A link that was solved under
+        some of its loads alone is solved anew under all.
     """
+    part = {link for link in wanted if any(loads.name in decided[link].left for loads in tasks[link].loads)}
     closer = {
         link: replace(tasks[link], displacement_error=error)
         for link, error in wanted.items()
-        if (solid := decided[link].solid) is None or not solid.stopped
+        if link in part or (solid := decided[link].solid) is None or solid.may_go_on
     }
-    earlier = {link: solid for link in closer if (solid := decided[link].solid) is not None}
+    earlier = {link: solid for link in closer if (solid := decided[link].solid) is not None and link not in part}
     why = reason("solid_for_point")
     found = {}
     for link, solid in refine_links(closer, start, effort, earlier=earlier, threads=threads, progress=progress).items():
-        decision = decided[link].decision if link in earlier else Decision(model="solid", why=why, next_cost=None)
-        found[link] = replace(decided[link], decision=decision, solid=solid)
+        solved = decided[link].solid is not None
+        decision = decided[link].decision if solved else Decision(model="solid", why=why, next_cost=None)
+        under = {loads.name for loads in tasks[link].loads}
+        left = {name: one for name, one in decided[link].left.items() if name not in under}
+        found[link] = replace(decided[link], decision=decision, solid=solid, left=left)
     return found

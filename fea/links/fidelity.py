@@ -1,7 +1,9 @@
 """The cheapest model that decides a link: hand calculation, else a solid model.
 
 The bands of hand calculation are calibrated against solid models (``alula.fea.beam.calibration``). It decides a link
-only where no limit on the link, with its stated scatter, lies in them.
+only where no limit on the link, with its stated scatter, lies in them. A solid is solved where it may tell more: not
+under loads whose checks are open for other causes wherever in its bands the stress lies
+(``alula.fea.refine.beyond_meshes``).
 """
 
 import math
@@ -16,8 +18,10 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind
+from alula.fea.refine.beyond_meshes import none_decides
+from alula.fea.refine.link_series import PeakQuantity
 from alula.fea.refine.link_task import LinkTask
-from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
+from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, Told, refine_links
 from alula.fea.solid.layers import in_worst_direction
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import extent, reference_line
@@ -112,14 +116,14 @@ class DecidedLink:
         Load case -> bands by hand; empty where none were asked for.
     solid : RefinedSolid or None
         The link's solutions; None where hand calculation decided.
-    left : frozenset of str
-        Names of loads that no solid was solved under, since the linkage gives way under them.
+    left : mapping of str to Decision
+        Names of loads that no solid was solved under, since it would not change a verdict -> the decision on them.
     """
 
     decision: Decision
     hands: Mapping[str, HandBands] = field(default_factory=dict)
     solid: RefinedSolid | None = None
-    left: frozenset[str] = frozenset()
+    left: Mapping[str, Decision] = field(default_factory=dict)
 
 
 def decide(
@@ -132,11 +136,13 @@ def decide(
     first: Mapping[str, TaggedMesh] | None = None,
     lost: Collection[str] = (),
     threads: int | None = None,
+    told: Told | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, DecidedLink]:
     """Decide every link by hand where that can, else by a solid.
 
-    Under loads that the linkage gives way to no link passes, and the solid of a link would not change the verdict.
+    Under loads that the linkage gives way to no link passes, and the solid of a link would not change the verdict; nor
+    does it where other causes leave its checks open.
 
     Parameters
     ----------
@@ -155,6 +161,8 @@ def decide(
     lost : collection of str, optional
         Names of loads that the linkage gives way to. Solids are not solved under them unless all solids were asked for.
     threads : int, optional
+    told : callable, optional
+        As of ``refine_links``.
     progress : callable
 
     Returns
@@ -171,30 +179,70 @@ def decide(
     reasons: dict[str, Reason | None] = {}
     found: dict[str, DecidedLink] = {}
     rest: dict[str, LinkTask] = {}
+    left: dict[str, dict[str, Decision]] = {}
     for link, task in tasks.items():
-        rest[link] = task
+        rest[link], left[link] = task, {}
         if fidelity == "solid" or effort.stated:
             reasons[link] = reason("solid_requested" if fidelity == "solid" else "accuracy_requested")
             continue
         hands[link] = _hands(task, beams[link])
         decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])
-        if decision is None and lost:
-            rest[link] = held = task.without(lost)
-            decision = left_out(task.body)
-            if held.loads:
-                decision, reasons[link] = decided_by_hand(held, [hands[link][loads.name] for loads in held.loads])
+        beyond = _open_anyway(task, hands[link])
+        for names, why in ((lost, left_out), (beyond, left_open)):
+            own = [loads.name for loads in rest[link].loads if loads.name in names]
+            if decision is not None or not own:
+                continue
+            without = why(task.body)
+            left[link] |= dict.fromkeys(own, without)
+            rest[link] = less = rest[link].without(own)
+            decision = without
+            if less.loads:
+                decision, reasons[link] = decided_by_hand(less, [hands[link][loads.name] for loads in less.loads])
         if decision is not None:
-            found[link] = DecidedLink(decision=decision, hands=hands[link], left=_left(task, rest.pop(link)))
-    solids = refine_links(rest, start, effort, first=first, threads=threads, progress=progress)
+            del rest[link]
+            found[link] = DecidedLink(decision=decision, hands=hands[link], left=left[link])
+    solids = refine_links(rest, start, effort, first=first, threads=threads, told=told, progress=progress)
     for link, solid in solids.items():
         decision = Decision(model="solid", why=reasons[link] or "", next_cost=None)
-        left = _left(tasks[link], rest[link])
-        found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid, left=left)
+        found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid, left=left[link])
     return {link: found[link] for link in tasks}
 
 
-def _left(task: LinkTask, solved: LinkTask) -> frozenset[str]:
-    return frozenset(loads.name for loads in task.loads) - {loads.name for loads in solved.loads}
+def _open_anyway(task: LinkTask, hands: Mapping[str, HandBands]) -> frozenset[str]:
+    """Names of the loads under which all checks of a link are open wherever in its bands the stress by hand lies."""
+    return frozenset(name for name, hand in hands.items() if task.holding is None and _beyond_meshes(task, name, hand))
+
+
+def _beyond_meshes(task: LinkTask, name: str, hand: HandBands) -> bool:
+    ranges = task.open_ranges.get(name)
+    if ranges is None or hand.outside or _layers_open(task, [hand]):
+        return False
+    bands: dict[PeakQuantity, Band] = {
+        task.measures[0]: hand.deciding(brittle=task.brittle),
+        "displacement": hand.displacement,
+    }
+    return none_decides(
+        [
+            ([(band.low, band.high)], limit)
+            for quantity, band in bands.items()
+            for limit in ranges.limits.get(quantity, ())
+        ]
+    )
+
+
+def left_open(body: Body) -> Decision:
+    """Return the decision on a link whose checks are open for other causes than its stress by hand.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    Decision
+        By hand.
+    """
+    return Decision(model="beam", why=reason("open_whatever_solid_tells"), next_cost=_solid_cost(body))
 
 
 def left_out(body: Body) -> Decision:

@@ -14,7 +14,9 @@ the chord, on the bending of the element, and on the element's own deflection: o
 limit, and forces balance on the deformed shape.
 
 The potential of each element is written down once; its gradient (end forces) and Hessian (exact tangent) follow by
-second-order forward differentiation.
+second-order forward differentiation. A shift of the whole element changes neither strains nor, but by what the line
+loads do along it, the potential. So it is differentiated by nine variables, the displacement of the second node from
+the first and the spins of both, and the twelve of the nodes follow.
 """
 
 from dataclasses import dataclass
@@ -95,7 +97,26 @@ class CorotationalElements:
         CannotRunError
             Where an end turns by more than a right angle relative to its element.
         """
-        return _response(self.potential(displacements, rotations, factor))
+        return self.loaded(self.natural(displacements, rotations), displacements, rotations, factor)
+
+    def loaded(
+        self, natural: tuple[Jet, Jet], displacements: Floats, rotations: Floats, factor: float
+    ) -> ElementResponse:
+        """Evaluate all elements whose natural deformations are known, as ``respond``.
+
+        Parameters
+        ----------
+        natural : tuple of 2 Jet
+            What ``natural`` returns.
+        displacements, rotations, factor
+            As of ``respond``.
+
+        Returns
+        -------
+        ElementResponse
+        """
+        loads = factor * self.loads
+        return _response(self._potential(natural, displacements, rotations, loads), -self._at_ends(loads))
 
     def geometric(self, natural: Floats) -> ElementResponse:
         """Evaluate the undeformed elements under natural forces.
@@ -114,7 +135,7 @@ class CorotationalElements:
         displacements, rotations = np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
         v, _ = self.natural(displacements, rotations)
         potential = v.map(natural[:, None, :]) - self._work_on_chord(displacements, rotations, self.loads)
-        return _response(potential)
+        return _response(potential, -self._at_ends(self.loads))
 
     def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, Jet]:
         """Return the natural deformations and the element's axes.
@@ -131,10 +152,12 @@ class CorotationalElements:
         tuple of 2 Jet
             Natural deformations (m, 6), and the element's axes x, y, z one after the other (m, 9).
         """
-        first, second = (self._point(end, displacements, rotations) for end in (0, 1))
+        first, second = (self._arm(end, rotations) for end in (0, 1))
         chord = second - first
+        chord.value[:] += self.end - self.start + (displacements[:, 1] - displacements[:, 0])
+        chord.gradient[:, :, :3] += np.eye(3)
         e1 = unit(chord)
-        triads = stack(*(_turned(rotations[:, k], self.axes.swapaxes(1, 2), 6 * k + 3) for k in range(2)))
+        triads = stack(*(_turned(rotations[:, k], self.axes.swapaxes(1, 2), _SPINS[k]) for k in range(2)))
         e3 = unit(cross(e1, triads.map(_MEAN_Y)))
         axes = stack(e1, cross(e3, e1), e3)
         angles = _rotation_vectors(axes, triads)
@@ -154,18 +177,23 @@ class CorotationalElements:
         lengthening = lengthening + angles.form(_BOWING).times(length / 30.0)
         return stack(lengthening, angles.map(_NATURAL)), axes
 
-    def _point(self, end: int, displacements: Floats, rotations: Floats) -> Jet:
-        """Position of a beam's end."""
-        arm = _turned(rotations[:, end], self.arms[:, end, None], 6 * end + 3)
-        arm.gradient[:, :, 6 * end : 6 * end + 3] += np.eye(3)
-        origin = (self.start, self.end)[end]
-        return Jet(value=arm.value + origin + displacements[:, end], gradient=arm.gradient, hessian=arm.hessian)
+    def _arm(self, end: int, rotations: Floats) -> Jet:
+        """From a node to its end of a beam."""
+        return _turned(rotations[:, end], self.arms[:, end, None], _SPINS[end])
+
+    def _at_ends(self, loads: Floats) -> Floats:
+        """Forces (m, 2, 3) at the ends of the chord that work as line loads (m, 2, 3) do along it."""
+        return np.asarray(np.array([[2.0, 1.0], [1.0, 2.0]]) * self.lengths[:, None, None] / 6.0 @ loads)
 
     def _work_on_chord(self, displacements: Floats, rotations: Floats, loads: Floats) -> Jet:
-        """Potential (m, 1) of the line loads (m, 2, 3) at the chord, counted as work done."""
-        points = stack(*(self._point(k, displacements, rotations) for k in range(2)))
-        shares = np.array([[2.0, 1.0], [1.0, 2.0]]) * self.lengths[:, None, None] / 6.0
-        return points.map((shares @ loads).reshape(-1, 1, 6))
+        """Potential (m, 1) of the line loads (m, 2, 3) at the chord, counted as work done.
+
+        Its gradient leaves out what a shift of the whole element does.
+        """
+        points = stack(*(self._arm(k, rotations) for k in range(2)))
+        points.value[:] += np.hstack([self.start + displacements[:, 0], self.end + displacements[:, 1]])
+        points.gradient[:, 3:, :3] += np.eye(3)
+        return points.map(self._at_ends(loads).reshape(-1, 1, 6))
 
     def potential(self, displacements: Floats, rotations: Floats, factor: float) -> Jet:
         """Return the strain energy less the work of the line loads.
@@ -184,8 +212,10 @@ class CorotationalElements:
         Jet
             (m, 1) [N·mm].
         """
-        v, axes = self.natural(displacements, rotations)
-        loads = factor * self.loads
+        return self._potential(self.natural(displacements, rotations), displacements, rotations, factor * self.loads)
+
+    def _potential(self, natural: tuple[Jet, Jet], displacements: Floats, rotations: Floats, loads: Floats) -> Jet:
+        v, axes = natural
         if not loads.any():
             return v.form(self.stiffness).times(0.5)
         onto_axes = np.einsum("mkj,ab->mkabj", loads, np.eye(3)).reshape(-1, 6, 9)
@@ -195,6 +225,13 @@ class CorotationalElements:
         return stored.times(0.5) - self._work_on_chord(displacements, rotations, loads)
 
 
+_SPINS = (3, 6)
+"""First of the three variables that are the spin of either node; the three before them are how far the second node
+moves from the first."""
+_OF_NODES = np.zeros((9, 12))
+"""These nine variables from displacement and spin of both nodes."""
+_OF_NODES[:3, :3], _OF_NODES[:3, 6:9] = -np.eye(3), np.eye(3)
+_OF_NODES[3:6, 3:6] = _OF_NODES[6:, 9:] = np.eye(3)
 _MEAN_Y = np.zeros((3, 18))
 """Twice the mean of both ends' y axes, from the triads of both ends."""
 _MEAN_Y[:, 3:6] = _MEAN_Y[:, 12:15] = np.eye(3)
@@ -233,19 +270,24 @@ def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[f
     tuple of float and ElementResponse
         Gap [mm, rad], and what a unit of the guide's force does to both nodes.
     """
-    normal = _turned(rotations[None, 0], guide.normal[None, None], 3)
+    normal = _turned(rotations[None, 0], guide.normal[None, None], _SPINS[0])
     if guide.axis is not None:
-        gap = dot(_turned(rotations[None, 1], guide.axis[None, None], 9), normal)
+        gap = dot(_turned(rotations[None, 1], guide.axis[None, None], _SPINS[1]), normal)
     else:
         apart = _constant(displacements[None, 1] - displacements[None, 0])
-        apart.gradient[0, :, :3], apart.gradient[0, :, 6:9] = -np.eye(3), np.eye(3)
+        apart.gradient[0, :, :3] = np.eye(3)
         gap = dot(apart, normal)
-    return float(gap.value[0, 0]), _response(gap)
+    return float(gap.value[0, 0]), _response(gap, np.zeros((1, 2, 3)))
 
 
-def _response(potential: Jet) -> ElementResponse:
-    """Gradient of a potential, and its derivative by the spins: the Hessian in rotation vectors less [moment]/2."""
-    forces, tangent = potential.gradient[:, 0], potential.hessian[:, 0].copy()
+def _response(potential: Jet, shift: Floats) -> ElementResponse:
+    """Gradient of a potential, and its derivative by the spins: the Hessian in rotation vectors less [moment]/2.
+
+    ``shift`` (m, 2, 3) sums up to what shifts of the whole elements do, which the gradient leaves out.
+    """
+    forces = potential.gradient[:, 0] @ _OF_NODES
+    forces[:, :3] += shift.sum(axis=1)
+    tangent = _OF_NODES.T @ potential.hessian[:, 0] @ _OF_NODES
     for k in (3, 9):
         tangent[:, k : k + 3, k : k + 3] -= 0.5 * _skew(forces[:, k : k + 3])
     return ElementResponse(forces=forces, tangent=tangent)
@@ -283,7 +325,7 @@ def _skew(w: Floats) -> Floats:
 
 def _constant(values: Floats) -> Jet:
     m, c = values.shape
-    return Jet(value=values, gradient=np.zeros((m, c, 12)), hessian=np.zeros((m, c, 12, 12)))
+    return Jet(value=values, gradient=np.zeros((m, c, 9)), hessian=np.zeros((m, c, 9, 9)))
 
 
 def _turned(rotations: Floats, vectors: Floats, first: int) -> Jet:

@@ -1,5 +1,6 @@
 """Newton's method along the equilibrium path of a frame in large displacement."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from alula.fea.frame.model import FrameModel, Guide
 from alula.fea.frame.spring import FrameSpring
 from alula.fea.nonlinear.corotational_element import CorotationalElements, ElementResponse, guide_gap
+from alula.fea.nonlinear.jet import Jet
 from alula.fea.nonlinear.kinematic_chain import KinematicChain, Places
 from alula.fea.nonlinear.springs import SpringForces
 from alula.geometry.base.errors import CannotRunError
@@ -139,7 +141,11 @@ class EquilibriumPath:
         moving = np.where(self.chain.is_turn, 1.0 / model.size, 1.0)
         self.gap_unit = np.array([1.0 / model.size if guide.axis is None else 1.0 for guide in model.guides])
         self.unit = np.concatenate([moving, stiffness * model.size * self.gap_unit])
+        self.units = np.outer(self.unit, self.unit)
         self.reached = 0.0
+        self._at: tuple[State, tuple[Jet, Jet]] | None = None
+        self._balanced: dict[float, tuple[Floats, Floats]] = {}
+        self._factorised: tuple[Floats, Callable[[Floats], Floats]] | None = None
 
     def respond(self, state: State, factor: float) -> ElementResponse:
         """Return what the elements answer in a state.
@@ -156,7 +162,15 @@ class EquilibriumPath:
         ElementResponse
             Forces and tangent of all elements.
         """
-        return self.elements.respond(state.displacements[self.pairs], state.rotations[self.pairs], factor)
+        natural, placed = self._natural(state), (state.displacements[self.pairs], state.rotations[self.pairs])
+        return self.elements.loaded(natural, *placed, factor)
+
+    def _natural(self, state: State) -> tuple[Jet, Jet]:
+        """Natural deformations and axes of the elements, which the last state keeps for other factors."""
+        if self._at is None or self._at[0] is not state:
+            natural = self.elements.natural(state.displacements[self.pairs], state.rotations[self.pairs])
+            self._at, self._balanced = (state, natural), {}
+        return self._at[1]
 
     def follow(self, least_step: float, most_iterations: int, *, stable: bool = False) -> None:
         """Go on to the whole load in steps over which the path bends little, halved where Newton's method fails.
@@ -245,27 +259,17 @@ class EquilibriumPath:
         Returns
         -------
         tuple of 2 ndarray
-            What is left over (k + g,) and its derivative (k + g, k + g).
+            What is left over (k + g,) and its derivative (k + g, k + g). Those of the last state are kept.
         """
-        answer = self.respond(state, factor)
-        return self.assemble(answer, state, factor)
+        self._natural(state)
+        if factor not in self._balanced:
+            self._balanced[factor] = self.assemble(self.respond(state, factor), state, factor)
+        return self._balanced[factor]
 
     def _solve(self, tangent: Floats, right: Floats) -> Floats:
-        # Single-threaded either way: threads that wait for each other cost more than matrices this small.
-        from scipy.linalg.lapack import dgesv
-        from scipy.sparse import csc_matrix
-        from scipy.sparse.linalg import splu
-
-        matrix, scaled = tangent * np.outer(self.unit, self.unit), right * self.unit
-        if len(right) <= _DENSE:
-            *_, found, singular = dgesv(matrix, scaled)
-            if singular:
-                raise CannotRunError("the tangent stiffness of the frame is singular")
-            return np.asarray(found * self.unit)
-        try:
-            return np.asarray(splu(csc_matrix(matrix)).solve(scaled) * self.unit)
-        except RuntimeError as error:
-            raise CannotRunError(f"the tangent stiffness of the frame is singular: {error}") from None
+        if self._factorised is None or self._factorised[0] is not tangent:
+            self._factorised = tangent, _factorised(tangent * self.units)
+        return np.asarray(self._factorised[1](right * self.unit) * self.unit)
 
     def _displacements(self, change: Floats) -> Floats:
         """Displacements (n, 3) of all nodes in a change of the unknowns."""
@@ -393,7 +397,7 @@ class EquilibriumPath:
             Square matrix over the motions that are left.
         """
         if self.chain.count == self.size:
-            return bordered * np.outer(self.unit, self.unit)
+            return bordered * self.units
         Z = self.allowed(bordered)
         return np.asarray(Z.T @ bordered @ Z)
 
@@ -416,7 +420,11 @@ class EquilibriumPath:
 
     def _stores_energy(self, tangent: Floats) -> bool:
         scaled = self.free(tangent)
-        return bool(np.linalg.eigvalsh((scaled + scaled.T) / 2.0).min(initial=1.0) > 0.0)
+        try:
+            np.linalg.cholesky((scaled + scaled.T) / 2.0)
+        except np.linalg.LinAlgError:
+            return False
+        return True
 
     def record(self) -> CorotationalSolution:
         """Return the present state as the frame's solution."""
@@ -443,3 +451,24 @@ class EquilibriumPath:
             stable=self._stores_energy(tangent),
             springs=changes,
         )
+
+
+def _factorised(matrix: Floats) -> Callable[[Floats], Floats]:
+    """Return what solves a system for right-hand sides.
+
+    Single-threaded either way: threads that wait for each other cost more than matrices this small.
+    """
+    from scipy.linalg.lapack import dgetrf, dgetrs
+    from scipy.sparse import csc_matrix
+    from scipy.sparse.linalg import splu
+
+    if len(matrix) <= _DENSE:
+        dense, pivots, singular = dgetrf(matrix)
+        if singular:
+            raise CannotRunError("the tangent stiffness of the frame is singular")
+        return lambda right: np.asarray(dgetrs(dense, pivots, right)[0])
+    try:
+        factors = splu(csc_matrix(matrix))
+    except RuntimeError as error:
+        raise CannotRunError(f"the tangent stiffness of the frame is singular: {error}") from None
+    return lambda right: np.asarray(factors.solve(right))

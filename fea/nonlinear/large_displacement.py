@@ -22,7 +22,7 @@ that is held is the same number, up to 1.
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -419,6 +419,7 @@ def blind_link(case: Case, links: Iterable[str] | None = None) -> str:
     return next((link for link in among if not case.part_of(link).has_centre_line(case.body(link))), "")
 
 
+@lru_cache(maxsize=32)
 def _end(frame: LinkageFrame, held: float) -> tuple[float, float]:
     """Return the largest factor that was found to be held, and the least that was not."""
     try:

@@ -52,13 +52,15 @@ def least_safety_factor(name: str, stated: float | None, material: Material, wha
     return limit
 
 
-def stress_limits(case: Case, link: str) -> tuple[Ends, ...]:
+def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
     """Return the limits [MPa] of all checks on a link's deciding stress, each with both ends of its stated scatter.
 
     Parameters
     ----------
     case : Case
     link : str
+    spread : Scatter, optional
+        What multiplies the stress; by default the widest scatter of the load of any load case.
 
     Returns
     -------
@@ -69,7 +71,7 @@ def stress_limits(case: Case, link: str) -> tuple[Ends, ...]:
     CaseError
         Where a check has no limit.
     """
-    material, load, found = case.material_of(link), _widest_load(case), []
+    material, load, found = case.material_of(link), spread or _widest_load(case), []
     for name, check in case.all_checks.items():
         if isinstance(check, SafetyFactorCheck | SustainedCheck) and link in (check.links or case.checked_links):
             if isinstance(check, SafetyFactorCheck):
@@ -80,19 +82,21 @@ def stress_limits(case: Case, link: str) -> tuple[Ends, ...]:
     return tuple(found)
 
 
-def displacement_limits(case: Case, link: str) -> tuple[Ends, ...]:
+def displacement_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
     """Return the limits [mm] on a link's displacement from the line through its pins, as ``stress_limits``.
 
     Parameters
     ----------
     case : Case
     link : str
+    spread : Scatter, optional
+        What multiplies the displacement besides 1/E.
 
     Returns
     -------
     tuple of (float, float)
     """
-    scatter = compliance_scatter(case.material_of(link)).times(_widest_load(case))
+    scatter = compliance_scatter(case.material_of(link)).times(spread or _widest_load(case))
     return tuple(
         _spread(check.maximum, scatter.inverse)
         for check in case.all_checks.values()
@@ -148,13 +152,15 @@ def layers_of(case: Case, link: str) -> Layers | None:
     return Layers(normal=normal, across=material.strength_across_layers, between=between)
 
 
-def layer_limits(case: Case, link: str) -> tuple[Ends, ...]:
+def layer_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
     """Return the limit [MPa] on the stress on a link's layers, as ``stress_limits``.
 
     Parameters
     ----------
     case : Case
     link : str
+    spread : Scatter, optional
+        As of ``stress_limits``.
 
     Returns
     -------
@@ -164,7 +170,7 @@ def layer_limits(case: Case, link: str) -> tuple[Ends, ...]:
     layers, least = layers_of(case, link), layer_limit(case, link)
     if layers is None or least is None:
         return ()
-    scatter = layer_scatter(case.material_of(link)).times(_widest_load(case).inverse)
+    scatter = layer_scatter(case.material_of(link)).times((spread or _widest_load(case)).inverse)
     return (_spread(layers.across / least, scatter),)
 
 

@@ -8,7 +8,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.refine.convergence import SERIES, GridConvergence
 from alula.fea.refine.link_series import NOT_RESOLVED, Measure
-from alula.fea.refine.refinement import MeshRecord, RefinedSolid
+from alula.fea.refine.refinement import NONE_DECIDES, MeshRecord, RefinedSolid
 from alula.fea.refine.singular import LOADED, SharpPeak
 
 MeshStatus = Literal["converged", "decided", "far", "not reached", "unresolved", "edge", "singular", "growing"]
@@ -129,6 +129,7 @@ def judged(refined: RefinedSolid, number: int, measure: Measure) -> Discretisati
     """
     case = refined.precision[number]
     stress = case.series(measure)
+    stopped = refined.stopped or (NONE_DECIDES if number in refined.beyond else None)
     status: MeshStatus
     if case.unreliable == "coarse":
         status = "unresolved"
@@ -138,12 +139,12 @@ def judged(refined: RefinedSolid, number: int, measure: Measure) -> Discretisati
         status = "edge"
     elif stress.kind == "growing":
         status = "growing"
-    elif refined.far:
+    elif refined.far and number not in refined.beyond:
         status = "far"
     elif len(stress.values) >= 3 and stress.index <= refined.accuracy:
         status = "converged"
     else:
-        status = "not reached" if refined.stopped else "decided"
+        status = "not reached" if stopped else "decided"
     return Discretisation(
         status=status,
         accuracy=refined.accuracy,
@@ -151,5 +152,5 @@ def judged(refined: RefinedSolid, number: int, measure: Measure) -> Discretisati
         displacement=case.displacement,
         meshes=refined.meshes,
         sharp=case.sharp,
-        stopped=refined.stopped,
+        stopped=stopped,
     )

@@ -1,12 +1,13 @@
 """What is to be solved of a link, and the limits that its numbers must clear."""
 
 import math
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 from alula.fea.buckling.solid_holding import SolidHolding
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.elements.mouth import Mouth
+from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS, Measure
 from alula.fea.solid.layers import Layers
 from alula.geometry.parts.part import Body
@@ -45,6 +46,9 @@ class LinkTask:
         Largest relative error of the displacement, which a check of the linkage needs.
     holding : SolidHolding or None
         How joints hold it against buckling as a solid; None where beams stand for it.
+    open_ranges : mapping of str to OpenRanges
+        Name of loads -> within what numbers their checks are open however fine the mesh; of loads that are left out
+        meshes are made finer all the same.
     """
 
     body: Body
@@ -60,6 +64,7 @@ class LinkTask:
     layer_limits: tuple[tuple[float, float], ...] = ()
     displacement_error: float = math.inf
     holding: SolidHolding | None = None
+    open_ranges: Mapping[str, OpenRanges] = field(default_factory=dict)
 
     def without(self, names: Collection[str]) -> "LinkTask":
         """Return the task without some of its loads.

@@ -16,6 +16,7 @@ import numpy as np
 
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded
+from alula.fea.refine.beyond_meshes import OpenRanges, none_decides
 from alula.fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
 from alula.fea.refine.level import Level, level_of
 from alula.fea.refine.link_buckling import SolidBuckling, link_buckling
@@ -44,6 +45,9 @@ ROUGH = 0.25
 START = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
 """The first mesh: coarse, since the next ones become finer where it matters."""
 Progress = Callable[[str], None]
+Told = Callable[[str, "RefinedSolid"], Mapping[str, OpenRanges]]
+NONE_DECIDES = reason("no_finer_mesh_decides")
+"""Why refinement of a link ends whose checks are open for other causes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,6 +130,8 @@ class RefinedSolid:
         Of the finest mesh.
     buckling : mapping of str to SolidBuckling
         Load case -> factors on the first mesh that tells them; empty where beams stand for the link.
+    beyond : frozenset of int
+        Numbers of the cases whose checks no finer mesh decides, for which none was made.
     """
 
     solution: SolidSolution
@@ -138,6 +144,12 @@ class RefinedSolid:
     levels: tuple[Level, ...] = ()
     settings: MeshSettings = START
     buckling: Mapping[str, SolidBuckling] = field(default_factory=dict)
+    beyond: frozenset[int] = frozenset()
+
+    @property
+    def may_go_on(self) -> bool:
+        """True where finer meshes may be made: no limit of the effort ended their series."""
+        return self.stopped is None or self.stopped == NONE_DECIDES
 
 
 def refine_links(
@@ -148,6 +160,7 @@ def refine_links(
     first: Mapping[str, TaggedMesh] | None = None,
     earlier: Mapping[str, RefinedSolid] | None = None,
     threads: int | None = None,
+    told: Told | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, RefinedSolid]:
     """Mesh and solve every link as often as its numbers need it, as many links side by side as there may be threads.
@@ -167,6 +180,8 @@ def refine_links(
     threads : int or None, optional
         That work at once: links side by side, and libraries where there are fewer links. None leaves the libraries
         their own choice, and takes one link after another.
+    told : callable, optional
+        Returns the ``open_ranges`` of a link by what its first mesh tells, before a second one is made.
     progress : Progress, optional
         Called with a sentence before each step.
 
@@ -180,7 +195,7 @@ def refine_links(
     AlulaError
         What ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
     """
-    links = [_Link(name, task, start, effort, (earlier or {}).get(name)) for name, task in tasks.items()]
+    links = [_Link(name, task, start, effort, (earlier or {}).get(name), told) for name, task in tasks.items()]
     begun = time.perf_counter()
     beside = max(min(threads or 1, len(links)), 1)
     own = None if threads is None else max(threads // beside, 1)
@@ -210,9 +225,16 @@ class _Link:
     """One link on its way through the meshes."""
 
     def __init__(
-        self, name: str, task: LinkTask, settings: MeshSettings, effort: Effort, earlier: RefinedSolid | None = None
+        self,
+        name: str,
+        task: LinkTask,
+        settings: MeshSettings,
+        effort: Effort,
+        earlier: RefinedSolid | None = None,
+        told: Told | None = None,
     ) -> None:
         self.name, self.task, self.effort = name, task, effort
+        self.told = told
         self.settings = settings if earlier is None else earlier.settings
         self.levels: list[Level] = [*(earlier.levels if earlier else ())]
         self.meshes: list[MeshRecord] = [*(earlier.meshes if earlier else ())]
@@ -268,7 +290,9 @@ class _Link:
         self._next(pool, start)
 
     def _next(self, pool: ThreadPoolExecutor, start: float) -> None:
-        if self._settled():
+        if self._ends_open():
+            self._stop(NONE_DECIDES)
+        elif self._settled():
             self.done = True
         elif self.task.body.part.is_fixed:
             self._stop(reason("mesh_of_file"))
@@ -276,8 +300,22 @@ class _Link:
             self._stop(reason("most_meshes_reached", most=len(self.levels)))
         elif time.perf_counter() - start > self.effort.time_limit:
             self._stop(reason("time_limit_used_up", limit=self.effort.time_limit))
+        elif self._tell() and self._ends_open():
+            self._stop(NONE_DECIDES)
         else:
             self._refine(pool)
+
+    def _ends_open(self) -> bool:
+        """Whether its checks are open however fine the mesh, and displacements as exact as asked for."""
+        return self._told and len(self._beyond) == len(self.precision) and self._moves_settled
+
+    def _tell(self) -> bool:
+        """Take what the first mesh tells of other causes, where it may matter; return whether it was taken."""
+        ranges = self.task.open_ranges
+        if self.told is None or len(self.levels) != 1 or not all(loads.name in ranges for loads in self.task.loads):
+            return False
+        self.task = replace(self.task, open_ranges=self.told(self.name, self.result()))
+        return True
 
     def result(self) -> RefinedSolid:
         """Return what was found."""
@@ -293,6 +331,7 @@ class _Link:
             levels=tuple(self.levels),
             settings=self.settings,
             buckling=self.buckling,
+            beyond=self._beyond,
         )
 
     def _solved(self, mesh: TaggedMesh, progress: Progress) -> SolidSolution | None:
@@ -328,20 +367,48 @@ class _Link:
         eyes = [Eye(x=pin.x, y=pin.y, radius=body.across(pin) / 2.0, slot=pin.slot) for pin in body.pins]
         self.precision = precision(self.levels, self.edges, section=self.task.section, eyes=eyes)
 
+    @property
+    def _beyond(self) -> frozenset[int]:
+        """Numbers of the cases whose checks no finer mesh decides."""
+        if self.effort.stated or self.solution is None:
+            return frozenset()
+        by_loads: dict[str, list[int]] = {}
+        for number, solved in enumerate(self.solution.cases):
+            by_loads.setdefault(solved.load, []).append(number)
+        return frozenset(
+            number
+            for name, numbers in by_loads.items()
+            if (ranges := self.task.open_ranges.get(name)) is not None
+            and none_decides(
+                [
+                    ([(self.precision[i].low(quantity), self.precision[i].high(quantity)) for i in numbers], limit)
+                    for quantity, limits in ranges.limits.items()
+                    for limit in limits
+                ]
+            )
+            for number in numbers
+        )
+
+    @property
+    def _moves_settled(self) -> bool:
+        """Whether displacements are as exact as a check of the linkage needs them."""
+        return all(p.displacement.index <= self.task.displacement_error for p in self.precision)
+
     def _settled(self) -> bool:
         """Whether nothing finer is needed."""
         if any(p.unreliable == "coarse" for p in self.precision) or not self._told:
             return False
         if len(self.levels) == 1 or self.far:
             self.far = not self.effort.stated and self._far()
-        if any(p.displacement.index > self.task.displacement_error for p in self.precision):
+        if not self._moves_settled:
             return False
         if self.far or len(self.levels) == 1:
             return self.far
         if len(self.levels) <= SERIES and any(p.sharp and not p.sharp.resolved for p in self.precision):
             return False
-        # Nothing finer makes a singular peak finite.
-        real = [p for p in self.precision if p.sharp is None]
+        # Nothing finer makes a singular peak finite, or decides what other causes leave open.
+        beyond = self._beyond
+        real = [p for number, p in enumerate(self.precision) if p.sharp is None and number not in beyond]
         series = [s for p in real for s in (*self._deciding(p), p.edge) if s is not None]
         if any(s.kind == "growing" or s.suspect or len(s.values) < SERIES for s in series):
             return False
@@ -380,8 +447,9 @@ class _Link:
             ("layers", self.task.layer_limits),
             ("displacement", self.task.displacement_limits),
         )
-        for case in self.precision:
-            if case.sharp is None:
+        beyond = self._beyond
+        for number, case in enumerate(self.precision):
+            if case.sharp is None and number not in beyond:
                 yield from (
                     (case.low(q), case.high(q), limit) for q, limits in stated for ends in limits for limit in ends
                 )

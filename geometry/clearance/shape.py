@@ -17,6 +17,8 @@ Complex = NDArray[np.complex128]
 
 TOUCHING = 1e-9
 """Share of two heights' range by which slabs that lie on each other may overlap by rounding."""
+_ROUNDING = 1e-9
+"""Share of its size by which a circle about a piece is wider than needed, for what rounding makes of distances."""
 _SEGMENTS = 32
 """Chords of a quarter turn where a circle must be a polygon."""
 _CHORD = 1.0 - np.cos(np.pi / (4.0 * _SEGMENTS))
@@ -57,6 +59,13 @@ class Core:
 
         at = shapely.get_coordinates(self.geometry.convex_hull)
         return np.asarray(at[:, 0] + 1j * at[:, 1])
+
+    @cached_property
+    def circle(self) -> tuple[complex, float]:
+        """Centre and radius of a circle about all of it, a little wider than it is [mm]."""
+        at = self.corners
+        centre = complex((at.real.min() + at.real.max()) / 2.0, (at.imag.min() + at.imag.max()) / 2.0)
+        return centre, (1.0 + _ROUNDING) * (float(np.abs(at - centre).max()) + self.radius + abs(centre)) - abs(centre)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -280,9 +289,18 @@ def gaps(pairs: Sequence[tuple[Core, Core]], turn: Complex, shift: Complex) -> R
     import shapely
 
     found = np.full(len(turn), np.inf)
-    for a, b in pairs:
-        apart = shapely.distance(a.geometry, _placed(b.geometry, turn, shift)) - a.radius - b.radius
-        found = np.minimum(found, apart)
+    if not pairs:
+        return found
+    (a_at, a_reach), (b_at, b_reach) = (
+        (np.array([one.circle[0] for one in each]), np.array([one.circle[1] for one in each]))
+        for each in zip(*pairs, strict=True)
+    )
+    least = np.abs(turn * b_at[:, None] + shift - a_at[:, None]) - (a_reach + b_reach)[:, None]
+    for k in np.argsort(least.min(axis=1), kind="stable"):
+        (a, b), near = pairs[k], np.flatnonzero(least[k] < found)
+        if near.size:
+            apart = shapely.distance(a.geometry, _placed(b.geometry, turn[near], shift[near])) - a.radius - b.radius
+            found[near] = np.minimum(found[near], apart)
     return found
 
 

@@ -1,12 +1,12 @@
-"""Under loads that the linkage gives way to no solid is solved, unless solids are asked for."""
+"""No solid is solved under loads that the linkage gives way to, nor where no mesh decides, unless it is asked for."""
 
 import tomllib
 
 import pytest
 
-from alula.fea.check.run import check_case
+from alula.fea.check.run import check_case, effort_of
 from alula.fea.common.verdict import Verdict
-from alula.loads.case.case_file import validate
+from alula.loads.case.case_file import read_case, validate
 from alula.reports.sentences import told
 
 LEVER = """
@@ -72,3 +72,46 @@ def test_what_holds_is_solved_beside_what_does_not(asked):
     assert asked("auto", down=-60, light=-0.1) == {"light"}
     assert asked("auto", light=-0.1) == {"light"}
     assert asked("solid", down=-60, light=-0.1) == {"down", "light"}
+
+
+@pytest.fixture
+def links_asked(monkeypatch):
+    """Returns the links of the folded owl wing whose solids are asked for, and the result where there are none."""
+
+    def refuse(tasks, *settings, **more):
+        if tasks:
+            raise AskedError(set(tasks))
+        return {}
+
+    monkeypatch.setattr("alula.fea.links.fidelity.refine_links", refuse)
+
+    def solids(*changes, fidelity="auto", accuracy=None):
+        case = read_case("owl-wing-closed", ["checks.strength.minimum=8", *changes])
+        try:
+            return set(), check_case(case, fidelity=fidelity, effort=effort_of(case, accuracy))
+        except AskedError as found:
+            return found.args[0], None
+
+    return solids
+
+
+WIDE = 'load_cases.weight.scatter=["20 %", "500 %"]'
+
+
+def test_a_solid_is_solved_where_it_may_decide_and_not_where_the_load_leaves_all_open(links_asked):
+    """By hand the safety factor of AE is 7.4 to 29.6; with 0.2 to 5 times the load all of it is on both sides of 8."""
+    assert links_asked()[0] == {"AE"}
+    assert links_asked('load_cases.weight.scatter=["90 %", "110 %"]')[0] == {"AE"}
+    asked, result = links_asked(WIDE)
+    assert asked == set()
+    link = result.load_cases["weight"].links["AE"]
+    assert link.decided_by == "beam"
+    assert "so its solid was not solved; --fidelity solid solves it" in told(link.why)
+    [check] = [one for one in result.load_cases["weight"].checks if one.name == "strength" and one.link == "AE"]
+    assert check.verdict is Verdict.UNDECIDED
+
+
+def test_solids_and_an_accuracy_that_were_asked_for_are_solved_all_the_same(links_asked):
+    every = {"GF", "AE", "CF", "CH", "ED"}
+    assert links_asked(WIDE, fidelity="solid")[0] == every
+    assert links_asked(WIDE, accuracy="5 %")[0] == every

@@ -11,10 +11,12 @@ import solid_meshes
 
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.refine import refinement
+from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.convergence import grid_convergence
+from alula.fea.refine.discretisation import judged
 from alula.fea.refine.link_series import CasePrecision
 from alula.fea.refine.link_task import LinkTask
-from alula.fea.refine.refinement import START, Effort, _Link, refine_links
+from alula.fea.refine.refinement import NONE_DECIDES, START, Effort, _Link, refine_links
 from alula.fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, series_ratio
 from alula.fea.solid.layers import Layers
 from alula.geometry.base.errors import CannotRunError
@@ -140,3 +142,65 @@ def test_layers_that_bear_next_to_nothing_need_no_finer_mesh_unless_their_limit_
     link = _Link("bar", task, START, EFFORT)
     assert link._narrow(case) is narrow
     assert not link._narrow(dataclasses.replace(case, von_mises=nothing))
+
+
+def known(low, high):
+    """A case whose stress the meshes leave between two ends."""
+    peak = dataclasses.replace(
+        grid_convergence([1.0, 0.6, 0.4], [(low + high) / 2.0] * 3, estimate=0.01), low=low, high=high
+    )
+    return CasePrecision(
+        von_mises=peak, principal=peak, displacement=peak, edge=None, sharp=None, unreliable="", in_contact={}
+    )
+
+
+def one_of(bands, ranges, effort=None):
+    """A link under one load, solved in as many variants as there are bands."""
+    task = dataclasses.replace(pulled(1.0), stress_limits=((10.0, 10.0),), open_ranges=ranges)
+    link = _Link("bar", task, START, effort or Effort())
+    link.precision = tuple(known(*band) for band in bands)
+    link.solution = SimpleNamespace(cases=[SimpleNamespace(load="pull")] * len(bands))
+    return link
+
+
+def by_couples(low, high):
+    return {"pull": OpenRanges(limits={"von_mises": ((low, high),)})}
+
+
+@pytest.mark.parametrize(
+    ("bands", "limit", "further"),
+    [
+        ([(8.0, 12.0)], (10.0, 10.0), True),  # nothing but the mesh leaves it open
+        ([(8.0, 12.0)], (9.0, 30.0), True),  # below 9 MPa it passes
+        ([(8.0, 12.0)], (2.0, 11.0), True),  # above 11 MPa it fails
+        ([(8.0, 12.0)], (7.0, 13.0), False),
+        ([(8.0, 12.0), (9.5, 12.0)], (9.0, 13.0), False),  # the other pressure of pins keeps it open
+        ([(8.0, 12.0), (8.5, 12.0)], (9.0, 13.0), True),
+    ],
+)
+def test_a_mesh_is_made_finer_only_where_it_may_decide(bands, limit, further):
+    link = one_of(bands, by_couples(*limit))
+    assert link._ends_open() is not further
+    assert bool(link._beyond) is not further
+
+
+def test_an_accuracy_that_was_asked_for_is_reached_all_the_same():
+    assert one_of([(8.0, 12.0)], by_couples(7.0, 13.0), EFFORT)._beyond == frozenset()
+    assert one_of([(8.0, 12.0)], {})._beyond == frozenset()
+
+
+@pytest.mark.parametrize(("ranges", "meshes"), [({}, 2), (by_couples(0.0, 1e6), 1), (by_couples(1e5, 1e6), 2)])
+def test_refinement_ends_with_the_first_mesh_where_no_other_decides(coarse, ranges, meshes):
+    """Numbers that other causes leave open are told with the reason; a point of the linkage may ask for more."""
+    task = dataclasses.replace(pulled(1.0), open_ranges=ranges, stress_limits=((1e-3, 1e3),))
+    effort = dataclasses.replace(EFFORT, stated=False)
+    [found] = refine_links({"bar": task}, START, effort).values()
+    assert len(found.meshes) == meshes
+    if meshes > 1:
+        return
+    assert found.stopped == NONE_DECIDES
+    assert "no finer one decides them" in told(judged(found, 0, "von_mises").reason)
+    closer = dataclasses.replace(task, displacement_error=1e-9)
+    [more] = refine_links({"bar": closer}, START, effort, earlier={"bar": found}).values()
+    assert found.may_go_on
+    assert len(more.meshes) == 2
