@@ -1,0 +1,54 @@
+"""Bands that left out a cause that a case states; each was told as if nothing were open.
+
+``tests/verification/test_every_band_holds.py`` found them, and looks for others of their kind.
+"""
+
+import pytest
+from random_four_bars import FourBar
+
+from alula.fea.common.source import SourceKind
+from alula.fea.whole.motor import motor_outcomes
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+
+MOTOR = {"type": "motor", "voltage": "6 V", "current": "2 A", "efficiency": 0.5, "no_load_speed": "60 rpm",
+         "stall_torque": "5000 N*mm", "rated_torque": "800 N*mm"}  # fmt: skip
+
+
+def moving(of: FourBar, causes: tuple[str, ...], *, poses: int = 3, factor: float = 1.0) -> Case:
+    data = of.data(causes)
+    data["motion"] = {"range": [f"{of.angle + turn!r} rad" for turn in (0.0, 0.5)], "poses": poses}
+    data["checks"] = data["checks"] | {"motor": MOTOR}
+    data["load_cases"] = {"one": data["load_cases"]["one"]}
+    own = data["load_cases"]["one"]
+    own["speed"] = "0.01 rpm"
+    for load in own["forces"]:
+        load["force"] = [f"{factor * float(part.split()[0])!r} N" for part in load["force"]]
+    own.pop("direction", None)
+    return validate(data)
+
+
+def test_a_motor_bears_the_scatter_of_its_loads() -> None:
+    """Power, torque share and torque of a load case with a scatter of 85 to 130 % were those of 100 % alone."""
+    of = FourBar(0)
+
+    def told(case: Case):
+        return {one.quantity: one.value for one in motor_outcomes(case, "motor", case.checks["motor"])["one"]}
+
+    plain, stated = told(moving(of, ())), told(moving(of, ("load",)))
+    low, high = of.scatter["one"]
+    for quantity in ("share of the motor's torque at its speed", "drive torque over time"):
+        assert stated[quantity].low == pytest.approx(low * plain[quantity].low)
+        assert stated[quantity].high == pytest.approx(high * plain[quantity].high)
+        assert SourceKind.LOAD in {source.kind for source in stated[quantity].sources}
+    assert stated["drive torque over time"].high == pytest.approx(
+        told(moving(of, (), factor=high))["drive torque over time"].high, rel=1e-5
+    )
+
+
+def test_the_band_of_a_motor_holds_its_value_in_spite_of_rounding() -> None:
+    """Of a motor x times x over x was asked, which may be less than x: the run ended with a ValueError."""
+    for draw in range(4):
+        case = moving(FourBar(draw), ())
+        for one in motor_outcomes(case, "motor", case.checks["motor"])["one"]:
+            assert one.value.low <= one.value.value <= one.value.high
