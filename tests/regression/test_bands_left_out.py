@@ -3,11 +3,15 @@
 ``tests/verification/test_every_band_holds.py`` found them, and looks for others of their kind.
 """
 
+import numpy as np
 import pytest
-from random_four_bars import FourBar
+from random_four_bars import FourBar, Inputs
 
+from alula.fea.check.run import check_case
 from alula.fea.common.source import SourceKind
+from alula.fea.motion.loosened import column_growth
 from alula.fea.whole.motor import motor_outcomes
+from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 
@@ -52,3 +56,42 @@ def test_the_band_of_a_motor_holds_its_value_in_spite_of_rounding() -> None:
         case = moving(FourBar(draw), ())
         for one in motor_outcomes(case, "motor", case.checks["motor"])["one"]:
             assert one.value.low <= one.value.value <= one.value.high
+
+
+def outcome(case: Case, load_case: str, name: str, subject: str):
+    result = check_case(case, fidelity="beam", bare=True, threads=1)
+    return next(
+        one.value for one in result.load_cases[load_case].checks if (one.name, str(one.subject)) == (name, subject)
+    )
+
+
+def test_columns_over_a_motion_hold_the_play_of_pins() -> None:
+    """The buckling factor of a link over a motion had no play in its band; that of a pose had."""
+    of = FourBar(0)
+    moved = rubbed_motion(moving(of, ("play",)))
+    growth = column_growth(moved, "one", "rocker", np.arange(len(moved.motion.angles)) == 0)
+    plain, stated = (outcome(of.stated(causes), "one", "buckling", "rocker") for causes in ((), ("play",)))
+    assert growth.high == pytest.approx(plain.low / stated.low, rel=1e-4)
+    assert growth.low == pytest.approx(plain.high / stated.high, rel=1e-4)
+    assert growth.high > 1.001
+
+
+def test_play_turns_the_force_of_a_link_that_bears_it_across_its_axis() -> None:
+    """Of this crank the force changes by half a percent, but what of it goes along the crank by half.
+
+    The band of its buckling factor was that of the force's size.
+    """
+    of, axis = FourBar(0), np.exp(1j * FourBar(0).angle)
+
+    def along(play: dict[str, complex]) -> float:
+        return float((of.statics("one", Inputs(play=play))[0]["O2"] * np.conj(axis)).real)
+
+    offsets = {}
+    for joint, radius in of.radii.items():
+        slope = complex(*(along({joint: 1e-5 * u}) - along({joint: -1e-5 * u}) for u in (1.0, 1.0j)))
+        offsets[joint] = radius * slope / abs(slope)
+    plain, stated = (outcome(of.stated(causes), "one", "buckling", "crank") for causes in ((), ("play",)))
+    times = along(offsets) / along({})
+    size = abs(of.statics("one", Inputs(play=offsets))[0]["O2"]) / abs(of.statics("one")[0]["O2"])
+    assert size < 1.01 < 1.5 < times
+    assert stated.low == pytest.approx(plain.low / times, rel=1e-3)
