@@ -9,6 +9,7 @@ from random_four_bars import FourBar, Inputs
 
 from alula.fea.check.run import check_case
 from alula.fea.common.source import SourceKind
+from alula.fea.motion.linkage_history import over_motion
 from alula.fea.motion.loosened import column_growth
 from alula.fea.whole.motor import motor_outcomes
 from alula.fea.whole.rubbed_motion import rubbed_motion
@@ -95,3 +96,26 @@ def test_play_turns_the_force_of_a_link_that_bears_it_across_its_axis() -> None:
     size = abs(of.statics("one", Inputs(play=offsets))[0]["O2"]) / abs(of.statics("one")[0]["O2"])
     assert size < 1.01 < 1.5 < times
     assert stated.low == pytest.approx(plain.low / times, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("causes", "kinds"),
+    [
+        (("play", "friction"), {SourceKind.PLAY, SourceKind.FRICTION}),
+        (("air",), {SourceKind.AIR}),
+    ],
+)
+def test_the_limit_load_over_a_motion_holds_what_that_of_its_poses_does(
+    causes: tuple[str, ...], kinds: set[SourceKind]
+) -> None:
+    """Over a motion it was that with pins in the middle of their holes, at the stated C_N and coefficients."""
+    of = FourBar(0)
+    case = moving(of, causes)
+    if "air" in causes:
+        own = case.load_cases["one"].model_copy(update={"speed": of.stated(causes).load_cases["one"].speed})
+        case = case.model_copy(update={"load_cases": {"one": own}})
+    moved = rubbed_motion(case)
+    over = over_motion(moved, np.arange(len(moved.motion.angles)) == 0)["one"].limit_load
+    assert {source.kind for source in over.sources} >= kinds
+    pose = outcome(of.stated(causes), "one", "limit", "the linkage")
+    assert (over.low, over.high) == pytest.approx((pose.low, pose.high), rel=0.01)
