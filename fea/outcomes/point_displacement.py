@@ -5,9 +5,9 @@ the outcome states it.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.frame.case_statics import locks_on_tight_pins
-from alula.fea.frame.displacement_band import point_bounds
+from alula.fea.frame.displacement_band import OneModulus, point_bounds
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from alula.fea.nonlinear.softened import displaced
@@ -115,10 +115,30 @@ class PointDisplacement:
             case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, forces=forces, why=why
         )
 
-    @property
+    @cached_property
     def in_any_air(self) -> Scatter:
         """What the range of C_N makes of it."""
-        return self.moved.in_any_air(self.link, self.point)
+        found = self.moved.in_any_air(self.link, self.point)
+        return self._in_each_direction(found, [other for _, other in self.moved.airs[1:]])
+
+    @cached_property
+    def with_any_friction(self) -> Scatter:
+        """What the friction that may be makes of it."""
+        return self._in_each_direction(self.moved.with_any_friction(self.link, self.point), self.moved.rubbed)
+
+    def _in_each_direction(self, found: Scatter, others: Sequence[LargeDisplacement]) -> Scatter:
+        """Return what other loads make of the ends of the band: the point moves elsewhere, by other links' eyes."""
+        moved, framed = self.moved, self.shares.framed is not None or self.shares.solids
+        known = [(one.frame, one.solution) for one in others if one.frame is not None and one.solution is not None]
+        if framed or moved.followed or not known or moved.frame is None or moved.solution is None:
+            return found
+        bounds = partial(point_bounds, self.case, moved.frame, moved.solution, self.link, self.point)
+        own, every = bounds(), bounds(others=known)
+        return replace(
+            found,
+            low=min(found.low, every.low / own.low) if own.low > 0.0 else found.low,
+            high=max(found.high, every.high / own.high) if own.high > 0.0 else found.high,
+        )
 
     @property
     def play(self) -> Play | None:
@@ -146,7 +166,7 @@ class PointDisplacement:
             why = reason("play_through_dead_point")
         elif self.in_any_air.high == math.inf:
             why = reason("gives_way_in_some_air")
-        elif self.moved.with_any_friction(self.link, self.point).high == math.inf:
+        elif self.with_any_friction.high == math.inf:
             why = reason("gives_way_with_any_friction")
             if self.moved.locks and self._free_to_tilt and not locks_on_tight_pins(self.case, self.load_case):
                 why = reason("locks_by_tilting_pins", joints=self._free_to_tilt)
@@ -257,18 +277,26 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
-        load = load_scatter(case, self.load_case).times(self.in_any_air).times(moved.with_any_friction(link, point))
+        load = load_scatter(case, self.load_case).times(self.in_any_air).times(self.with_any_friction)
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
+        softer = min((*ratios, 1.0)), max((*ratios, 1.0))
         if shares.framed is None:
-            found = self._shared(point_bounds(case, moved.frame, moved.solution, link, point, solids, shares.carried))
+            bounds = partial(point_bounds, case, moved.frame, moved.solution, link, point, solids, shares.carried)
+            found, either = self._shared(bounds()), self._shared(bounds(moduli=self._moduli(solids)))
         else:
             found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
-        slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
+            either = replace(found, low=found.low * softer[0], high=found.high * softer[1])
+        slack = softer[0] * load.low, softer[1] * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
         sources = distinct(shares.sources, found.sources, *moduli, load.sources)
         if moved.followed:
-            return self._followed(found, solids, slack, sources)
+            # What materials add may cancel: then the displacement changes by more than any modulus does.
+            beyond = (
+                min(either.low / (found.low * softer[0]), 1.0) if found.low > 0.0 else 1.0,
+                max(either.high / (found.high * softer[1]), 1.0) if found.high > 0.0 else 1.0,
+            )
+            return self._followed(found, solids, (slack[0] * beyond[0], slack[1] * beyond[1]), sources)
         # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
         near_by = self._near_by(self._framed(found, solids), slack[1])
         grown, least = growth(1.0 / near_by) if near_by > 0.0 else 1.0, 1.0
@@ -279,10 +307,20 @@ class PointDisplacement:
         grows = Source(kind=SourceKind.GROWTH, detail=reason("towards_buckling_or_dead_point"))
         return Band(
             value=value,
-            low=min(found.low * slack[0] * least, value),
-            high=max(found.high * slack[1] * grown, value),
+            low=min(either.low * load.low * least, value),
+            high=max(either.high * load.high * grown, value),
             sources=(*sources, grows),
         )
+
+    def _moduli(self, solids: Mapping[str, tuple[Band, ...]]) -> tuple[OneModulus, ...]:
+        """The links of every material whose modulus has a range, and what it makes of their flexibility."""
+        links: dict[tuple[float, float, float, str], list[str]] = {}
+        for link in dict.fromkeys((*self.case.bending_links, *solids)):
+            material = self.case.material_of(link)
+            if material.youngs_modulus_range is not None:
+                own = compliance_scatter(material)
+                links.setdefault((own.low, own.high, material.youngs_modulus, material.title), []).append(link)
+        return tuple(OneModulus(links=own, low=low, high=high) for (low, high, *_), own in links.items())
 
     def _near_by(self, framed: Band, slack: float) -> float:
         """Return one over the factor on its loads at which the linkage may give way, with links as soft as may be."""
