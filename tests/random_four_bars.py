@@ -156,7 +156,7 @@ class FourBar:
                 del one["direction"]
             load_cases[name] = one
         crank = place["A"] - place["O2"]
-        printed: dict[str, dict[str, Any]] = {"wide": {}, "narrow": {"build_direction": [0.0, 0.0, 1.0]}}
+        printed: dict[str, dict[str, Any]] = {"wide": {}, "narrow": {"build_direction": [0.0, 1.0, 0.0]}}
         data = {
             "schema_version": 1,
             "title": f"draw {self.draw}",
@@ -197,6 +197,7 @@ class FourBar:
                 "stiff": {"type": "displacement", "maximum": "0.2 mm"},
                 "point": {"type": "displacement", "at": "P", "maximum": "1 mm"},
                 "pins": {"type": "pins", "minimum": 1.5},
+                    "pin": {"type": "pins", "minimum": 2.0, "joints": ["B"]},
                 "eyes": {"type": "bearing", "minimum": 3.0},
                 "limit": {"type": "limit-load", "minimum": 1.5},
             }),
