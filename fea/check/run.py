@@ -117,7 +117,7 @@ class _LoadCase:
 
     ``plates`` has one of every link; of a pair whose plates bear differently both, first the worse one by hand.
     ``shared`` is what the ways of sharing couples between layers make by hand, and ``uneven`` all else; ``grown`` is
-    ``uneven`` without ``doubts``, and ``growth`` what grows beyond the load alone.
+    ``uneven`` without play and ``doubts``, and ``growth`` what grows beyond the load alone.
     """
 
     case: Case
@@ -152,7 +152,7 @@ class _LoadCase:
         forces = statics.forces[load_case]
         growth = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
         grown = growth.times(stiffness_doubt(case, load_case, forces, loads))
-        uneven = grown = grown.times(play_doubt(case, load_case, forces, loads))
+        uneven = grown.times(play_doubt(case, load_case, forces, loads))
         for doubt in doubts:
             uneven = uneven.times(doubt.growths)
         return cls(
@@ -255,18 +255,22 @@ class _LoadCase:
         return found
 
     def _with_growth(self, outcome: CheckOutcome) -> CheckOutcome:
-        """Return the buckling factor of a link with what its joint forces may be, over the largest, in its band."""
+        """Return the buckling factor of a link with what its compression may be in its band.
+
+        What play makes of it is known; of all else what its joint forces may be, over the largest.
+        """
+        link = outcome.subject.name
         joints, grown = self.forces.reactions.joints, self.grown.joints
-        every = self.case.linkage.joints_of(outcome.subject.name)
+        every, spread = self.case.linkage.joints_of(link), self.uneven.columns.get(link, Scatter())
         own, largest = [x for x in every if x in grown], max((joints[x].magnitude for x in every), default=0.0)
-        if not own or not largest > 0.0:
-            return outcome
-        # A joint that bears next to nothing may bear a thousand times as much, which is little to its link.
-        parts = {x: min(joints[x].magnitude / (NEGLIGIBLE * largest), 1.0) for x in own}
-        low, high = (min(part * (grown[x].low - 1.0) for x, part in parts.items()),
-                     max(part * (grown[x].high - 1.0) for x, part in parts.items()))  # fmt: skip
-        sources = distinct(*(grown[name].sources for name in own))
-        return widened(outcome, Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources))
+        if own and largest > 0.0:
+            # A joint that bears next to nothing may bear a thousand times as much, which is little to its link.
+            parts = {x: min(joints[x].magnitude / (NEGLIGIBLE * largest), 1.0) for x in own}
+            low, high = (min(part * (grown[x].low - 1.0) for x, part in parts.items()),
+                         max(part * (grown[x].high - 1.0) for x, part in parts.items()))  # fmt: skip
+            sources = distinct(*(grown[name].sources for name in own))
+            spread = spread.times(Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources))
+        return widened(outcome, spread)
 
     def answers(self, link: str) -> dict[str, LinkAnswers]:
         """Return what may act on a link in place of what is stated, by the name of the cause."""

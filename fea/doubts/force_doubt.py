@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
+from alula.fea.buckling.buckling import least_factor
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
 from alula.fea.common.scatter import Scatter
@@ -213,6 +214,28 @@ def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) ->
         [MPa], [mm]; twice [N] without beam.
     """
     return _by_hand(case, link, borne(case, link, loads, tilts=tilts))
+
+
+def measures_and_column(case: Case, link: str, loads: LinkLoads) -> tuple[float, float, float]:
+    """Return stress, displacement and the inverse of the buckling factor by hand, as ``measures`` has the first two.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : LinkLoads
+        At one pose; of a pair the numbers are those of its worse plate.
+
+    Returns
+    -------
+    tuple of (float, float, float)
+        [MPa], [mm], pure; three times [N] without beam.
+    """
+    hands = [link_by_hand(case, link, plate) for plate in plates(loads, apart(case, link))]
+    told = measures(case, link, loads)
+    if hands[0].check.without:
+        return *told, told[0]
+    return *told, max(1.0 / least_factor(case, link, hand.check) for hand in hands)
 
 
 def borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> Plates:

@@ -47,11 +47,14 @@ class Growths:
         Link -> growth of its stress, and of its displacement.
     joints : mapping of str to Scatter
         Joint -> growth of its force.
+    columns : mapping of str to Scatter
+        Link -> growth of the inverse of its buckling factor, where that is known beside the forces of its joints.
     """
 
     stress: Mapping[str, Scatter] = field(default_factory=dict)
     displacement: Mapping[str, Scatter] = field(default_factory=dict)
     joints: Mapping[str, Scatter] = field(default_factory=dict)
+    columns: Mapping[str, Scatter] = field(default_factory=dict)
 
     def times(self, other: "Growths") -> "Growths":
         """Return what both make together.
@@ -64,12 +67,15 @@ class Growths:
         -------
         Growths
         """
-        pairs = ((self.stress, other.stress), (self.displacement, other.displacement), (self.joints, other.joints))
-        stress, displacement, joints = (
+        pairs = (
+            *((self.stress, other.stress), (self.displacement, other.displacement)),
+            *((self.joints, other.joints), (self.columns, other.columns)),
+        )
+        stress, displacement, joints, columns = (
             {name: one.get(name, Scatter()).times(two.get(name, Scatter())) for name in {**one, **two}}
             for one, two in pairs
         )
-        return Growths(stress=stress, displacement=displacement, joints=joints)
+        return Growths(stress=stress, displacement=displacement, joints=joints, columns=columns)
 
 
 Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]

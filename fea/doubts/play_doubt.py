@@ -1,4 +1,4 @@
-"""What play makes of the numbers of a check: stress through changed forces, and how much load the linkage holds."""
+"""What play makes of the numbers of a check: links through changed forces, and how much load the linkage holds."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -14,7 +14,7 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
-from alula.fea.doubts.force_doubt import borne, measures
+from alula.fea.doubts.force_doubt import borne, measures, measures_and_column
 from alula.fea.doubts.load_growth import LEAST, Growths
 from alula.fea.frame.joint_forces import JointForces, joint_forces
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
@@ -30,6 +30,8 @@ Real = NDArray[np.float64]
 
 OUT_OF_PLANE = [2, 3, 4]
 """Components of a wrench that equilibrium in the plane does not give."""
+COLUMN = 2
+"""Number of the buckling factor's inverse among what hand calculation tells of a link."""
 
 
 def play_doubt(
@@ -38,7 +40,8 @@ def play_doubt(
     """Return by how much stress, displacement of links and joint forces may differ by the play of pins.
 
     A link's stress by hand is calculated with every joint with play at its end in x and in y. The sizes of these
-    slopes add up; it is calculated once more at the worst combination either way, and the outer of both counts.
+    slopes add up; it is calculated once more at the worst combination either way, and the outer of both counts. So are
+    its displacement and the inverse of its buckling factor.
 
     Parameters
     ----------
@@ -63,29 +66,35 @@ def play_doubt(
     joints = {name: _scatter(span, source) for name, span in play.forces.items()}
     if play.through_dead_point or play.nominal is None:
         lost = dict.fromkeys(links, Scatter(low=0.0, high=np.inf, sources=(source,)))
-        return Growths(stress=lost, displacement=lost, joints=joints)
+        return Growths(stress=lost, displacement=lost, joints=joints, columns=lost)
     ends = {name: _ends(play, forces, name) for name in play.loose.radii}
     nominal = _reactions(play, forces, play.nominal), play.nominal
     stress: dict[str, Scatter] = {}
     displacement: dict[str, Scatter] = {}
+    columns: dict[str, Scatter] = {}
     for link in links:
         body = case.body(link)
         acting = link_loads(load_case, link, body, forces.reactions, loads)
         told = partial(_told, case, load_case, link, body, acting)
         plain = told(*nominal)
         tried = {name: [told(*end) for end in each] for name, each in ends.items()}
-        for i, found in enumerate((stress, displacement)):
+        for i, found in enumerate((stress, displacement, columns)):
             slopes = {name: np.array([end[i] - plain[i] for end in each]) for name, each in tried.items()}
+            for name, slope in slopes.items() if i == COLUMN else ():
+                # Where nothing presses the link any more, the other end tells how compression changes.
+                idle = [k for k, end in enumerate(tried[name]) if end[COLUMN] == 0.0 < plain[COLUMN]]
+                others = _ends(play, forces, name, -1.0) if idle else []
+                slope[idle] = [plain[COLUMN] - told(*others[k])[COLUMN] for k in idle if k < len(others)]
             slack = sum(float(np.linalg.norm(slope)) for slope in slopes.values())
             telling = 2.0 * slack > LEAST * plain[i]
             worst = [told(*end)[i] for end in _worst(play, forces, slopes)] if telling else []
             low, high = min(plain[i] - slack, *worst, plain[i]), max(plain[i] + slack, *worst, plain[i])
             found[link] = _scatter(Span(value=plain[i], low=max(low, 0.0), high=high), source)
-            if case.layered:  # couples between layers go with the forces of the link's pins
+            if case.layered and i != COLUMN:  # couples between layers go with the forces of the link's pins
                 held = [joints[name] for name in case.linkage.joints_of(link)]
                 least, most = min(one.low for one in held), max(one.high for one in held)
                 found[link] = replace(found[link], low=min(found[link].low, least), high=max(found[link].high, most))
-    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
+    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints), columns=_open(columns))
 
 
 def play_answers(
@@ -161,9 +170,9 @@ def play_answers(
 
 def _told(
     case: Case, load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced
-) -> tuple[float, float]:
-    """Stress and displacement of a link by hand, with its joints at offsets."""
-    return measures(case, link, _at(load_case, link, body, plain, here, at))
+) -> tuple[float, float, float]:
+    """Stress, displacement and inverse of the buckling factor of a link by hand, with its joints at offsets."""
+    return measures_and_column(case, link, _at(load_case, link, body, plain, here, at))
 
 
 def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:
@@ -187,9 +196,10 @@ def _across(wrench: Real, plain: Real) -> Real:
     return found
 
 
-def _ends(play: Play, forces: JointForces, name: str) -> list[tuple[Reactions, Displaced]]:
-    """Forces with a joint at the end of its play, in each of its directions."""
-    ends = [play.at(play.loose.offsets({name: share})) for share in np.eye(2)[: len(play.loose.directions(name))]]
+def _ends(play: Play, forces: JointForces, name: str, sign: float = 1.0) -> list[tuple[Reactions, Displaced]]:
+    """Forces with a joint at the end of its play, in each of its directions, or against it."""
+    shares = sign * np.eye(2)[: len(play.loose.directions(name))]
+    ends = [play.at(play.loose.offsets({name: share})) for share in shares]
     return [(_reactions(play, forces, end), end) for end in ends if end is not None]
 
 

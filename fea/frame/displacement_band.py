@@ -16,7 +16,7 @@ arms and slots were not among these. Lengths in mm, forces in N, moments in N·m
 
 import itertools
 import math
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -213,6 +213,22 @@ def bounds(
     return Band(value=float(ends[0]), low=float(ends[1]), high=float(ends[2]))
 
 
+@dataclass(frozen=True, kw_only=True)
+class OneModulus:
+    """Links of one material, whose modulus may be off.
+
+    Attributes
+    ----------
+    links : collection of str
+    low, high : float
+        Least and largest factor on their flexibility.
+    """
+
+    links: Collection[str]
+    low: float
+    high: float
+
+
 def point_bounds(
     case: Case,
     frame: LinkageFrame,
@@ -221,6 +237,9 @@ def point_bounds(
     point: str,
     solids: Mapping[str, Sequence[Band]] | None = None,
     carried: Mapping[str, Sequence[float]] | None = None,
+    *,
+    moduli: Sequence[OneModulus] = (),
+    others: Sequence[tuple[LinkageFrame, FrameSolution]] = (),
 ) -> Band:
     """Return the least and largest distance by which a point of a linkage moves in its linear frame.
 
@@ -244,30 +263,62 @@ def point_bounds(
     carried : dict of str to sequence of float, optional
         Of links whose solids bear other loads than the frame has: what plain beams would add under these [mm]. Of such
         a solid what it adds beyond its beam counts, beside the frame's plain beam.
+    moduli : sequence of OneModulus, optional
+        Links whose modulus is in doubt. What the materials add may cancel, so that each counts by itself.
+    others : sequence of tuple of (LinkageFrame, FrameSolution), optional
+        The frame under other loads that may be, which the ends hold as well.
 
     Returns
     -------
     Band
         How far the point moves, by the beams and these solids [mm].
     """
-    solids, carried, node = solids or {}, carried or {}, frame.points[link, point]
+    solids, carried = solids or {}, carried or {}
+    every = [_along_axes(case, *one, (link, point), solids, carried, moduli) for one in ((frame, solution), *others)]
+    count = max(map(len, every))
+    found = np.array([np.pad(one, ((0, count - len(one)), (0, 0))) for one in every])
+    low, high = found[..., 1].min(axis=0), found[..., 2].max(axis=0)
+    ends = found[0, :, 0], np.maximum(np.maximum(low, -high), 0.0), np.maximum(abs(low), abs(high))
+    value, least, largest = (float(np.linalg.norm(end)) for end in ends)
+    return Band(value=value, low=least, high=largest)
+
+
+def _along_axes(
+    case: Case,
+    frame: LinkageFrame,
+    solution: FrameSolution,
+    at: tuple[str, str],
+    solids: Mapping[str, Sequence[Band]],
+    carried: Mapping[str, Sequence[float]],
+    moduli: Sequence[OneModulus],
+) -> Real:
+    """Return how far a point moves along x, y and, where anything moves out of the plane, z: value, least, largest."""
+    node = frame.points[at]
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
-    beams, bores = _links(case, frame, solids)
-    without = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
-    moved, least, largest = np.zeros(3), np.zeros(3), np.zeros(3)
+    beams, bores = give_of_links(case, frame, solids)
+    left_out = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
+    of_link = {i: beam.link for i, beam in frame.beams.items()}
+    others = {"", *of_link.values(), *solids, *(link for link, _, _ in bores)}
+    others -= {link for one in moduli for link in one.links}
+    numbers = range(len(frame.model.elements))
     planar = not np.any(solution.displacements[:, 2:5])
+    found = []
     for axis in range(2 if planar else 3):
         load = NodeLoad(node=node, wrench=np.eye(6)[axis])
         unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
-        plain = bounds(solution, unit, beams, bores, without=without, pins=frame.pin_beams.values())
-        shares = [plain, *(bands[axis] for bands in solids.values())]
-        taken = sum(works[axis] for works in carried.values())
-        low, high = sum(share.low for share in shares) - taken, sum(share.high for share in shares) - taken
-        moved[axis] = sum(share.value for share in shares) - taken
-        least[axis] = max(low, -high, 0.0)
-        largest[axis] = max(abs(low), abs(high))
-    value, low, high = (float(np.linalg.norm(ends)) for ends in (moved, least, largest))
-    return Band(value=value, low=low, high=high)
+
+        def share(own: Collection[str], low: float, high: float, unit: FrameSolution = unit, axis: int = axis) -> Real:
+            without = left_out | {i for i in numbers if of_link.get(i, "") not in own}
+            sunk = [(node, give) for link, node, give in bores if link in own]
+            plain = bounds(solution, unit, beams, sunk, without=without, pins=frame.pin_beams.values())
+            every = [plain, *(bands[axis] for link, bands in solids.items() if link in own)]
+            taken = sum(works[axis] for link, works in carried.items() if link in own)
+            value, least, most = (sum(getattr(one, end) for one in every) - taken for end in ("value", "low", "high"))
+            return np.array([value, min(low * least, high * least), max(low * most, high * most)])
+
+        parts = [share(others, 1.0, 1.0), *(share(one.links, one.low, one.high) for one in moduli)]
+        found.append(np.sum(parts, axis=0))
+    return np.array(found)
 
 
 def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Scatter:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,23 +10,30 @@ from numpy.typing import NDArray
 
 from alula.fea.buckling.linkage import by_linear_theory
 from alula.fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import distinct
+from alula.fea.common.source import air_source, distinct, friction_source
 from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.doubts.play_doubt import shaken
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.displacement_band import compliance_range
+from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.linear import solve_frame
 from alula.fea.motion.layered import forces_at
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
 from alula.fea.nonlinear.stability import dead_point_factor, linkage_factor
+from alula.fea.whole.air_range import air_range
+from alula.fea.whole.rubbed_motion import friction_range
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.ties import first_largest, first_least
+from alula.loads.case.joint_rules import friction_ranges
 from alula.loads.records.applied import chosen
 from alula.loads.records.check_spec import LimitLoadCheck
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.dead_point_reach import pose_at
+from alula.loads.states.loose_motion import loose_motion
 
 SPREAD = 5
 """Poses over the range, both ends included, at which the numbers of the linkage are computed besides the worst two."""
@@ -148,7 +155,7 @@ def looked_at(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -
     return sorted({*map(int, spread), *_worst(moved, load_case, evaluated)})
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=128)
 def shape_at(moved: CaseMotion, load_case: str, pose: int) -> LargeDisplacement:
     """Return what becomes of a load case at one pose in large displacement.
 
@@ -223,11 +230,50 @@ def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> l
 def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, Reason | str]:
     """Limit-load factor and largest displacement at a pose, and the place of the latter."""
     try:
-        forces, shape = forces_at(moved, load_case, i), shape_at(moved, load_case, i)
+        forces, shape = _in_doubt(moved, load_case, i)
         numbers = linkage_numbers(moved.case, load_case, shape, forces)
         return numbers.limit_load, numbers.displacement, numbers.where
     except (CaseError, CannotRunError) as error:
         return Band.unknown(str(error)), Band.unknown(str(error)), ""
+
+
+def _in_doubt(moved: CaseMotion, load_case: str, i: int) -> tuple[JointForces, LargeDisplacement]:
+    """Joint forces and shape at a pose, with what play, C_N and friction may make of them as a check has it."""
+    forces, shape, loose = forces_at(moved, load_case, i), shape_at(moved, load_case, i), loose_motion(moved)
+    here = np.arange(len(moved.motion.angles)) == i
+    found = [cause.told_by(lambda one: shape_at(one, load_case, i)) for cause in causes_over(moved, load_case, here)]
+    shape = replace(shape, causes=tuple(found))
+    if loose is not None:
+        forces = replace(forces, play=loose.play(load_case, i))
+        shape = shaken(moved.case, load_case, forces, shape)
+    return forces, shape
+
+
+def causes_over(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> Iterator[Alternatives[CaseMotion]]:
+    """Yield the causes that change what acts over a motion: the range of C_N, and friction.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case : str
+        Its name.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+
+    Yields
+    ------
+    Alternatives of CaseMotion
+        Motions at the ends of what may be, but for those that lock themselves at a pose that counts.
+    """
+    air, airs = moved.case.load_cases[load_case].flapping, air_range(moved)
+    if air is not None and airs is not None and (others := airs.at(load_case)):
+        coefficients = (air.normal_coefficient, *air.ends)
+        yield Alternatives(source=air_source(*air.ends), others=others, coefficients=coefficients)
+    if moved.rubbing:
+        every = friction_range(moved)
+        rubbed = tuple(one for one in every if np.isfinite(one.torque[load_case][evaluated]).all())
+        source = friction_source(friction_ranges(moved.case))
+        yield Alternatives(source=source, others=rubbed, endless=len(rubbed) < len(every))
 
 
 def _over(poses: list[int], at: list[tuple[Band, Band, Reason | str]]) -> LinkageOverMotion:

@@ -2,7 +2,8 @@
 
 With play each link is looked at in two poses: that in which most acts on it, and that in which most may act with play,
 by the first-order ends of its joint forces at all poses. There it is calculated by hand as a check of one pose does
-(``alula.fea.doubts.play_doubt``), and the larger stress of both, over that without play, widens its bands.
+(``alula.fea.doubts.play_doubt``), and the larger stress of both, over that without play, widens its bands. So it is
+with the buckling factor of a link under compression.
 
 So does the range of C_N of wings that flap: a link is calculated by hand at its worst poses with the stated C_N and
 with either end of the range, and its largest stress of each is compared, as in a check
@@ -17,7 +18,7 @@ the largest of them in the undeformed pose, widens the bands of the whole motion
 a pose between these is in no band.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -25,24 +26,20 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.buckling.buckling import least_factor
-from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import air_source, distinct, friction_source, play_source
+from alula.fea.common.source import distinct, play_source
 from alula.fea.doubts.force_doubt import measures
 from alula.fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
 from alula.fea.doubts.play_doubt import play_doubt
 from alula.fea.links.link_by_hand import plates_by_hand
-from alula.fea.motion.buckling_history import factors_over_motion
+from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.link_history import link_histories
-from alula.fea.motion.linkage_history import looked_at, shape_at
+from alula.fea.motion.linkage_history import causes_over, looked_at, shape_at
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, with_growth
-from alula.fea.whole.air_range import air_range
-from alula.fea.whole.rubbed_motion import friction_range
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.ties import first_largest
-from alula.loads.case.joint_rules import friction_ranges
 from alula.loads.records.applied import chosen
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.dead_point_reach import pose_at
@@ -119,7 +116,7 @@ def otherwise(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[tuple[str
 
 
 def column_growth(moved: CaseMotion, load_case: str, link: str, evaluated: NDArray[np.bool_]) -> Scatter:
-    """Return what the range of C_N and friction make of the inverse of a link's least buckling factor over a motion.
+    """Return what play, C_N and friction make of the inverse of a link's least buckling factor over a motion.
 
     Parameters
     ----------
@@ -134,28 +131,23 @@ def column_growth(moved: CaseMotion, load_case: str, link: str, evaluated: NDArr
     Scatter
     """
 
-    def inverse(one: CaseMotion) -> float:
-        histories = [history for history in link_histories(one, link) if history.name == load_case]
-        return max(
-            float(1.0 / factors_over_motion(one.case, link, h).value[evaluated].min(initial=np.inf)) for h in histories
-        )
+    def histories(one: CaseMotion) -> list[LinkLoads]:
+        return [history for history in link_histories(one, link) if history.name == load_case]
 
-    return _spread(moved, load_case, evaluated, inverse)
+    def inverses(one: CaseMotion) -> NDArray[np.float64]:
+        every = np.max([1.0 / factors_over_motion(one.case, link, h).value for h in histories(one)], axis=0)
+        return np.where(evaluated, every, 0.0)
 
-
-def _airs(moved: CaseMotion, load_case: str) -> tuple[CaseMotion, ...]:
-    """Motions at the ends of the range of C_N; none where it has no range."""
-    air, airs = moved.case.load_cases[load_case].flapping, air_range(moved)
-    return () if air is None or airs is None else airs.at(load_case)
-
-
-def _rubbed(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[CaseMotion]:
-    """Motions at the ends of what friction may be, but for those that lock themselves at a pose that counts."""
-    return [one for one in friction_range(moved) if np.isfinite(one.torque[load_case][evaluated]).all()]
+    found, loose = _spread(moved, load_case, evaluated, lambda one: float(inverses(one).max())), loose_motion(moved)
+    if loose is None:
+        return found
+    own = inverses(moved)
+    pressed = max(float(axial_compression(moved.case, link, h)[0][first_largest(own)]) for h in histories(moved))
+    return _column(loose, load_case, link, own, pressed).times(found)
 
 
 def _others(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[CaseMotion]:
-    return [moved, *_airs(moved, load_case), *_rubbed(moved, load_case, evaluated)]
+    return [moved, *(one for cause in causes_over(moved, load_case, evaluated) for one in cause.others)]
 
 
 def _spread(
@@ -163,21 +155,9 @@ def _spread(
 ) -> Scatter:
     """Return what the range of C_N and friction make of a number, each alone, times one another."""
     spread = Scatter()
-    for cause in _causes(moved, load_case, evaluated):
+    for cause in causes_over(moved, load_case, evaluated):
         spread = spread.times(cause.scatter(moved, number))
     return spread
-
-
-def _causes(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> Iterator[Alternatives[CaseMotion]]:
-    """Yield the causes that change what acts over a motion: the range of C_N, and friction."""
-    air, airs = moved.case.load_cases[load_case].flapping, _airs(moved, load_case)
-    if air is not None and airs:
-        coefficients = (air.normal_coefficient, *air.ends)
-        yield Alternatives(source=air_source(*air.ends), others=airs, coefficients=coefficients)
-    if moved.rubbing:
-        rubbed = tuple(_rubbed(moved, load_case, evaluated))
-        locks, source = len(rubbed) < len(friction_range(moved)), friction_source(friction_ranges(moved.case))
-        yield Alternatives(source=source, others=rubbed, endless=locks)
 
 
 def _size(moved: CaseMotion, load_case: str, link: str) -> NDArray[np.float64]:
@@ -225,26 +205,50 @@ def joint_growth(moved: CaseMotion, load_case: str, joint: str, evaluated: NDArr
 
 
 def _link(loose: LooseMotion, load_case: str, link: str, evaluated: NDArray[np.bool_]) -> Scatter:
-    moved, case = loose.moved, loose.moved.case
-    pins = case.linkage.joints_of(link)
-    size = _size(moved, load_case, link)
-    reach = size + sum(loose.slack(load_case, f"force {joint}") for joint in pins)
-    first, second = (first_largest(np.where(evaluated, of, -np.inf)) for of in (size, reach))
-    found = {pose: _at(loose, load_case, link, pose) for pose in (first, second)}
-    (plain, own), (other, far) = found[first], found[second]
+    """Return what play makes of the greatest stress of a link over a motion."""
+    moved, size = loose.moved, np.where(evaluated, _size(loose.moved, load_case, link), -np.inf)
+    first, second = first_largest(size), first_largest(size + _slack(loose, load_case, link))
+    found = {
+        pose: (_hand(moved, load_case, link, pose), _doubt(loose, load_case, link, pose).stress.get(link, Scatter()))
+        for pose in (first, second)
+    }
+    return _further(loose, found[first], found[second])
+
+
+def _column(loose: LooseMotion, load_case: str, link: str, inverse: NDArray[np.float64], pressed: float) -> Scatter:
+    """Return what play makes of the largest inverse (n,) of a link's buckling factor, there under ``pressed`` [N]."""
+    first = first_largest(inverse)
+    if not inverse[first] > 0.0:
+        return Scatter()
+    second = first_largest(inverse + _slack(loose, load_case, link) * inverse[first] / pressed)
+    found = {
+        pose: (float(inverse[pose]), _doubt(loose, load_case, link, pose).columns.get(link, Scatter()))
+        for pose in (first, second)
+    }
+    return _further(loose, found[first], found[second])
+
+
+def _slack(loose: LooseMotion, load_case: str, link: str) -> NDArray[np.float64]:
+    """How far the forces of a link's pins may be off in all, at every pose [N]."""
+    pins = loose.moved.case.linkage.joints_of(link)
+    return np.asarray(np.sum([loose.slack(load_case, f"force {joint}") for joint in pins], axis=0))
+
+
+def _further(loose: LooseMotion, one: tuple[float, Scatter], other: tuple[float, Scatter]) -> Scatter:
+    """Join what play makes of a number at the pose where it is largest and where it may be, over the largest."""
+    (plain, own), (second, far) = one, other
     if not plain > 0.0:
         return Scatter()
     sources = distinct(own.sources, far.sources) or (play_source(loose.clearances),)
-    return Scatter(low=own.low, high=max(own.high, far.high * other / plain), sources=sources)
+    return Scatter(low=own.low, high=max(own.high, far.high * second / plain), sources=sources)
 
 
-def _at(loose: LooseMotion, load_case: str, link: str, pose: int) -> tuple[float, Scatter]:
-    """Stress of a link by hand at a pose without play, and what play makes of it."""
+def _doubt(loose: LooseMotion, load_case: str, link: str, pose: int) -> Growths:
+    """What play makes of a link at a pose."""
     moved = loose.moved
     loads = [chosen(load, pose) for load in moved.loads[load_case]]
     forces = replace(forces_at(moved, load_case, pose), play=loose.play(load_case, pose))
-    doubt = play_doubt(moved.case, load_case, forces, loads, links=(link,)).stress.get(link, Scatter())
-    return _hand(moved, load_case, link, pose), doubt
+    return play_doubt(moved.case, load_case, forces, loads, links=(link,))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ the outcome states it.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -15,11 +15,11 @@ from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
-from alula.fea.common.scatter import compliance_scatter, load_scatter
+from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.frame.case_statics import locks_on_tight_pins
-from alula.fea.frame.displacement_band import point_bounds
+from alula.fea.frame.displacement_band import OneModulus, point_bounds
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from alula.fea.nonlinear.softened import displaced
@@ -116,6 +116,27 @@ class PointDisplacement:
             case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, forces=forces, why=why
         )
 
+    def _by(self, cause: Alternatives[LargeDisplacement]) -> Scatter:
+        """Return what a cause makes of the ends of the band: the point moves elsewhere, by other links' eyes."""
+        moved, found = self.moved, self.moved.displaced(cause, self.link, self.point)
+        framed = self.shares.framed is not None or self.shares.solids
+        frames = [(one.frame, one.solution) for one in cause.others]
+        known = [(frame, solution) for frame, solution in frames if frame is not None and solution is not None]
+        if framed or moved.followed or not known or moved.frame is None or moved.solution is None:
+            return found
+        bounds = partial(point_bounds, self.case, moved.frame, moved.solution, self.link, self.point)
+        own, every = bounds(), bounds(others=known)
+        return replace(
+            found,
+            low=min(found.low, every.low / own.low) if own.low > 0.0 else found.low,
+            high=max(found.high, every.high / own.high) if own.high > 0.0 else found.high,
+        )
+
+    @cached_property
+    def _by_causes(self) -> tuple[tuple[Alternatives[LargeDisplacement], Scatter], ...]:
+        """The causes that change what acts, each with what it makes of the band."""
+        return tuple((cause, self._by(cause)) for cause in self.moved.of_loads)
+
     @property
     def play(self) -> Play | None:
         """What the play of pins does; None where no joint has play."""
@@ -157,8 +178,7 @@ class PointDisplacement:
     @property
     def _endless(self) -> Alternatives[LargeDisplacement] | None:
         """The cause that leaves it without upper end; None where none does."""
-        found = ((cause, self.moved.displaced(cause, self.link, self.point)) for cause in self.moved.of_loads)
-        return next((cause for cause, spread in found if spread.high == math.inf), None)
+        return next((cause for cause, spread in self._by_causes if spread.high == math.inf), None)
 
     @property
     def _free_to_tilt(self) -> tuple[str, ...]:
@@ -259,19 +279,27 @@ class PointDisplacement:
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
         load = load_scatter(case, self.load_case)
-        for cause in moved.of_loads:
-            load = load.times(moved.displaced(cause, link, point))
+        for _, spread in self._by_causes:
+            load = load.times(spread)
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
+        softer = min((*ratios, 1.0)), max((*ratios, 1.0))
         if shares.framed is None:
-            found = self._shared(point_bounds(case, moved.frame, moved.solution, link, point, solids, shares.carried))
+            bounds = partial(point_bounds, case, moved.frame, moved.solution, link, point, solids, shares.carried)
+            found, either = self._shared(bounds()), self._shared(bounds(moduli=self._moduli(solids)))
         else:
             found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
-        slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
+            either = replace(found, low=found.low * softer[0], high=found.high * softer[1])
+        slack = softer[0] * load.low, softer[1] * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
         sources = distinct(shares.sources, found.sources, *moduli, load.sources)
         if moved.followed:
-            return self._followed(found, solids, slack, sources)
+            # What materials add may cancel: then the displacement changes by more than any modulus does.
+            beyond = (
+                min(either.low / (found.low * softer[0]), 1.0) if found.low > 0.0 else 1.0,
+                max(either.high / (found.high * softer[1]), 1.0) if found.high > 0.0 else 1.0,
+            )
+            return self._followed(found, solids, (slack[0] * beyond[0], slack[1] * beyond[1]), sources)
         # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
         near_by = self._near_by(self._framed(found, solids), slack[1])
         grown, least = growth(1.0 / near_by) if near_by > 0.0 else 1.0, 1.0
@@ -282,10 +310,20 @@ class PointDisplacement:
         grows = Source(kind=SourceKind.GROWTH, detail=reason("towards_buckling_or_dead_point"))
         return Band(
             value=value,
-            low=min(found.low * slack[0] * least, value),
-            high=max(found.high * slack[1] * grown, value),
+            low=min(either.low * load.low * least, value),
+            high=max(either.high * load.high * grown, value),
             sources=(*sources, grows),
         )
+
+    def _moduli(self, solids: Mapping[str, tuple[Band, ...]]) -> tuple[OneModulus, ...]:
+        """The links of every material whose modulus has a range, and what it makes of their flexibility."""
+        links: dict[tuple[float, float, float, str], list[str]] = {}
+        for link in dict.fromkeys((*self.case.bending_links, *solids)):
+            material = self.case.material_of(link)
+            if material.youngs_modulus_range is not None:
+                own = compliance_scatter(material)
+                links.setdefault((own.low, own.high, material.youngs_modulus, material.title), []).append(link)
+        return tuple(OneModulus(links=own, low=low, high=high) for (low, high, *_), own in links.items())
 
     def _near_by(self, framed: Band, slack: float) -> float:
         """Return one over the factor on its loads at which the linkage may give way, with links as soft as may be."""

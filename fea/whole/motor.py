@@ -4,7 +4,8 @@ A motor that turns evenly with a flywheel gives the mean of all power, for the f
 what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band. Play
 of pins moves both: each is taken with the drive torque at either end of what play makes of it, at all poses together.
 So does the air on wings that flap: each is taken at either end of the range of C_N, of which the mean is an affine and
-the peak a convex function. And so does friction, at either end of what it may be (``alula.fea.frame.rubbing``).
+the peak a convex function. And so does friction, at either end of what it may be (``alula.fea.frame.rubbing``). All of
+it is in proportion to the loads of a load case, so that their stated scatter multiplies both ends.
 """
 
 import math
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from alula.fea.common.alternatives import least_of_convex
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
+from alula.fea.common.scatter import load_scatter
 from alula.fea.common.source import Source, SourceKind, air_source, friction_source, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.whole.air_range import air_range
@@ -138,7 +140,7 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
 
 
 def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float, float]]) -> Band:
-    """Return what is calculated from the drive torque, with what play, air and friction may make of it."""
+    """Return what is calculated from the drive torque and in proportion to it, with all that leaves it open."""
     value, plain_low, plain_high, sources = _loosened(moved, title, of)
     low, high, least, most = plain_low, plain_high, plain_low, plain_high
     air, airs = moved.case.load_cases[title].flapping, air_range(moved)
@@ -157,8 +159,9 @@ def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float
         sources = (*sources, friction_source(friction_ranges(moved.case)))
     # Air and friction, each alone so far, at their worst together: what either takes adds up, what it makes multiplies.
     low = max(low + least - plain_low, 0.0)
-    high = high * most / plain_high if 0.0 < plain_high < math.inf else max(high, most)
-    return Band(value=value, low=low, high=high, sources=sources)
+    # The share first: where friction makes no more of it, it is 1 in spite of rounding.
+    high = high * (most / plain_high) if 0.0 < plain_high < math.inf else max(high, most)
+    return load_scatter(moved.case, title).on(Band(value=value, low=low, high=high, sources=sources))
 
 
 def _loosened(

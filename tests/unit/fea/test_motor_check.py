@@ -68,22 +68,22 @@ def test_what_a_motor_needs_in_a_range_of_air_has_the_outer_ends_of_all_airs(mon
     found = {1.0: (3.0, 6.0), 2.0: (2.0, 5.0), 3.0: (2.5, 7.0)}
     found = {c: (c, low, 9.0 if c == heaviest else high, ()) for c, (low, high) in found.items()}
     air = SimpleNamespace(normal_coefficient=2.0, ends=(1.0, 3.0))
+    load_case = SimpleNamespace(flapping=air, scatter=(0.5, 2.0))
     stated, least, largest = (
-        SimpleNamespace(c=c, rubbing={}, case=SimpleNamespace(load_cases={"flap": SimpleNamespace(flapping=air)}))
-        for c in (2.0, 1.0, 3.0)
+        SimpleNamespace(c=c, rubbing={}, case=SimpleNamespace(load_cases={"flap": load_case})) for c in (2.0, 1.0, 3.0)
     )
     monkeypatch.setattr(motor, "friction_range", lambda moved: ())
     monkeypatch.setattr(motor, "air_range", lambda moved: SimpleNamespace(at=lambda title: (least, largest)))
     monkeypatch.setattr(motor, "_loosened", lambda moved, title, of: found[moved.c])
     band = motor._band(stated, "flap", lambda torque: (0.0, 0.0, 0.0))
-    assert (band.value, band.low, band.high) == pytest.approx((2.0, 1.0, 9.0))
+    assert (band.value, band.low, band.high) == pytest.approx((2.0, 0.5 * 1.0, 2.0 * 9.0))
     # With air as stated less friction takes 0.5 of the least, and more makes 8 of the largest.
     found |= {4.0: (4.0, 1.5, 4.5, ()), 5.0: (5.0, 2.2, 8.0, ())}
     rubbed = [SimpleNamespace(c=c, torque={"flap": np.zeros(3)}) for c in (4.0, 5.0)]
     monkeypatch.setattr(motor, "friction_range", lambda moved: rubbed)
     both = motor._band(stated, "flap", lambda torque: (0.0, 0.0, 0.0))
     more = 8.0 / 5.0 if heaviest != 2.0 else 1.0
-    assert (both.value, both.low, both.high) == pytest.approx((2.0, 1.0 + 1.5 - 2.0, 9.0 * more))
+    assert (both.value, both.low, both.high) == pytest.approx((2.0, 0.5 * (1.0 + 1.5 - 2.0), 2.0 * 9.0 * more))
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
