@@ -130,7 +130,10 @@ class LinkLoads:
     @property
     def poses(self) -> int:
         """Number of poses, where there is an axis of them."""
-        return len(self.wrenches[0][1])
+        vectors = [wrench for _, wrench in self.wrenches] + [line.at_start for line in self.lines]
+        vectors += [np.atleast_1d(couple.torque) for couple in self.couples]
+        vectors += [] if self.inertia is None else [self.inertia.specific_force]
+        return max(map(len, vectors), default=1)
 
     @property
     def wrenches(self) -> tuple[tuple[Real, Real], ...]:
@@ -142,8 +145,8 @@ class LinkLoads:
 
         Parameters
         ----------
-        poses : int, slice, numbers or mask (n,)
-            Which poses; for a single number the result has no axis of poses.
+        poses : int, slice, numbers, mask (n,) or None
+            Which poses; for a single number the result has no axis of poses. None gives loads at a single pose an axis.
 
         Returns
         -------

@@ -12,7 +12,7 @@ from alula.fea.buckling.buckling import NO_COMPRESSION, ColumnFactors, link_fact
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.links.second_order import second_order_loads
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR
-from alula.fea.superposition.unit_loads import unit_forces
+from alula.fea.tractions.mass_force import amounts, unit_forces
 from alula.geometry.bodies.body import no_beam
 from alula.loads.case.case import Case
 from alula.loads.records.applied import LineLoad
@@ -144,8 +144,7 @@ def _axial_loads(case: Case, link: str, history: LinkLoads) -> tuple[list[tuple[
     if history.inertia is None:
         return points, lines
     own = history.inertia
-    amounts = (*own.specific_force[:, :2].T, own.angular_acceleration, own.angular_speed_squared)
-    for unit, times in zip(unit_forces(own.mass), amounts, strict=True):
+    for unit, times in zip(unit_forces(own.mass), amounts(own), strict=True):
         # A unit of each of what moves mass, spread over the beam as for one pose.
         acting = beam_loads(LinkLoads(name=history.name, inertia=unit), body, material.density)
         points += [(float(p.point[0]), p.wrench[0] * times) for p in acting.points]

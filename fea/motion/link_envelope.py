@@ -25,8 +25,8 @@ from alula.fea.refine.refinement import RefinedSolid
 from alula.fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
 from alula.fea.solid.stress import stress_field
 from alula.fea.superposition.peaks import Peaks, largest_stress
-from alula.fea.superposition.unit_loads import unit_loads
 from alula.fea.superposition.unit_solutions import UnitSolutions, solve_units
+from alula.fea.tractions.link_tractions import LinkTractions
 from alula.fea.tractions.traction import Transfer
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.base.ties import first_largest
@@ -83,7 +83,7 @@ def link_motion(
     CannotRunError
         For loads that do not balance, supports that react, or a failing solver.
     """
-    solved, curves = _solved(space, body, material, histories, evaluated, threads)
+    solved, curves = _solved(space, material, histories, evaluated, threads)
     return LinkMotion(
         link=link,
         body=body,
@@ -98,7 +98,6 @@ def link_motion(
 
 def _solved(
     space: DisplacementSpace,
-    body: Body,
     material: Material,
     histories: Sequence[LinkLoads],
     evaluated: NDArray[np.bool_],
@@ -106,7 +105,7 @@ def _solved(
 ) -> tuple[UnitSolutions, dict[str, list[VariantCurve]]]:
     """Return the solutions of the poses that count, and of every load case the curves of its variants."""
     chosen = [history.chosen(evaluated) for history in histories]
-    units = unit_loads(space, body, chosen, density=material.density)
+    units = LinkTractions.of(space, chosen, density=material.density)
     size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
     names: list[tuple[str, PressureLaw, Transfer | None]] = []
     columns, scales = [], []

@@ -18,11 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import LinkLoads, PinLoad
-from alula.fea.elements.quadrature import surface_quadrature
 from alula.fea.elements.space import DisplacementSpace
 from alula.fea.solid.bore_motion import condensed
-from alula.fea.tractions.load_vectors import LoadVectors
-from alula.fea.tractions.traction import pin_traction
+from alula.fea.tractions.link_tractions import SPREAD, LinkTractions
+from alula.fea.tractions.pin_pressure import PinPressure
 from alula.geometry.parts.part import Body
 from alula.loads.records.applied import shifted
 from alula.loads.records.bearing import NARROW, WIDE
@@ -163,17 +162,18 @@ def condense(
     places = {f"bore:{name}": point for name, point in points.items()}
     places |= {f"end:{end.name}": np.array([end.x, end.y, 0.0]) for end in body.ends}
     spread = {case.name: case for case in loads if case.lines or case.inertia is not None}
-    vectors = LoadVectors(space, density)
-    columns = [vectors.spread(case) for case in spread.values()]
+    poses = [case.chosen(None) for case in spread.values()]
+    tractions = LinkTractions.of(space, poses, density=density, kinds=SPREAD)
+    columns = [np.zeros((space.unknowns, 0)), *(tractions.exact(pose) for pose in poses)]
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     along = np.column_stack([np.cos(angles), np.sin(angles), np.zeros((DIRECTIONS, 4))])
     for pin in body.pins:
-        bore = surface_quadrature(space, f"bore:{pin.name}")
-        for law in (WIDE, NARROW):
-            for unit in along:
-                pushed = PinLoad(name=pin.name, centre=points[pin.name], diameter=pin.diameter, wrench=unit)
-                columns.append(bore.load_vector(pin_traction(bore, pushed, law), len(space.nodes)))
-    extra = np.array(columns).T if columns else np.zeros((space.unknowns, 0))
+        centre = np.tile(points[pin.name], (DIRECTIONS, 1))
+        around = PinLoad(name=pin.name, centre=centre, diameter=pin.diameter, wrench=along)
+        pushed = LinkLoads(name=pin.name, pins=(around,))
+        press = LinkTractions.of(space, [pushed], density=density, kinds=(PinPressure,))
+        columns += [press.exact(pushed, law) for law in (WIDE, NARROW)]
+    extra = np.hstack(columns)
     work, moved = condensed(space, places, extra, E=E, nu=nu, threads=threads)
     p, own = 6 * len(places), 6 * len(places) + len(spread)
     gives = {}

@@ -21,8 +21,8 @@ from alula.fea.elements.space import DisplacementSpace, displacement_space, uppe
 from alula.fea.elements.supports import LineReference, half_supports, isostatic_supports, rigid_motions
 from alula.fea.solvers.solve import Method, factorise
 from alula.fea.solvers.two_level import linear_level
-from alula.fea.tractions.load_vectors import LoadVectors, Variant
-from alula.fea.tractions.traction import Transfer
+from alula.fea.tractions.link_tractions import LinkTractions, Variant
+from alula.fea.tractions.traction import TRANSFERS, Transfer
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.records.bearing import NARROW, WIDE, PressureLaw, Span
@@ -147,7 +147,7 @@ def solve_solid(
     loads: Sequence[LinkLoads],
     line: tuple[str, str] | Mouth,
     laws: Sequence[PressureLaw] = (WIDE, NARROW),
-    transfers: Sequence[Transfer] = ("eye-faces", "bore-shear"),
+    transfers: Sequence[Transfer] = TRANSFERS,
     order: int = 2,
     method: Method | None = None,
     threads: int | None = None,
@@ -195,8 +195,9 @@ def solve_solid(
     """
     require_compressible(nu)
     space = displacement_space(mesh, order=order)
-    vectors = LoadVectors(space, density)
-    variants = [variant for case in loads for variant in vectors.variants(case, laws, transfers)]
+    poses = [case.chosen(None) for case in loads]
+    tractions = LinkTractions.of(space, poses, density=density)
+    variants = [variant for pose in poses for variant in tractions.variants(pose, laws, transfers)]
     F = np.array([variant.load for variant in variants]).T
     size = np.array([variant.scale for variant in variants])
     imbalance = _imbalance(space, F, size, variants)

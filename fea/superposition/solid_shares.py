@@ -28,7 +28,8 @@ from alula.fea.solid.stress import stress_field
 from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule
 from alula.fea.superposition.peaks import ModeMeasures, Peaks, largest_stress
 from alula.fea.superposition.unit_solutions import nodal_stress
-from alula.fea.tractions.load_vectors import LoadVectors
+from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.traction import TRANSFERS
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, Span
 
@@ -162,11 +163,11 @@ def _solved(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], threa
 
 def _loads(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates]) -> Iterator[tuple[int, Span, Real]]:
     """Yield number of the answer, span of the pressure and load vector, of all variants."""
-    vectors = LoadVectors(refined.solution.space, task.density)
-    for number, plates in enumerate(ways):
-        for plate in plates:
-            for variant in vectors.variants(plate, (WIDE, NARROW), ("eye-faces", "bore-shear")):
-                yield number, variant.span, variant.load
+    every = [(number, plate.chosen(None)) for number, plates in enumerate(ways) for plate in plates]
+    tractions = LinkTractions.of(refined.solution.space, [plate for _, plate in every], density=task.density)
+    for number, plate in every:
+        for variant in tractions.variants(plate, (WIDE, NARROW), TRANSFERS):
+            yield number, variant.span, variant.load
 
 
 def _displacements(task: LinkTask, refined: RefinedSolid, modes: _Modes) -> Real:

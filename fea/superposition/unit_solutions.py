@@ -20,7 +20,7 @@ from alula.fea.solid.solution import FreeSolution, solve_free
 from alula.fea.solid.stress import PAIRS, carry_to_nodes
 from alula.fea.solvers.solve import Method
 from alula.fea.superposition.peaks import ModeMeasures
-from alula.fea.superposition.unit_loads import UnitLoads
+from alula.fea.tractions.link_tractions import LinkTractions
 
 Real = NDArray[np.float64]
 
@@ -97,7 +97,7 @@ class UnitSolutions:
 
 
 def solve_units(
-    units: UnitLoads,
+    units: LinkTractions,
     coefficients: Real,
     scale: Real,
     *,
@@ -110,7 +110,7 @@ def solve_units(
 
     Parameters
     ----------
-    units : UnitLoads
+    units : LinkTractions
     coefficients : ndarray, shape (units, N)
         Of the unit loads.
     scale : ndarray, shape (N,)
@@ -175,7 +175,7 @@ def _stress(space: DisplacementSpace, free: FreeSolution, *, E: float, nu: float
     return half.nodes, stress
 
 
-def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Real]:
+def _modes(units: LinkTractions, coefficients: Real, scale: Real) -> tuple[Real, Real]:
     """Return modes (units, m), and what turns coefficients into their combinations (m, units)."""
     norm = np.sqrt(np.asarray(units.vectors.multiply(units.vectors).sum(axis=0)).ravel())
     norm[norm == 0.0] = 1.0

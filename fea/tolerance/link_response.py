@@ -1,6 +1,6 @@
 """What samples of loads do to one link on its nominal solid: peaks by unit solutions, as shares of the nominal ones.
 
-Loads are sums of unit loads (``alula.fea.superposition.unit_loads``), so stress and displacement of every sample are
+Loads are sums of unit loads (``alula.fea.tractions.link_tractions``), so stress and displacement of every sample are
 sums of a few modes. A pin's pressure follows from its direction by a spline through the modes' combinations at some
 directions. The peak is sought among nodes that come near to it in one of the pilots: some samples, among them corners,
 that are evaluated at all nodes.
@@ -8,7 +8,7 @@ that are evaluated at all nodes.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -22,10 +22,12 @@ from alula.fea.solid.layers import Layers
 from alula.fea.solid.solution import SolidSolution
 from alula.fea.solid.stress import extreme_principal
 from alula.fea.superposition.peaks import deviator
-from alula.fea.superposition.pin_units import PinUnits
-from alula.fea.superposition.unit_loads import UnitLoads, unit_loads
 from alula.fea.superposition.unit_solutions import UnitSolutions, solve_units
+from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.pin_pressure import PinPressure
+from alula.fea.tractions.torque import Torque
 from alula.fea.tractions.traction import Transfer
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import Body
 from alula.geometry.materials.material import Material
 from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
@@ -98,7 +100,7 @@ class LinkResponse:
     ----------
     body : Body
     material : Material
-    units : UnitLoads
+    units : LinkTractions
     solved : UnitSolutions
     variants : mapping of str to tuple of (PressureLaw, Transfer or None)
         Load case -> the variants of its nominal solution.
@@ -111,7 +113,7 @@ class LinkResponse:
 
     body: Body
     material: Material
-    units: UnitLoads
+    units: LinkTractions
     solved: UnitSolutions
     variants: Mapping[str, tuple[Variant, ...]]
     stated: Transfer
@@ -121,10 +123,6 @@ class LinkResponse:
     @cached_property
     def _splines(self) -> dict[tuple[str, float], Any]:
         return {}
-
-    @cached_property
-    def _others(self) -> UnitLoads:
-        return replace(self.units, pins={})
 
     @cached_property
     def _fields(self) -> dict[str, _Field]:
@@ -167,30 +165,30 @@ class LinkResponse:
         -------
         ndarray, shape (modes, n)
         """
-        projection = self.solved.projection
-        found = projection @ self._others.coefficients(loads, law, transfer)
-        for pin in loads.pins:
-            units = self.units.pins.get(pin.name)
-            if units is not None:
-                force = pin.wrench[:, :2]
-                size = np.hypot(force[:, 0], force[:, 1])
-                found += projection[:, units.force] @ force.T
+        found = np.zeros((len(self.solved.projection), loads.poses))
+        for load, numbers in zip(self.units.loads, self.units.numbers, strict=True):
+            projection = self.solved.projection[:, numbers]
+            if isinstance(load, PinPressure) and not load.tilts:
+                wrench = load.wrench(loads)
+                size = np.hypot(wrench[:, 0], wrench[:, 1])
+                found += projection[:, load.local :] @ load.tractions(wrench)
                 if size.any():
-                    found += size * self._pressed(pin.name, units, law, np.arctan2(force[:, 1], force[:, 0]))
-        return np.asarray(found)
+                    found += size * self._pressed(load, projection, law, np.arctan2(wrench[:, 1], wrench[:, 0]))
+            else:
+                found += projection @ load.coefficients(loads, law, transfer)
+        return found
 
-    def _pressed(self, name: str, units: PinUnits, law: PressureLaw, direction: Real) -> Real:
+    def _pressed(self, load: PinPressure, projection: Real, law: PressureLaw, direction: Real) -> Real:
         """Modes (m, n) of the pressure of unit forces, without the tractions that deliver them."""
         from scipy.interpolate import CubicSpline
 
-        if (name, law.span) not in self._splines:
-            first, last = self._range(name)
+        if (load.name, law.span) not in self._splines:
+            first, last = self._range(load.name)
             angles = np.linspace(first, last, max(8, math.ceil((last - first) / _STEP) + 1))
-            pressure, _ = units.coefficients(np.column_stack([np.cos(angles), np.sin(angles)]), law)
-            fields = self.solved.projection[:, units.cosine] @ pressure[: units.cosine.stop - units.cosine.start]
-            fields += self.solved.projection[:, units.sine] @ pressure[units.cosine.stop - units.cosine.start :]
-            self._splines[name, law.span] = first, CubicSpline(angles, fields, axis=1)
-        first, spline = self._splines[name, law.span]
+            forces = np.column_stack([np.cos(angles), np.sin(angles), np.zeros((len(angles), 4))])
+            fields = projection[:, : load.local] @ load.pressure(forces, law)
+            self._splines[load.name, law.span] = first, CubicSpline(angles, fields, axis=1)
+        first, spline = self._splines[load.name, law.span]
         return np.asarray(spline(first + np.remainder(direction - first, 2.0 * math.pi)))
 
     def _range(self, name: str) -> tuple[float, float]:
@@ -272,14 +270,24 @@ class LinkResponse:
         -------
         ndarray, shape (n,)
             [N mm]
+
+        Raises
+        ------
+        CannotRunError
+            For a virtual torque about a pin where no load turns the link.
         """
         law, transfer = self.variants[loads.name][0]
+        turned = [(pin.name, pin.torque) for pin in virtual.pins if not pin.slotted]
+        turned += [(couple.pin, couple.torque) for couple in virtual.couples]
+        known = {load.place for load in self.units.loads if isinstance(load, Torque)}
+        if any(np.any(torque) and name not in known for name, torque in turned):
+            raise CannotRunError(f"no load turns link '{virtual.link}' as the displacement wanted of it would take")
         mean = np.zeros((self.units.count, virtual.poses))
-        mean += self._others.coefficients(virtual, law, transfer)
-        for pin in virtual.pins:
-            units = self.units.pins.get(pin.name)
-            if units is not None:
-                mean[units.force] = pin.wrench[:, :2].T
+        for load, numbers in zip(self.units.loads, self.units.numbers, strict=True):
+            if isinstance(load, PinPressure):
+                mean[numbers.start + load.local : numbers.stop] = load.tractions(load.wrench(virtual))
+            else:
+                mean[numbers] = load.coefficients(virtual, law, transfer)
         return np.asarray(np.einsum("un,un->n", mean, self._compliance @ self.combination(loads, law, transfer)))
 
     @cached_property
@@ -317,7 +325,7 @@ def link_response(
     LinkResponse
     """
     space = solution.space
-    units = unit_loads(space, body, pilots, density=material.density)
+    units = LinkTractions.of(space, pilots, density=material.density)
     size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
     variants: dict[str, tuple[Variant, ...]] = {}
     columns, scales = [], []

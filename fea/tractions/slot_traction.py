@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import PinLoad
 from alula.fea.elements.quadrature import SurfaceQuadrature
-from alula.fea.tractions.traction import LARGEST_CORRECTION, bore_middle, wrench_density
+from alula.fea.tractions.bore_wall import LARGEST_CORRECTION, bore_middle
+from alula.fea.tractions.traction import wrench_density
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.records.applied import shifted
 from alula.loads.records.bearing import PressureLaw
@@ -82,28 +83,89 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
         For a wrench that a slot cannot take, or a flank meshed too coarsely.
     """
     middle = bore_middle(wall, pin.centre)
-    whole = shifted(pin.wrench, pin.centre - middle)
     length = law.patch(pin.diameter)
     rubbed = _rubbed(wall, pin, middle, length)
-    fx, fy, _, mx, my, mz = whole - wall.wrench(rubbed, middle) if np.any(rubbed) else whole
-    size = float(np.linalg.norm(pin.wrench[:3]) + np.linalg.norm(pin.wrench[3:]) / pin.diameter)
-    if max(abs(fx), abs(my) / pin.diameter, abs(mz) / pin.diameter) > LARGEST_CORRECTION * size:
-        raise CannotRunError(
-            f"the pin in the slot at {pin.name} would have to push along it with {fx:.4g} N or turn it with "
-            f"{my:.4g} N mm about y and {mz:.4g} N mm about z, which a pin free to slide and turn cannot do"
-        )
+    pushed_with = about_middle(wall, pin) - wall.wrench(rubbed, middle)
+    refuse_what_slides(pin, pushed_with[None])
+    fx, fy, _, mx, my, mz = pushed_with
     # From -1 to 1 over the pressure's length, and over the height of the wall.
     arm = (wall.x - middle) / np.array([length / 2.0, 1.0, np.abs(wall.x[..., 2] - middle[2]).max()])
 
     density = rubbed + wrench_density(wall, middle, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
     if fy == 0.0 and mx == 0.0:
         return density
-    half = float(np.ptp(wall.x[..., 2])) / 2.0
-    per_length = fy - 3.0 * mx / half * arm[..., 2:]
+    per_length = along_pin(wall, pushed_with, arm[..., 2:])
     sides = [flank_pressure(wall, middle, length, side) for side in (1.0, -1.0)]
     pushed = np.abs(per_length) * np.where(per_length > 0.0, *sides)
     even = float(np.abs(per_length).max()) * sides[0 if (fy or -mx) > 0.0 else 1]
     return density + _exact(wall, pin, middle, pushed, [even, arm[..., 2:] * even, arm[..., :1] * even], (fy, mx))
+
+
+def about_middle(wall: SurfaceQuadrature, pin: PinLoad) -> NDArray[np.float64]:
+    """Return the wrench of a pin about the middle of its slot's wall, at the place where it stands.
+
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    pin : PinLoad
+        At one or more poses.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+        [N, N mm]
+    """
+    place = pin.centre.reshape(-1, 3)[0]
+    return shifted(pin.wrench, place - bore_middle(wall, place))
+
+
+def along_pin(wall: SurfaceQuadrature, pushed: NDArray[np.float64], height: NDArray[np.float64]) -> Density:
+    """Return the force along y at heights of a slot's wall, over its mean: it varies linearly.
+
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    pushed : ndarray, shape (..., 6)
+        Wrenches of the pin about the middle [N, N mm].
+    height : ndarray
+        From -1 to 1, of a shape that goes with that of the wrenches.
+
+    Returns
+    -------
+    ndarray
+        [N]
+    """
+    half = float(np.ptp(wall.x[..., 2])) / 2.0
+    return np.asarray(pushed[..., 1] - 3.0 * pushed[..., 3] / half * height)
+
+
+def refuse_what_slides(pin: PinLoad, pushed: NDArray[np.float64]) -> None:
+    """Refuse what a pin that is free to slide along its slot and to turn in it cannot do.
+
+    Parameters
+    ----------
+    pin : PinLoad
+        At one or n poses.
+    pushed : ndarray, shape (n, 6)
+        Its wrenches without friction, about the middle of the wall [N, N mm].
+
+    Raises
+    ------
+    CannotRunError
+        For a push along the slot, or a moment about y or z.
+    """
+    every = pin.wrench.reshape(-1, 6)
+    size = np.linalg.norm(every[:, :3], axis=1) + np.linalg.norm(every[:, 3:], axis=1) / pin.diameter
+    taken = np.abs(pushed[:, [0, 4, 5]] / [1.0, pin.diameter, pin.diameter]).max(axis=1)
+    bad = np.flatnonzero(taken > LARGEST_CORRECTION * size)
+    if bad.size:
+        fx, _, _, _, my, mz = pushed[bad[0]]
+        raise CannotRunError(
+            f"the pin in the slot at {pin.name} would have to push along it with {fx:.4g} N or turn it with "
+            f"{my:.4g} N mm about y and {mz:.4g} N mm about z, which a pin free to slide and turn cannot do"
+        )
 
 
 def _rubbed(wall: SurfaceQuadrature, pin: PinLoad, middle: NDArray[np.float64], length: float) -> Density:

@@ -3,7 +3,6 @@
 Every function returns a density (k, q, 3) at the points of a quadrature: MPa on surfaces, N/mm³ in the volume.
 """
 
-import math
 from typing import Literal
 
 import numpy as np
@@ -11,28 +10,14 @@ from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import ALONG, PinLoad
 from alula.fea.elements.quadrature import Quadrature, SurfaceQuadrature
+from alula.fea.tractions.bore_wall import BoreWall
 from alula.geometry.base.errors import CannotRunError
-from alula.geometry.bodies.features import OFF_PLANE
-from alula.loads.records.applied import BodyForce, LineLoad, shifted
+from alula.loads.records.applied import BodyForce, LineLoad
 from alula.loads.records.bearing import PressureLaw
 
 Transfer = Literal["eye-faces", "bore-shear"]
+TRANSFERS: tuple[Transfer, ...] = ("eye-faces", "bore-shear")
 Density = NDArray[np.float64]
-
-LARGEST_CORRECTION = 0.1
-"""A meshed surface may miss the wrench by this part of the load before its mesh is refused."""
-_NOTHING, _CORRECTIONS = 1e-13, 60
-"""Share of a wrench that counts for nothing, and the most corrections to reach it."""
-_PRESSED = {
-    True: np.array([1.0, 1.0, 0.0, 1.0, 1.0, 0.0]),
-    False: np.array([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
-}
-"""Components of the wrench that the pressure itself delivers, with a moment and without."""
-
-
-OPENING = math.radians(15.0)
-"""Angle on both sides of a pressure's peak within which a hole must have some wall: half of what the key of a bore of
-5 to 50 mm takes of its circle at most (DIN 6885: its width is a third of the diameter or less, mostly a quarter)."""
 
 
 def wrench_density(
@@ -82,16 +67,8 @@ def wrench_density(
 def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
     """Return the pressure of a pin that delivers Fx, Fy, Mx and My of its wrench, and nothing else.
 
-    Force and moment are one pressure p0(z) law(θ − α(z)) n, whose resultant per length varies linearly along the pin,
-
-        q(z) = F/L + D z/I,    D = ∫ z q dz = (My, −Mx),
-
-    with the wall's length L and its second moment I about its middle. So it stands on one side of the hole while a
-    moment in the plane of the force is at most F L/6, and beyond that on both. q is corrected until the meshed
-    hole, whose facets turn and shorten the resultant, and whose wall may be longer on one side, has the wrench.
-    What then remains (a moment of unsymmetric facets) is removed by a traction of the rigid-body fields. In a hole
-    whose middle lies off the link's plane of forces, heights count from its middle, and the force's moment about
-    that middle is added to the pin's.
+    What the meshed hole leaves of its wrench (a moment of unsymmetric facets; ``BoreWall``) is removed by a traction of
+    the rigid-body fields.
 
     Parameters
     ----------
@@ -112,63 +89,21 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     CannotRunError
         If the surface is not that hole, meshed too coarsely, or open where the pin pushes.
     """
-    middle = bore_middle(bore, pin.centre)
-    arm = bore.x - middle
-    radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
-    if not 0.9 < 2.0 * radius / pin.diameter < 1.1:
-        raise CannotRunError(
-            f"the hole at pin {pin.name} measures {2.0 * radius:.4g} mm on the mesh, not {pin.diameter:.4g} mm"
-        )
-    angle, height = np.arctan2(arm[..., 1], arm[..., 0]), arm[..., 2]
-    pushes = np.array([pin.wrench[0], pin.wrench[1], 0.0, pin.wrench[3], pin.wrench[4], 0.0])
-    target = shifted(pushes, pin.centre - middle)
+    wall = BoreWall.of(bore, pin)
+    target = wall.pushes(pin.wrench[None])
     if not target.any():
         return np.zeros_like(bore.x)
-    size = _gap(target, pin.diameter)
-    tilts = float(np.hypot(*target[3:5])) > _NOTHING * size * pin.diameter
-    around = 2.0 * math.pi * radius
-    length, second = float(bore.w.sum()) / around, float((bore.w * height**2).sum()) / around
     unit = law.peak(force=1.0, diameter=pin.diameter, thickness=1.0)
-    push, slope = np.zeros(2), np.zeros(2)
-    missing, last = target, math.inf
-    for _ in range(_CORRECTIONS):
-        push = push + missing[:2] / length
-        slope = slope + (np.array([missing[4], -missing[3]]) / second if tilts else 0.0)
-        per_length = push + height[..., None] * slope
-        size_here = np.hypot(per_length[..., 0], per_length[..., 1])
-        aimed = np.arctan2(per_length[..., 1], per_length[..., 0])
-        density = -(unit * size_here * law.shape(angle - aimed))[..., None] * bore.normals
-        missing = target - bore.wrench(density, middle)
-        left = _gap(missing * _PRESSED[tilts], pin.diameter)
-        if left <= _NOTHING * size or left >= last:
-            break
-        last = left
-    ends = np.array([-0.5, 0.5]) * float(np.ptp(height)) if tilts else np.zeros(1)
-    pushed = push + ends[:, None] * slope
-    bare = first_opening(angle, np.arctan2(pushed[:, 1], pushed[:, 0]))
-    if bare is not None:
-        raise CannotRunError(into_opening(pin.name, bare))
-    _limit(missing, target, pin.diameter, f"the hole at pin {pin.name}")
-    return np.asarray(density + wrench_density(bore, middle, missing))
 
+    def pressure(push: Density, slope: Density) -> Density:
+        along = push[0] + wall.height[..., None] * slope[0]
+        turned = law.shape(wall.angle - np.arctan2(along[..., 1], along[..., 0]))
+        return np.asarray(-(unit * np.hypot(along[..., 0], along[..., 1]) * turned)[..., None] * bore.normals)
 
-def bore_middle(bore: SurfaceQuadrature, centre: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the point of a hole's axis at the middle of its wall.
-
-    Parameters
-    ----------
-    bore : SurfaceQuadrature
-        The hole on the mesh.
-    centre : ndarray, shape (3,)
-        Of the pin, in the plane of the link's forces [mm].
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        The middle; ``centre`` itself where it differs by rounding or by uneven elements alone [mm].
-    """
-    height, reach = float(bore.centroid[2] - centre[2]), float(np.ptp(bore.x[..., 2]))
-    return np.asarray(centre + np.array([0.0, 0.0, height if abs(height) > OFF_PLANE * reach else 0.0]))
+    density = pressure(
+        *wall.per_length(pin.wrench[None], lambda *along: bore.wrench(pressure(*along), wall.middle)[None])
+    )
+    return np.asarray(density + wrench_density(bore, wall.middle, target[0] - bore.wrench(density, wall.middle)))
 
 
 def thrust_traction(face: SurfaceQuadrature, pin: PinLoad) -> Density:
@@ -290,61 +225,3 @@ def line_density_between(volume: Quadrature, load: LineLoad) -> tuple[NDArray[np
     origin = np.zeros(3)
     missing = load.about_origin(ALONG) - part.wrench(density, origin)
     return own, np.asarray(density + wrench_density(part, origin, missing, weight))
-
-
-def first_opening(wall: NDArray[np.float64], directions: NDArray[np.float64]) -> float | None:
-    """Return the first direction within ``OPENING`` of which a hole has no wall.
-
-    Parameters
-    ----------
-    wall : ndarray
-        Angles at which there is some [rad].
-    directions : ndarray, shape (n,)
-        Angles [rad].
-
-    Returns
-    -------
-    float or None
-        None where all have a wall.
-    """
-    known, wanted = np.sort(np.ravel(wall) % (2.0 * math.pi)), directions % (2.0 * math.pi)
-    around = np.concatenate([known[-1:] - 2.0 * math.pi, known, known[:1] + 2.0 * math.pi])
-    after = np.searchsorted(around, wanted).clip(1, len(around) - 1)
-    nearest = np.minimum(wanted - around[after - 1], around[after] - wanted)
-    bare = np.flatnonzero(nearest > OPENING)
-    return float(directions[bare[0]]) if bare.size else None
-
-
-def into_opening(pin: str, direction: float) -> str:
-    """Say that a pin pushes into the opening of its bore.
-
-    Parameters
-    ----------
-    pin : str
-        Its name.
-    direction : float
-        Angle of the pressure's peak in the link's frame [rad].
-
-    Returns
-    -------
-    str
-        For a message.
-    """
-    at = round(math.degrees(direction)) % 360
-    return (
-        f"the pin at {pin} pushes at {at} degrees into the opening of its bore, where "
-        "no wall bears it; turn the part in its link, or close the bore in the CAD program"
-    )
-
-
-def _limit(missing: NDArray[np.float64], target: NDArray[np.float64], diameter: float, what: str) -> None:
-    size, gap = _gap(target, diameter), _gap(missing, diameter)
-    if gap > LARGEST_CORRECTION * size:
-        raise CannotRunError(
-            f"{what} is meshed too unevenly: its pressure misses the load by {gap / size:.1%}; refine it"
-        )
-
-
-def _gap(wrench: NDArray[np.float64], diameter: float) -> float:
-    """Size of a wrench as a force [N]."""
-    return float(np.linalg.norm(wrench[:3]) + np.linalg.norm(wrench[3:]) / diameter)

@@ -15,8 +15,10 @@ from alula.fea.solid.layers import Layers
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
 from alula.fea.superposition.peaks import largest_stress
-from alula.fea.superposition.unit_loads import TRANSFERS, unit_loads
 from alula.fea.superposition.unit_solutions import solve_units
+from alula.fea.tractions import pin_pressure
+from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.traction import TRANSFERS
 from alula.geometry.materials.material import Fatigue, library
 from alula.geometry.meshing.mirror import mirrored
 from alula.loads.records.bearing import NARROW, WIDE
@@ -41,7 +43,7 @@ def space(mesh):
 @pytest.fixture(scope="module")
 def solved(space):
     loads = history(space)
-    units = unit_loads(space, BODY, [loads], density=RHO)
+    units = LinkTractions.of(space, [loads], density=RHO)
     columns = np.hstack([units.coefficients(loads, law, transfer) for law, transfer in VARIANTS])
     scale = np.tile(loads.size(30.0), len(VARIANTS))
     return solve_units(units, columns, scale, E=E, nu=NU, threads=1)
@@ -68,7 +70,7 @@ def test_the_upper_half_of_a_body_tells_all_its_stress():
     for mesh in (mirror, replace(mirror, mirror=None)):
         space = displacement_space(mesh)
         loads = history(space)
-        units = unit_loads(space, BODY, [loads], density=RHO)
+        units = LinkTractions.of(space, [loads], density=RHO)
         found.append(
             solve_units(units, units.coefficients(loads, NARROW, TRANSFERS[0]), loads.size(30.0), E=E, nu=NU, threads=1)
         )
@@ -85,7 +87,7 @@ def test_supports_do_not_react_although_single_unit_loads_do_not_balance(solved)
     assert solved.reaction.max() < 1e-6
 
 
-def test_peaks_converge_to_the_direct_ones_with_the_order(mesh, space):
+def test_peaks_converge_to_the_direct_ones_with_the_order(mesh, space, monkeypatch):
     """What is left out are high orders of the pressure: more of them, less difference."""
     loads = history(space)
     direct = solve_solid(
@@ -95,7 +97,8 @@ def test_peaks_converge_to_the_direct_ones_with_the_order(mesh, space):
     exact = stress_field(space, direct.cases[0].displacement, E=E, nu=NU)
     missed = []
     for highest in (4, 8, 16):
-        units = unit_loads(space, BODY, [loads], density=RHO, highest=highest)
+        monkeypatch.setattr(pin_pressure, "HIGHEST_ORDER", highest)
+        units = LinkTractions.of(space, [loads], density=RHO)
         found = solve_units(
             units, units.coefficients(loads, NARROW, "eye-faces"), loads.size(30.0), E=E, nu=NU, threads=1
         )
@@ -109,7 +112,7 @@ def test_two_forces_of_one_line_need_few_solutions(space):
     size = np.linspace(-1.0, 2.0, POSES)
     along = np.column_stack([size, np.zeros(POSES), np.zeros(POSES)])
     loads = history(space, pins={"A": -along, "B": along}, couples={}, ends={}, lines=(), mass=None)
-    units = unit_loads(space, BODY, [loads], density=RHO)
+    units = LinkTractions.of(space, [loads], density=RHO)
     found = solve_units(units, units.coefficients(loads, WIDE, None), loads.size(30.0), E=E, nu=NU, threads=1)
     assert found.combination.shape[0] == 3  # the force, and the pressure of a pull and of a push
 

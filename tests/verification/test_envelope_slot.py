@@ -10,8 +10,9 @@ from alula.fea.motion.link_envelope import link_motion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
-from alula.fea.superposition.unit_loads import unit_loads
 from alula.fea.superposition.unit_solutions import solve_units
+from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.slot_pressure import SlotPressure
 from alula.geometry.base.errors import CaseError
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.loads.case.case_file import read_case
@@ -72,7 +73,7 @@ def test_stress_at_every_place_of_the_pin_equals_a_direct_solution() -> None:
     assert np.array_equal(slot.wrench[:, 0], slot.friction)
     mesh = mesh_body(case.body(LINK), MeshSettings(halves=False).scaled(2.0))  # node by node, so that both are whole
     material, space = case.material_of(LINK), displacement_space(mesh)
-    units = unit_loads(space, case.body(LINK), [history], density=material.density)
+    units = LinkTractions.of(space, [history], density=material.density)
     columns = np.hstack([units.coefficients(history, law, None) for law in LAWS])
     solved = solve_units(
         units, columns, np.tile(history.size(14.0), 2),
@@ -80,7 +81,7 @@ def test_stress_at_every_place_of_the_pin_equals_a_direct_solution() -> None:
     )  # fmt: skip
     assert solved.imbalance.max() < 1e-9
     assert solved.reaction.max() < 1e-6
-    places = units.slots["slot"].places[NARROW.span]
+    [places] = [load.places[NARROW] for load in units.loads if isinstance(load, SlotPressure)]
     for pose in (4, 12, 33):
         gap = np.abs(places - history.pins[0].centre[pose, 0]).min()
         assert gap > 1e-4  # between the places of the unit loads, not at one of them

@@ -18,7 +18,8 @@ from alula.fea.outcomes.limits import layers_of
 from alula.fea.solid.layers import Layers
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
-from alula.fea.tractions.traction import bore_middle, pin_traction
+from alula.fea.tractions.bore_wall import bore_middle
+from alula.fea.tractions.traction import pin_traction
 from alula.geometry.meshing.mesh import COARSE, MeshSettings, export_step, mesh_body
 from alula.loads.case.case_file import read_case
 from alula.loads.records.bearing import WIDE

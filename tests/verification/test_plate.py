@@ -10,7 +10,7 @@ from mesh_measures import volumes_and_moments
 
 from alula.fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from alula.fea.elements.space import displacement_space
-from alula.fea.tractions.load_vectors import LoadVectors
+from alula.fea.tractions.link_tractions import LinkTractions
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import Body
 from alula.geometry.bodies.body_rules import check_body
@@ -276,7 +276,8 @@ def test_a_load_enters_a_plate_within_a_circle_on_both_faces():
         ends=(EndLoad(name="W", point=np.array([20.0, -15.0, 0.0]), wrench=np.array([0.0, -6.0, 0.0, 0.0, 0.0, 0.0])),),
     )
     space = displacement_space(mesh)
-    (variant,) = LoadVectors(space, 0.0).variants(load, (WIDE,), ())
+    pose = load.chosen(None)
+    (variant,) = LinkTractions.of(space, [pose], density=0.0).variants(pose, (WIDE,), ())
     force = variant.load.reshape(-1, 3)
     loaded = np.unique(space.faces("end:W"))
     assert force[loaded].sum(axis=0) == pytest.approx([0.0, -6.0, 0.0], abs=1e-9)

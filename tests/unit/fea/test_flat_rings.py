@@ -1,14 +1,12 @@
 """A hole without a flat ring about it has no named flat faces: thrust and torque enter through its bore."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from alula.fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
 from alula.fea.elements.space import displacement_space
-from alula.fea.superposition.unit_loads import TRANSFERS, unit_loads
-from alula.fea.tractions.load_vectors import LoadVectors
+from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.traction import TRANSFERS
 from alula.geometry.meshing.mesh import mesh_body
 from alula.geometry.meshing.mesh_settings import COARSE
 from alula.geometry.parts.part import Bar, Body, Pin, Ring
@@ -43,12 +41,17 @@ def loads(driven):
     return LinkLoads(name="driven", pins=tuple(pins), couples=(DriveCouple(pin=driven, torque=TORQUE),))
 
 
+def variants(space, driven):
+    pose = loads(driven).chosen(None)
+    return list(LinkTractions.of(space, [pose], density=0.0).variants(pose, (WIDE,), TRANSFERS))
+
+
 def test_only_the_pin_with_a_ring_has_flat_faces(space):
     assert set(space.surfaces) == {"bore:A", "bore:B", "top:B", "bottom:B"}
 
 
 def test_thrust_and_torque_enter_the_bore_without_a_moment_of_their_own(space):
-    (variant,) = LoadVectors(space, 0.0).variants(loads("A"), (WIDE,), TRANSFERS)
+    (variant,) = variants(space, "A")
     assert variant.transfer is None
     force = variant.load.reshape(-1, 3)
     bore = np.unique(space.faces("bore:A"))
@@ -59,16 +62,13 @@ def test_thrust_and_torque_enter_the_bore_without_a_moment_of_their_own(space):
 
 
 def test_a_torque_where_there_is_a_ring_has_both_variants(space):
-    variants = LoadVectors(space, 0.0).variants(loads("B"), (WIDE,), TRANSFERS)
-    assert [variant.transfer for variant in variants] == list(TRANSFERS)
+    assert [variant.transfer for variant in variants(space, "B")] == list(TRANSFERS)
 
 
 @pytest.mark.parametrize(("driven", "transfers"), [("A", (None,)), ("B", TRANSFERS)])
-def test_the_unit_loads_of_a_motion_do_alike(space, body, driven, transfers):
-    pins = tuple(replace(pin, wrench=pin.wrench[None] * [1, 1, 0, 1, 0, 1], centre=pin.centre[None])
-                 for pin in loads(driven).pins)  # fmt: skip
-    history = LinkLoads(name="h", pins=pins, couples=(DriveCouple(pin=driven, torque=np.array([TORQUE])),))
-    units = unit_loads(space, body, [history], density=0.0)
+def test_the_unit_loads_of_a_motion_do_alike(space, driven, transfers):
+    history = loads(driven).chosen(None)
+    units = LinkTractions.of(space, [history], density=0.0)
     assert units.transfers(history) == transfers
     resultants = [units.wrenches @ units.coefficients(history, WIDE, transfer) for transfer in transfers]
     assert np.abs(resultants).max() < 1e-9

@@ -8,7 +8,7 @@ import pytest
 from alula.fea.common.link_loads import PinLoad
 from alula.fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
 from alula.fea.elements.space import displacement_space
-from alula.fea.superposition.slot_units import lagrange_weights, places_for
+from alula.fea.tractions.slot_pressure import lagrange_weights, places_for
 from alula.fea.tractions.slot_traction import DEGREE, slot_traction
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.meshing.mesh import COARSE, mesh_body
@@ -113,10 +113,10 @@ def test_weights_of_places_reproduce_cubics() -> None:
 
 
 def test_places_span_the_travel_and_are_bounded() -> None:
-    places = places_for(SLOT, NARROW, 4.5, 7.5)
+    places = places_for(pin(), NARROW, 4.5, 7.5)
     assert (places[0], places[-1]) == (4.5, 7.5)
     assert np.diff(places).max() <= NARROW.patch(2.0) / 8.0 + 1e-12
-    still = places_for(SLOT, WIDE, 5.0, 5.0)
+    still = places_for(pin(), WIDE, 5.0, 5.0)
     assert still[0] < 5.0 < still[-1]
     with pytest.raises(CannotRunError, match=r"pin at S travels 60 mm in its slot, 30 of its diameters.*alula check"):
-        places_for(SLOT, NARROW, 0.0, 60.0)
+        places_for(pin(), NARROW, 0.0, 60.0)

@@ -9,11 +9,10 @@ from alula.fea.common.link_loads import PinLoad
 from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
 from alula.fea.elements.space import displacement_space
 from alula.fea.elements.supports import rigid_motions
+from alula.fea.tractions.bore_wall import OPENING, first_opening
 from alula.fea.tractions.traction import (
-    OPENING,
     body_density,
     couple_traction,
-    first_opening,
     line_density,
     pin_traction,
     thrust_traction,

@@ -4,16 +4,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
-from turning_load import BODY, POSES, RHO, L, history
+from turning_load import POSES, RHO, L, history
 
 from alula.fea.common.link_loads import PinLoad
 from alula.fea.elements.quadrature import surface_quadrature
 from alula.fea.elements.space import displacement_space
 from alula.fea.elements.supports import rigid_motions
-from alula.fea.superposition.pin_units import fourier_coefficients
-from alula.fea.superposition.unit_loads import TRANSFERS, unit_loads
-from alula.fea.tractions.load_vectors import LoadVectors
-from alula.fea.tractions.traction import couple_traction, pin_traction
+from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.mass_force import MassForce
+from alula.fea.tractions.pin_pressure import HIGHEST_ORDER, PinPressure, fourier_coefficients
+from alula.fea.tractions.traction import TRANSFERS, couple_traction, pin_traction
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.records.applied import PartMass, shifted
 from alula.loads.records.bearing import NARROW, WIDE
@@ -28,7 +28,17 @@ def space():
 
 @pytest.fixture(scope="module")
 def units(space):
-    return unit_loads(space, BODY, [history(space)], density=RHO)
+    return LinkTractions.of(space, [history(space)], density=RHO)
+
+
+def one(units, kind, name=None):
+    """Numbers of the fields of the one load of a kind, of a name."""
+    [found] = [
+        numbers
+        for load, numbers in zip(units.loads, units.numbers, strict=True)
+        if isinstance(load, kind) and name in (None, getattr(load, "name", None))
+    ]
+    return found
 
 
 @pytest.mark.parametrize("law", [WIDE, NARROW])
@@ -60,7 +70,7 @@ def test_every_pose_balances_on_the_meshed_hole(space, units, law, transfer):
 
 def test_pressure_fields_have_no_resultant_and_tractions_deliver_the_force(units):
     assert np.abs(units.wrenches[:, units.local]).max() < 1e-12
-    delivered = units.wrenches[:, units.pins["B"].force]
+    delivered = units.wrenches[:, one(units, PinPressure, "B")][:, -2:]
     assert delivered[:, 0] == pytest.approx([1, 0, 0, 0, 0, 0], abs=1e-12)
     assert delivered[:, 1] == pytest.approx([0, 1, 0, 0, 0, L], abs=1e-11)
 
@@ -85,10 +95,11 @@ def test_a_couple_beside_the_force_is_one_pressure_with_it(space, law, least):
     wrenches[:, 0], wrenches[:, 1] = [3.0, 3.0, 0.0, -1.0], [0.0, 1.0, 2.0, 0.0]
     wrenches[:, 3], wrenches[:, 4] = [0.0, 2.0, -9.0, 1.5], [0.5, 1.0, 0.0, 0.0]
     plain = history(space)
-    pins = tuple(replace(pin, wrench=wrenches if pin.name == "B" else np.zeros((4, 6))) for pin in plain.pins)
+    given = {"A": np.zeros((4, 6)), "B": wrenches}
+    pins = tuple(replace(pin, centre=pin.centre[:4], wrench=given[pin.name]) for pin in plain.pins)
     loads = replace(plain, pins=pins, couples=(), ends=(), lines=(), inertia=None)
-    made = unit_loads(space, BODY, [loads], density=RHO)
-    assert list(made.couple_pins) == ["B"]
+    made = LinkTractions.of(space, [loads], density=RHO)
+    assert [load.name for load in made.loads] == ["B"]
     coefficients = made.coefficients(loads, law, None)
     found = made.vectors @ coefficients
     assert np.abs(made.wrenches[:, made.local]).max() < 1e-12
@@ -105,25 +116,23 @@ def test_friction_is_shear_in_the_bore_however_the_drive_torque_enters(space):
     pin = loads.pins[1]
     turned = pin.wrench + np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.3])
     rubbed = replace(loads, pins=(loads.pins[0], replace(pin, wrench=turned, friction=np.full(POSES, 0.3))))
-    made, bore = unit_loads(space, BODY, [rubbed], density=RHO), surface_quadrature(space, "bore:B")
+    made, bore = LinkTractions.of(space, [rubbed], density=RHO), surface_quadrature(space, "bore:B")
     expected = bore.load_vector(couple_traction(bore, np.array([L, 0.0, 0.0]), 0.3), len(space.nodes))
     for transfer in TRANSFERS:
         more = made.coefficients(rubbed, WIDE, transfer) - made.coefficients(loads, WIDE, transfer)
         for column in (made.vectors @ more).T:
             assert column == pytest.approx(expected, abs=1e-12)
-    vectors = LoadVectors(space, RHO)
-    for with_it, without in zip(
-        *(vectors.variants(one.chosen(3), [WIDE], TRANSFERS) for one in (rubbed, loads)), strict=True
-    ):
+    poses = [one.chosen([3]) for one in (rubbed, loads)]
+    for with_it, without in zip(*(made.variants(pose, [WIDE], TRANSFERS) for pose in poses), strict=True):
         assert with_it.load - without.load == pytest.approx(expected, abs=1e-12)
 
 
 def test_inertia_carries_the_stated_mass(space):
     mass = PartMass(mass=3e-6, centroid=np.array([11.0, 0.3]), inertia=4e-4)
-    made = unit_loads(space, BODY, [history(space, mass=mass)], density=RHO)
+    made = LinkTractions.of(space, [history(space, mass=mass)], density=RHO)
     about = mass.inertia + mass.mass * (11.0**2 + 0.3**2)
     expected = 3e-6 * np.array([[1, 0, -0.3], [0, 1, 11.0], [0.3, -11.0, -about / 3e-6], [11.0, 0.3, 0.0]]).T
-    assert made.wrenches[[0, 1, 5]][:, made.inertia] == pytest.approx(expected, rel=1e-9, abs=1e-15)
+    assert made.wrenches[[0, 1, 5]][:, one(made, MassForce)] == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
 
 def test_wrenches_are_those_of_the_vectors(space, units):
@@ -134,18 +143,20 @@ def test_wrenches_are_those_of_the_vectors(space, units):
 def test_only_what_acts_has_a_unit_load(space):
     at_b = history(space).pins[1].wrench[:, [0, 1, 5]]
     loads = history(space, pins={"A": 0.0 * at_b, "B": at_b}, couples={}, ends={}, lines=(), mass=None)
-    made = unit_loads(space, BODY, [loads], density=RHO, highest=8)
-    assert list(made.pins) == ["B"]
-    assert (made.count, made.inertia, made.couples, made.ends, made.lines) == (2 * 8 + 1 + 2, None, {}, {}, {})
+    [pressure] = LinkTractions.of(space, [loads], density=RHO).loads
+    assert (pressure.name, pressure.fields.shape[1]) == ("B", 2 * HIGHEST_ORDER + 1 + 2)
 
 
 def test_hole_of_another_size_is_refused(space):
-    pins = (replace(BODY.pins[0], diameter=2.5), BODY.pins[1])
+    loads = history(space)
+    loads = replace(loads, pins=(replace(loads.pins[0], diameter=2.5), loads.pins[1]))
     with pytest.raises(CannotRunError, match=r"measures 1\.\d+ mm on the mesh, not 2\.5 mm"):
-        unit_loads(space, replace(BODY, pins=pins), [history(space)], density=RHO)
+        LinkTractions.of(space, [loads], density=RHO)
 
 
 def test_a_hole_that_misses_its_load_is_refused(units):
-    uneven = replace(units.pins["B"], wrench=units.pins["B"].wrench + np.array([0, 0, 0.5, 0, 0, 0])[:, None])
+    [wall] = [load.wall for load in units.loads if isinstance(load, PinPressure) and load.name == "B"]
+    uneven = replace(wall, bore=replace(wall.bore, normals=wall.bore.normals + np.array([0.0, 0.0, 0.3])))
+    pressure = PinPressure(surfaces=units.loads[0].surfaces, wall=uneven, tilts=False, order=16)
     with pytest.raises(CannotRunError, match="meshed too unevenly"):
-        uneven.coefficients(np.array([[1.0, 0.0]]), WIDE)
+        pressure.pressure(np.eye(6)[:1], WIDE)
