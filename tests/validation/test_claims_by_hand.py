@@ -429,14 +429,14 @@ def test_the_ornithopter(findings):
         *((f"film.vertical-acceleration-{i}", 6156) for i in (1, 2)),
     ):
         radius = abs(float(bird[name].claim.published.split()[0])) / math.radians(rate)
-        assert f"a point {radius:.1f} mm from a wing's pivot" in bird[name].note
+        assert f"a point {radius:.1f} mm from a wing's pivot" in note_of(bird[name])
         assert bird[name].finding is MISSING
     assert float(bird["film.angular-speed"].ours.split()[0]) == pytest.approx(20 * speed, rel=1e-4)
     bends = [(wing(t + step) - 2 * wing(t) + wing(t - step)) / step**2 for t in times]
     for name, least in (("film.acceleration", -min(bends)), ("film.deceleration", -max(bends))):
         assert float(bird[name].ours.split()[0]) == pytest.approx(400 * least, rel=1e-3)
         rpm = 150 * math.sqrt(float(bird[name].claim.published.split()[0]) / least)
-        assert f"at {rpm:.0f} rpm" in bird[name].note
+        assert f"at {rpm:.0f} rpm" in note_of(bird[name])
         assert 145 <= round(rpm) <= 170
     # All of the mass at the greatest printed size cannot turn with the printed momentum.
     for name, rate in (("motion.angular-momentum", 401), ("film.angular-momentum", 444)):
@@ -445,7 +445,7 @@ def test_the_ornithopter(findings):
         assert bird[name].finding is NOT_HOLD
     for name in ("motion.speed", "film.flap", "film.cycle"):
         assert bird[name].finding is MISSING
-    assert float(bird["mobility"].note.split(" it is ")[1].split(",")[0]) == 3 * 4 - 2 * 4 - 2 * 3
+    assert float(note_of(bird["mobility"]).split(" it is ")[1].split(",")[0]) == 3 * 4 - 2 * 4 - 2 * 3
 
 
 def test_the_synthesised_four_bar(findings):
@@ -481,7 +481,7 @@ def test_the_synthesised_four_bar(findings):
             pivot = (d + c * math.cos(math.radians(psi)), c * math.sin(math.radians(psi)))
             assert math.dist(tip, pivot) == pytest.approx(a, abs=1e-3)
             assert math.sin(math.radians(direction(tip, pivot) - along)) == pytest.approx(0.0, abs=1e-3)
-            assert f"θ = {theta}°, ψ = {psi}°" in bar[name].note
+            assert f"θ = {theta}°, ψ = {psi}°" in note_of(bar[name])
     assert bar["simulation.1"].finding is NOT_FOLLOW
     assert bar["simulation.2"].finding is HOLDS
 
