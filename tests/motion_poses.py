@@ -68,7 +68,7 @@ def parallelogram_pose(linkage: Linkage | None = None) -> Pose:
 
 def drive_of(pose: Pose) -> Drive:
     """The wing is driven at AE, all others at the link that fixes the pose."""
-    link = "AE" if pose.coordinate == "GF" else pose.coordinate
+    link = "AE" if str(pose.coordinate) == "GF" else str(pose.coordinate)
     assert link is not None
     return Drive(
         link=link,

@@ -126,12 +126,12 @@ def holding(case: Case, link: str) -> Holding:
     drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
     # A pin that holds the link off its axis may keep its angle, held by other pins as well.
     fixed = {name for name in joints if linkage.joints[name].bonded}
-    slides = {name for name in carried if linkage.joints[name].type == "slider"}
+    guides = {name for name in carried if linkage.joints[name].type == "slider"}
     alone = {foot[name] for name in (fixed | drive) & set(joints)}
     return Holding(
         outermost=tuple(support) or ((first, last) if last - first > slack else (first,)),
         in_plane=None if carried else tuple(sorted({*foot.values(), *support})),
         kept=tuple(sorted({foot[name] for name in (fixed | drive | off) & set(joints)} | support)),
-        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried} | support)) or None,
+        across=None if guides else tuple(sorted({foot[name] for name in set(joints) - carried} | support)) or None,
         alone=() if support else tuple(sorted(alone)),
     )

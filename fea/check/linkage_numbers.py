@@ -143,11 +143,9 @@ def left_stops(statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> 
         standing, reactions = statics.standing[load_case], what.reactions
         if not standing.stop or reactions is None or reactions.drive is None:
             continue
-        linkage = reactions.pose.linkage
-        slides = reactions.drive.pushes(linkage)
-        effort = float(reactions.drive_force if slides else reactions.drive_torque)
+        linkage, effort = reactions.pose.linkage, float(reactions.effort)
         if effort * reactions.drive.sign(linkage) * standing.contact < 0.0:
-            unit = "N" if slides else "N·mm"
+            unit = reactions.drive.effort(linkage).unit
             yield under_load_cases(
                 [load_case], reason("leaves_stop", stop=standing.stop, effort=abs(effort), unit=unit)
             )

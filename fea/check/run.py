@@ -642,9 +642,7 @@ def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplac
     ]
     pose, near = statics.pose, dict[Reason, float]()
     if pose.coordinate is not None:
-        near[reason("pose_coordinate", link=pose.coordinate)] = pose.dead_point_distance(
-            pose.coordinate, slides=pose.slides
-        )
+        near[reason("pose_coordinate", link=pose.coordinate.name)] = pose.dead_point_distance(pose.coordinate)
     for reactions in statics.reactions.values():
         if reactions.drive is not None and not reactions.drive.idle:
             near[reason("held_link", held=reactions.drive.held)] = reactions.drive.dead_point_distance(pose)

@@ -24,6 +24,7 @@ from alula.geometry.bodies.body import Body
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.states.play import Displaced, Play, Span
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -215,14 +216,12 @@ def _worst(play: Play, forces: JointForces, slopes: Mapping[str, Real]) -> Itera
 def _reactions(play: Play, forces: JointForces, here: Displaced) -> Reactions:
     """Return the joint reactions at offsets, in the plane."""
     plain = forces.reactions
-    effort = float(here.effort)
-    pushes = plain.drive is not None and plain.drive.pushes(play.case.linkage)
+    effort = DriveEffort.TORQUE if plain.drive is None else plain.drive.effort(play.case.linkage)
     return replace(
         plain,
         pose=play.pose(here, plain.pose),
         joints=here.joints,
-        drive_torque=0.0 if pushes else effort,
-        drive_force=effort if pushes else 0.0,
+        **effort.alone(float(here.effort), 0.0),
     )
 
 

@@ -52,10 +52,7 @@ def _motion(result: CheckResult) -> Motion | None:
         return result.clearance.motion
     if case.motion is None:
         return None
-    slides = case.motion.travel is not None
     try:
-        return solve_motion(
-            result.pose, drive_angles(case, result.pose), coordinate=case.motion_coordinate, slides=slides
-        )
+        return solve_motion(result.pose, drive_angles(case, result.pose), coordinate=case.motion_coordinate)
     except CaseError:
         return None

@@ -9,8 +9,8 @@ import numpy as np
 from alula.fea.frame.joint_forces import JointForces, joint_forces
 from alula.fea.frame.rubbing import ENDS, End, at_end, presses_of, with_friction
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.motion import refuse_slot_ends
 from alula.geometry.linkage.pose import Pose
-from alula.geometry.linkage.slot_ends import refuse_slot_ends
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_companion
 from alula.loads.case.joint_rules import rubbing_joints
@@ -88,12 +88,7 @@ def solve_case_statics(case: Case, name: str = "", end: End = "stated") -> CaseS
     case = at_end(each_direction(case), end)
     if case.motion is not None:
         stated = case.solve_pose()
-        refuse_slot_ends(
-            stated,
-            drive_angles(case, stated),
-            coordinate=case.motion_coordinate,
-            slides=case.motion.travel is not None,
-        )
+        refuse_slot_ends(stated, drive_angles(case, stated), coordinate=case.motion_coordinate)
     masses = part_masses(case) if needs_masses(case) else {}
     standing = {load_case: stand(case, load_case, masses) for load_case in case.load_cases}
     pose = next(iter(standing.values())).pose  # one that balances by itself has one load case

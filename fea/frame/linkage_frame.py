@@ -26,6 +26,7 @@ from alula.fea.frame.model import FrameModel
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction, travelled
 from alula.loads.statics.statics import Drive, Reactions, assemble
 from alula.loads.statics.system import System
@@ -126,11 +127,11 @@ class LinkageFrame:
         """
         shape = np.zeros((len(self.model.nodes), 3)) if displacements is None else displacements
         on_link = _joint_by_joint(self, joint_wrenches, shape)
-        torque = 0.0
-        joints = {}
+        torque, push, joints = 0.0, 0.0, {}
+        effort = None if self.held is None else self.held.effort(self.pose.linkage)
         for name, joint in self.pose.linkage.joints.items():
             wrench = on_link[name].copy()
-            if self.held is not None and name == self.held.joint and not self.held.pushes(self.pose.linkage):
+            if self.held is not None and name == self.held.joint and effort is DriveEffort.TORQUE:
                 torque = float(wrench[5]) * (1.0 if joint.links[1] == self.held.link else -1.0)
                 wrench[5] = 0.0
             joints[name] = JointReaction(
@@ -141,8 +142,7 @@ class LinkageFrame:
         for name in joints:
             value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
             value[f"M:{name}"] = float(joints[name].wrench[5])
-        push = 0.0
-        if self.held is not None and self.held.pushes(self.pose.linkage):
+        if self.held is not None and effort is DriveEffort.FORCE:
             across = slot_normal(self.pose, self.held.joint)
             force = joints[self.held.joint].wrench
             push = self.held.sign(self.pose.linkage) * float(across[1] * force[0] - across[0] * force[1])

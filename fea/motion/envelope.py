@@ -356,7 +356,7 @@ def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growt
                 "poses_near_dead_point",
                 link=moved.drive.link,
                 angles=tuple(math.degrees(angle) for angle in moved.dead_points),
-                coordinate=moved.motion.coordinate,
+                coordinate=moved.motion.coordinate.name,
                 left_out=left_out,
                 poses=len(evaluated),
                 growth=growth,

@@ -307,7 +307,7 @@ def column_outcomes(
 
 def _when(moved: CaseMotion, pose: int) -> Reason:
     angle = math.degrees(float(moved.motion.angles[pose]))
-    return reason("pose_of_motion", coordinate=moved.motion.coordinate, value=angle, unit="deg")
+    return reason("pose_of_motion", coordinate=moved.motion.coordinate.name, value=angle, unit="deg")
 
 
 def _complete(outcome: CheckOutcome, evaluated: NDArray[np.bool_]) -> CheckOutcome:

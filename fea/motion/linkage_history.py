@@ -102,7 +102,9 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         if not found:
             continue
         least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
-        where = reason("pose_of_motion", coordinate=motion.coordinate, value=math.degrees(motion.angles[i]), unit="deg")
+        where = reason(
+            "pose_of_motion", coordinate=motion.coordinate.name, value=math.degrees(motion.angles[i]), unit="deg"
+        )
         how, remedy = reason("unstable_at_pose", pose=where, factor=least), reason("check_that_pose")
         slack = stated_scatter(case, load_case).times(eyes)
         outcome = by_linear_theory(load_case, least, factor, slack, how, remedy)
@@ -213,7 +215,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
             pose = None
             if over.limit_pose >= 0:
                 at, motion = moved.motion.told(moved.motion.angles[over.limit_pose]), moved.motion
-                pose = reason("pose_of_motion", coordinate=motion.coordinate, value=float(at), unit=motion.unit)
+                pose = reason("pose_of_motion", coordinate=motion.coordinate.name, value=float(at), unit=motion.unit)
             counts = {"looked_at": len(over.poses), "poses": len(moved.motion.angles)}
             where = reason("least_of_poses", **counts, pose=pose)
             yield limit_load_outcome(name, check, load_case, over.limit_load, where)

@@ -216,8 +216,7 @@ def _constraints(frame: LinkageFrame, pose: Pose) -> NDArray[np.float64]:
     rows = constraint_jacobian(pose)
     if frame.held is None:
         return rows
-    slides = frame.held.pushes(pose.linkage)
-    return np.vstack([rows, held_motion(pose, frame.held.joint if slides else frame.held.link, slides=slides)])
+    return np.vstack([rows, held_motion(pose, frame.held.coordinate(pose.linkage))])
 
 
 def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:
@@ -231,7 +230,7 @@ def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:
         arms = places - places.mean(axis=0)
         size = float((arms**2).sum())
         turns.append(float((arms[:, 0] * moves[:, 1] - arms[:, 1] * moves[:, 0]).sum()) / size if size > 0.0 else 0.0)
-    slides = []
+    slid = []
     for name in pose.closure.slots:
         across = slot_normal(pose, name)
         apart = np.zeros(3)
@@ -239,11 +238,10 @@ def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:
             pose.linkage.joints[name].links, pose.linkage.joint_points(name), (-1.0, 1.0), strict=True
         ):
             apart = apart + sign * moved.get((link, point), np.zeros(3))
-        slides.append(float(across[1] * apart[0] - across[0] * apart[1]))
+        slid.append(float(across[1] * apart[0] - across[0] * apart[1]))
     return Pose(
         linkage=pose.linkage,
-        q=pose.q + np.array([*turns, *slides]),
+        q=pose.q + np.array([*turns, *slid]),
         coordinate=pose.coordinate,
         residual=pose.residual,
-        slides=pose.slides,
     )

@@ -60,7 +60,9 @@ from alula.loads.case.eyes import other_link
 from alula.loads.case.forks import eye_of, eyes, outer_link
 from alula.loads.records.applied import shifted
 from alula.loads.records.check_spec import PinCheck
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction
+from alula.loads.statics.statics import Drive
 from alula.loads.text.caveat import Caveat, Topic
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
@@ -116,9 +118,14 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
     drive = case.pinned_drive
     if case.linkage.joints[joint].bonded:
         return Band(value=abs(moment), low=0.0, high=abs(moment), sources=TWIST)
-    if drive is None or drive.joint != joint or drive.stop or drive.idle or drive.pushes(case.linkage):
+    if drive is None or drive.joint != joint or not _turns(case, drive):
         return Band.exact(0.0)
     return Band.exact(abs(torque) if case.torque_transfer == "bore-shear" else 0.0)
+
+
+def _turns(case: Case, drive: Drive) -> bool:
+    """Return True where the drive exerts a torque, and neither a stop nor the balance of the pose takes its place."""
+    return not drive.stop and not drive.idle and drive.effort(case.linkage) is DriveEffort.TORQUE
 
 
 def shaft_caveats(case: Case) -> Iterator[Caveat]:
@@ -133,7 +140,7 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     drive = case.pinned_drive
-    if drive is None or drive.stop or drive.idle or case.pose.equilibrium or drive.pushes(case.linkage):
+    if drive is None or case.pose.equilibrium or not _turns(case, drive):
         return
     if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].bonded:
         why = reason("torque_by_flat_faces")

@@ -232,7 +232,7 @@ def _of_linkage(found: LinkageNumbers | LinkageOverMotion, load_case: str) -> It
 
 def _of_motion(moved: CaseMotion) -> Iterator[VariantNumber]:
     """Largest drive torque and joint force, how far every link swings, and the figures of a flapping wing."""
-    name, unit = moved.effort
+    name, unit = moved.effort.word, moved.effort.unit
     for load_case, torque in moved.torque.items():
         yield VariantNumber.exact(f"largest drive {name}", unit, _largest(torque), moved.drive.link, load_case)
     for load_case, forces in moved.forces.items():
@@ -244,10 +244,8 @@ def _of_motion(moved: CaseMotion) -> Iterator[VariantNumber]:
     yield VariantNumber.exact("dead points", "1", len(moved.dead_points), moved.drive.link)
     yield VariantNumber.exact(DEAD_POINT, "1", least_dead_point_distance(moved), LINKED)
     way = way_to_dead_point(moved)
-    if moved.motion.slides:
-        yield VariantNumber.exact("travel to a dead point", "mm", way, LINKED)
-    else:
-        yield VariantNumber.exact("angle to a dead point", "deg", math.degrees(way), LINKED)
+    measure = moved.motion.coordinate.measure
+    yield VariantNumber.exact(f"{measure.word} to a dead point", measure.unit, float(measure.told(way)), LINKED)
     if moved.case.flapping_wing is not None:
         wing = moved.case.flapping_wing.wing(moved.case.linkage)
         figures = {"": wing.metrics(), ", as published": wing.published_metrics()}

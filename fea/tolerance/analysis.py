@@ -1,6 +1,5 @@
 """Samples of a case's tolerances, and what their numbers say."""
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -21,10 +20,12 @@ from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceRe
 from alula.fea.tolerance.sizes import size_ends
 from alula.fea.tolerance.states import Sampler
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.loads.case.case import Case
 from alula.loads.case.toleranced import Variable, toleranced
 from alula.loads.states.actions import needs_masses
 from alula.loads.states.masses import part_masses
+from alula.loads.statics.effort import DriveEffort
 
 Real = NDArray[np.float64]
 
@@ -277,7 +278,7 @@ def _numbers(check: SampledCheck, found: Numbers, first: Real, total: Real) -> t
             )
         )
     drive = check.result.case.pinned_drive
-    pushes = drive is not None and drive.pushes(check.result.case.linkage)
+    effort = DriveEffort.TORQUE if drive is None else drive.effort(check.result.case.linkage)
     for row, (load_case, forces) in enumerate(check.nominal.forces.items() if drive is not None else ()):
         torque = float(forces.drive_torque[0] + forces.drive_force[0])
         at = len(check.outcomes) + row
@@ -286,8 +287,8 @@ def _numbers(check: SampledCheck, found: Numbers, first: Real, total: Real) -> t
                 check="",
                 subject="the drive",
                 load_case=load_case,
-                quantity="drive force" if pushes else "drive torque",
-                unit="N" if pushes else "N·mm",
+                quantity=f"drive {effort.word}",
+                unit=effort.unit,
                 limit=np.nan,
                 at_least=True,
                 nominal=(torque, torque, torque),
@@ -355,10 +356,10 @@ def _notes(result: CheckResult, found: Numbers, left_out: Sequence[Reason]) -> t
 
 def _fallen(result: CheckResult, found: Numbers) -> Iterator[Reason]:
     """Tell how many samples have no equilibrium, and why."""
-    ended, unit = np.isfinite(found.short), "mm" if result.pose.slides else "deg"
-    by = np.max(found.short[ended], initial=0.0) * (1.0 if result.pose.slides else math.degrees(1.0))
+    ended, coordinate = np.isfinite(found.short), result.pose.coordinate or Coordinate("")
+    by = np.max(found.short[ended], initial=0.0) * float(coordinate.measure.told(1.0))
     for which, what in (
-        (ended, reason("cannot_stand_in_pose", coordinate=result.pose.coordinate, by=by, unit=unit)),
+        (ended, reason("cannot_stand_in_pose", coordinate=coordinate.name, by=by, unit=coordinate.measure.unit)),
         (found.apart & ~ended, reason("do_not_assemble")),
         (found.dead, reason("at_dead_point_of_drive")),
     ):

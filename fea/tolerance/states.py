@@ -206,7 +206,7 @@ class Sampler:
         """Add friction to the loads of every load case; also tell which samples it locks."""
         drive, locked, found = self.case.pinned_drive, np.zeros(len(here.q), dtype=np.bool_), {}
         assert self.pose.coordinate is not None
-        driven = DrivenClosure(here.closure, self.pose.coordinate, self.pose.slides)
+        driven = DrivenClosure(here.closure, self.pose.coordinate)
         moving = replace(here, qdot=driven.coefficients(here.q)[0])
         for name, (loads, _) in systems.items():
             way, presses = WAYS[self.case.load_cases[name].direction], self.presses.get(name, {})
@@ -218,7 +218,7 @@ class Sampler:
     def _loads(self, name: str, load_case: LoadCase, place: SampledPlacement, deviations: Real) -> tuple[Load, ...]:
         if load_case.speed != 0.0:
             assert self.pose.coordinate is not None
-            first, second = DrivenClosure(place.closure, self.pose.coordinate, self.pose.slides).coefficients(place.q)
+            first, second = DrivenClosure(place.closure, self.pose.coordinate).coefficients(place.q)
             place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
         found = list(acting_loads(self.case, load_case, place, self.masses))
         stated = len(found) - len(spring_loads(self.case, place))  # springs belong to no load case

@@ -283,15 +283,17 @@ def _meets_at(case: Case, history: FrequencyHistory, met: Meeting) -> Reason:
     if met.ranges[0] == (history.at[0], history.at[-1]):
         return reason("in_every_pose")
     if last - first < 0.5:
-        return reason("at_value", coordinate=case.motion_coordinate, value=(first + last) / 2.0, unit=unit(case))
-    return reason("from_value_to_value", coordinate=case.motion_coordinate, first=first, last=last, unit=unit(case))
+        return reason("at_value", coordinate=case.motion_coordinate.name, value=(first + last) / 2.0, unit=unit(case))
+    return reason(
+        "from_value_to_value", coordinate=case.motion_coordinate.name, first=first, last=last, unit=unit(case)
+    )
 
 
 def _at_value(case: Case, value: float) -> Reason:
     """Where a value of the coordinate is [rad, mm]."""
     if case.motion is None:
         return reason("in_stated_pose")
-    return reason("at_value", coordinate=case.motion_coordinate, value=told(case, value), unit=unit(case))
+    return reason("at_value", coordinate=case.motion_coordinate.name, value=told(case, value), unit=unit(case))
 
 
 def told(case: Case, value: float) -> float:

@@ -99,4 +99,4 @@ def _side(found: Extent, side: Outermost, axis: str) -> Reason:
     if side.at is None or found.motion is None:
         return reason("side", **facts)
     value = float(found.motion.told(side.at))
-    return reason("side_in_pose", **facts, coordinate=found.motion.coordinate, at=value, unit=found.motion.unit)
+    return reason("side_in_pose", **facts, coordinate=found.motion.coordinate.name, at=value, unit=found.motion.unit)

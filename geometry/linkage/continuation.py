@@ -236,6 +236,6 @@ def _error(driven: DrivenClosure, angle: float, end: float, what: str) -> DeadPo
     return DeadPointError(
         f"motion: driven by {driven.coordinate}, the linkage {what} at {driven.coordinate} = {driven.told(angle)} "
         f"before it reaches {driven.told(end)}; keep the range on one side of that "
-        f"{'travel' if driven.slides else 'angle'} or drive another link",
+        f"{driven.coordinate.measure.word} or drive another link",
         angle,
     )

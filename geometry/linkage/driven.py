@@ -1,6 +1,5 @@
 """The loop closure with one unknown driven: rates of all others by it, and Newton with it held."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.pose_record import CLOSED
 
 Real = NDArray[np.float64]
@@ -20,32 +20,28 @@ _RANK_TOLERANCE = 1e-12
 
 @dataclass(frozen=True)
 class DrivenClosure:
-    """The loop closure with the angle of one moving link prescribed, or (``slides``) the travel of a slider or slot.
+    """The loop closure with one coordinate prescribed.
 
     Attributes
     ----------
     closure : LoopClosure
         The loop closure.
-    coordinate : str
-        Name of the driven link, slider or slot.
-    slides : bool
-        Whether a travel is driven and not an angle.
+    coordinate : Coordinate
+        The driven angle or travel.
     """
 
     closure: LoopClosure
-    coordinate: str
-    slides: bool = False
+    coordinate: Coordinate
 
     @cached_property
     def column(self) -> int:
         """Column of the driven angle or travel among the unknowns."""
-        moving = self.closure.linkage.moving
-        return len(moving) + self.closure.slots.index(self.coordinate) if self.slides else moving.index(self.coordinate)
+        return self.coordinate.column(self.closure)
 
     @property
     def size(self) -> float:
         """Size by which the driven unknown is measured: 1 rad, or the longest link [mm]."""
-        return float(self.sizes[self.column])
+        return self.coordinate.measure.scale(self.closure.linkage)
 
     def told(self, value: float) -> str:
         """Return a driven angle or travel for people.
@@ -60,7 +56,8 @@ class DrivenClosure:
         str
             The value with its unit, for people.
         """
-        return f"{_plain(value)} mm" if self.slides else f"{_plain(math.degrees(value))} deg"
+        measure = self.coordinate.measure
+        return f"{_plain(float(measure.told(value)))} {measure.unit}"
 
     @cached_property
     def _free(self) -> NDArray[np.intp]:

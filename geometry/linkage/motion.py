@@ -1,17 +1,24 @@
-"""Moving a linkage along one branch to stated values of its coordinate."""
+"""Moving a linkage along one branch to stated values of its coordinate, and whether pins stay in their slots then."""
 
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.continuation import follow
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.motion_record import BLOCK, Motion
 from alula.geometry.linkage.pose_record import Pose
 
-__all__ = ["Motion", "solve_motion"]
+__all__ = ["Motion", "refuse_slot_ends", "solve_motion"]
+
+Real = NDArray[np.float64]
+
+_SLACK = 1e-6
+"""Of a slot's length, by which a pin may pass its end by rounding."""
+_POSES = 181
 
 
 def solve_motion(
@@ -20,8 +27,7 @@ def solve_motion(
     *,
     speed: ArrayLike = 0.0,
     acceleration: ArrayLike = 0.0,
-    coordinate: str | None = None,
-    slides: bool = False,
+    coordinate: Coordinate | None = None,
 ) -> Motion:
     """Move a linkage from a start pose along its branch to every one of the given angles.
 
@@ -35,10 +41,8 @@ def solve_motion(
         Angular speed of the driven link [rad/s] (of a slider its speed [mm/s]), one or (n,).
     acceleration : array_like
         Angular acceleration of it [rad/s²] (of a slider its acceleration [mm/s²]), one or (n,).
-    coordinate : str, optional
-        Name of the link whose angle is prescribed; the pose's coordinate unless given.
-    slides : bool
-        Whether the coordinate is a slider or slot.
+    coordinate : Coordinate, optional
+        What is prescribed; the pose's coordinate unless given.
 
     Returns
     -------
@@ -51,15 +55,17 @@ def solve_motion(
         (a ``CaseError``) where a dead point, or a crossing of two branches, lies on the
         way, with its angle to some 1e-9 rad; ``CaseError`` for a link that does not move.
     """
-    name = coordinate or pose.coordinate
-    slides = slides if coordinate else pose.slides
+    coordinate = coordinate or pose.coordinate
+    slides = coordinate is not None and coordinate.slides
     known, what = (pose.closure.slots, "slider or slot") if slides else (pose.linkage.moving, "moving link")
-    if name is None or name not in known:
-        raise CaseError(f"motion.coordinate: '{name}' is not a {what}; choose one of {', '.join(known) or 'none'}")
+    if coordinate is None or coordinate.name not in known:
+        raise CaseError(
+            f"motion.coordinate: '{coordinate}' is not a {what}; choose one of {', '.join(known) or 'none'}"
+        )
     wanted = np.asarray(angles, dtype=float)
     if wanted.ndim != 1 or not len(wanted) or not np.all(np.isfinite(wanted)):
         raise CaseError("motion: the angles must be a list of at least one finite number; give the poses' angles")
-    driven = DrivenClosure(pose.closure, name, slides)
+    driven = DrivenClosure(pose.closure, coordinate)
     low, high = float(wanted.min()), float(wanted.max())
     start = pose.q.copy()
     here = float(start[driven.column])
@@ -72,7 +78,7 @@ def solve_motion(
         first[i : i + BLOCK], second[i : i + BLOCK] = driven.coefficients(q[i : i + BLOCK])
     return Motion(
         linkage=pose.linkage,
-        coordinate=name,
+        coordinate=coordinate,
         angles=wanted,
         speed=np.broadcast_to(np.asarray(speed, dtype=float), wanted.shape).copy(),
         acceleration=np.broadcast_to(np.asarray(acceleration, dtype=float), wanted.shape).copy(),
@@ -84,3 +90,53 @@ def solve_motion(
         ),
         track=track,
     )
+
+
+def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None = None) -> None:
+    """Refuse a motion that takes a pin out of its slot.
+
+    A cubic spline through 181 poses or more finds how far each pin goes between them.
+
+    Parameters
+    ----------
+    pose : Pose
+        From which the motion starts.
+    values : array (n,)
+        Of its coordinate, from the first to the last [rad, mm].
+    coordinate : Coordinate, optional
+        As in ``solve_motion``.
+
+    Raises
+    ------
+    CaseError
+        With how far the pin goes.
+    """
+    links = pose.linkage.links
+    if not any(link.slots for link in links.values()):
+        return
+    fine = np.linspace(values[0], values[-1], max(len(values), _POSES))
+    try:
+        motion = solve_motion(pose, fine, coordinate=coordinate)
+    except CaseError:
+        return  # a motion that does not exist is refused where it is asked for, with its own reason
+    for link, record in links.items():
+        for point, slot in record.slots.items():
+            _refuse(motion, link, point, (slot.first, slot.last))
+
+
+def _refuse(motion: Motion, link: str, point: str, ends: tuple[float, float]) -> None:
+    from scipy.interpolate import CubicSpline
+
+    place, linkage = motion.placement, motion.linkage
+    joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point)
+    other = linkage.joints[joint].links[1]
+    arm = place.position(other, linkage.point_of(joint, other)) - place.origin(link)
+    along = CubicSpline(steps := np.arange(len(motion.angles)), (np.conj(place.direction(link)) * arm).real)
+    at = np.unique([*steps, *along.derivative().roots(extrapolate=False)])
+    x, (low, high) = along(at), ends
+    slack = _SLACK * (high - low)
+    if x.min() < low - slack or x.max() > high + slack:
+        raise CaseError(
+            f"links.{link}.slots.{point}: over the motion its pin goes from x = {x.min():.6g} to {x.max():.6g} mm, but "
+            f"the slot runs from {low:g} to {high:g} mm; lengthen the slot, or shorten the motion"
+        )

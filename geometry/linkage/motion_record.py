@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from alula.geometry.linkage.closure import LoopClosure
 from alula.geometry.linkage.continuation import Track
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose_record import Pose
@@ -28,8 +29,8 @@ class Motion:
     ----------
     linkage : Linkage
         The linkage.
-    coordinate : str
-        The link whose angle is prescribed; where ``slides``, the slider or slot whose travel is.
+    coordinate : Coordinate
+        The angle of a link, or the travel of a slider or slot, that is prescribed.
     angles : ndarray
         Its angles (n,) [rad], or travels [mm].
     speed : ndarray
@@ -49,7 +50,7 @@ class Motion:
     """
 
     linkage: Linkage
-    coordinate: str
+    coordinate: Coordinate
     angles: Real
     speed: Real
     acceleration: Real
@@ -75,11 +76,6 @@ class Motion:
         return Placement(closure=self.closure, q=self.q, qdot=self.first)
 
     @property
-    def slides(self) -> bool:
-        """True where a travel is prescribed and not an angle."""
-        return self.track.driven.slides
-
-    @property
     def moves(self) -> bool:
         """True where the coordinate has a speed or an acceleration."""
         return bool(np.any(self.speed) or np.any(self.acceleration))
@@ -87,7 +83,7 @@ class Motion:
     @property
     def unit(self) -> str:
         """Unit in which the coordinate is told to people."""
-        return "mm" if self.slides else "deg"
+        return self.coordinate.measure.unit
 
     def told(self, values: ArrayLike) -> Real:
         """Return values of the coordinate in that unit.
@@ -102,7 +98,7 @@ class Motion:
         ndarray
             Values in ``unit``.
         """
-        return np.asarray(values, dtype=float) if self.slides else np.degrees(values)
+        return self.coordinate.measure.told(values)
 
     @cached_property
     def qdot(self) -> Real:
@@ -315,7 +311,6 @@ class Motion:
             q=self.q[index],
             coordinate=self.coordinate,
             residual=self.residual,
-            slides=self.slides,
         )
 
     def stopping_points(self, joint: str) -> tuple[float, ...]:

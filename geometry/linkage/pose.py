@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.open_loop import open_loop
 from alula.geometry.linkage.pose_record import CLOSED, Pose, constraint_jacobian, held_motion
@@ -128,33 +129,34 @@ def freedom(pose: Pose) -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class _Held:
-    """The unknown that fixes the pose: its name, its column and its value [rad, mm]."""
+    """The unknown that fixes the pose: its coordinate, its column and its value [rad, mm]."""
 
-    name: str
+    coordinate: Coordinate
     column: int
     value: float
-    slides: bool
 
     @classmethod
     def of(cls, linkage: Linkage, name: str, angle: float, travel: float | None) -> "_Held":
         if travel is None:
-            return cls(name=name, column=linkage.moving.index(name), value=angle, slides=False)
-        slots = LoopClosure(linkage).slots
+            return cls(coordinate=Coordinate(name), column=linkage.moving.index(name), value=angle)
+        closure = LoopClosure(linkage)
+        slots = closure.slots
         if name not in slots:
             raise CaseError(
                 f"pose.coordinate: '{name}' is no slider or slot, but a travel is stated for it; choose among "
                 f"{', '.join(slots) or 'none'}, or state the angle of a link"
             )
-        return cls(name=name, column=len(linkage.moving) + slots.index(name), value=travel, slides=True)
+        coordinate = Coordinate(name, Measure.TRAVEL)
+        return cls(coordinate=coordinate, column=coordinate.column(closure), value=travel)
 
     def __str__(self) -> str:
-        value = f"a travel of {self.value:.6g} mm" if self.slides else f"{math.degrees(self.value):.6g} deg"
-        return f"{self.name} at {value}"
+        kind = "a travel of " if self.coordinate.slides else ""
+        return f"{self.coordinate} at {kind}{self.coordinate.measure.in_words(self.value)}"
 
 
 def _assemble(linkage: Linkage, held: _Held | None, near: dict[str, float]) -> Pose:
     closure = LoopClosure(linkage)
-    free = [link for link in linkage.moving if held is None or held.slides or link != held.name]
+    free = [link for link in linkage.moving if held is None or held.coordinate != Coordinate(link)]
 
     unstated = [link for link in free if link not in near]
     if not unstated:
@@ -180,7 +182,7 @@ def _refuse_rough(pose: Pose, held: _Held | None, near: Mapping[str, float], fre
 
     Looked for only next to a dead point of the coordinate, where assemblies come close to each other.
     """
-    if held is None or pose.dead_point_distance(held.name, slides=held.slides, bonds=False) > NEAR_DEAD_POINT:
+    if held is None or pose.dead_point_distance(held.coordinate, bonds=False) > NEAR_DEAD_POINT:
         return
     columns = [pose.linkage.moving.index(link) for link in free]
     off = float(np.max(_turned(pose.q[columns] - np.array([near[link] for link in free])), initial=0.0))
@@ -193,7 +195,7 @@ def _refuse_rough(pose: Pose, held: _Held | None, near: Mapping[str, float], fre
         raise CaseError(
             "pose.near: its directions do not tell apart assemblies that lie close together next to a dead point of "
             f"'{pose.coordinate}': {listed}; state them to better than {math.degrees(off):.2g} deg or change the "
-            f"{'travel' if held.slides else 'angle'}"
+            f"{held.coordinate.measure.word}"
         )
 
 
@@ -201,9 +203,8 @@ def _pose(closure: LoopClosure, q: Real, held: _Held | None, gaps: Real) -> Pose
     return Pose(
         linkage=closure.linkage,
         q=q,
-        coordinate=None if held is None else held.name,
+        coordinate=None if held is None else held.coordinate,
         residual=float(np.max(np.abs(gaps), initial=0.0)) / closure.linkage.longest,
-        slides=held is not None and held.slides,
     )
 
 
@@ -292,5 +293,5 @@ def _explain_open(closure: LoopClosure, attempts: list[tuple[Real, Real]], held:
     if worst is not None:
         where = f"loop {'-'.join(closure.loop_path(worst[0]))} stays open by {worst[1]:.4g} mm"
     at = "" if held is None else f" with {held}"
-    change = "travel" if held is not None and held.slides else "angle"
+    change = (Measure.ANGLE if held is None else held.coordinate.measure).word
     return f"pose: the linkage cannot be assembled{at}: {where}; change the {change} or the links' lengths"

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Placement
 
@@ -28,21 +29,18 @@ class Pose:
         The linkage.
     q : ndarray
         Angles of the moving links [rad] and travels in the slots [mm] (unknowns,).
-    coordinate : str, optional
-        The link whose angle fixes the pose; None where nothing moves.
+    coordinate : Coordinate, optional
+        The angle or travel that fixes the pose; None where nothing moves.
     residual : float
         Largest closure residual as a share of the longest link.
-    slides : bool
-        Whether the coordinate is a slider or slot, whose travel fixes the pose.
     offsets : mapping of str to complex
         Joint -> how far play sets its two points apart [mm], as ``LoopClosure`` has it.
     """
 
     linkage: Linkage
     q: Real
-    coordinate: str | None
+    coordinate: Coordinate | None
     residual: float
-    slides: bool = False
     offsets: Mapping[str, complex] = field(default_factory=dict)
 
     @cached_property
@@ -81,16 +79,13 @@ class Pose:
     @property
     def held_column(self) -> int:
         """Column of the coordinate among the unknowns; only where the pose has one."""
-        moving = self.linkage.moving
         assert self.coordinate is not None
-        return len(moving) + self.closure.slots.index(self.coordinate) if self.slides else moving.index(self.coordinate)
+        return self.coordinate.column(self.closure)
 
     @property
     def held(self) -> float:
         """Angle [rad] or travel [mm] of the coordinate; 0 where nothing moves."""
-        if self.coordinate is None:
-            return 0.0
-        return self.travels[self.coordinate] if self.slides else self.angles[self.coordinate]
+        return 0.0 if self.coordinate is None else float(self.q[self.held_column])
 
     def position(self, link: str, point: str) -> Real:
         """Position of a link's point in global axes (2,) [mm].
@@ -135,20 +130,17 @@ class Pose:
         c, s = math.cos(self.angles[link]), math.sin(self.angles[link])
         return np.array([[c, -s], [s, c]])
 
-    def dead_point_distance(self, driven: str, *, slides: bool = False, bonds: bool = True) -> float:
-        """How far the pose is from a dead point of the given driven link (0 at the dead point).
+    def dead_point_distance(self, driven: Coordinate, *, bonds: bool = True) -> float:
+        """How far the pose is from a dead point of the given driven link, slider or slot (0 at the dead point).
 
-        Smallest singular value of the scaled constraint Jacobian with that link held: coordinates
-        are (x, y, L phi) of every moving link with L the longest link, so all entries are pure
-        numbers. Where it vanishes the linkage moves although the link is held. With ``slides`` it
-        is a slider or slot of that name that is held.
+        Smallest singular value of the scaled constraint Jacobian with it held: coordinates are
+        (x, y, L phi) of every moving link with L the longest link, so all entries are pure
+        numbers. Where it vanishes the linkage moves although it is held.
 
         Parameters
         ----------
-        driven : str
-            Name of the driven link, slider or slot.
-        slides : bool
-            Whether the name is that of a slider or slot.
+        driven : Coordinate
+            What is held.
         bonds : bool
             As ``constraint_jacobian`` takes it.
 
@@ -157,28 +149,26 @@ class Pose:
         float
             The distance, without unit.
         """
-        matrix = np.vstack([constraint_jacobian(self, bonds=bonds), held_motion(self, driven, slides=slides)])
+        matrix = np.vstack([constraint_jacobian(self, bonds=bonds), held_motion(self, driven)])
         return float(np.linalg.svd(matrix, compute_uv=False)[-1])
 
 
-def held_motion(pose: Pose, driven: str, *, slides: bool) -> Real:
-    """Row (coordinates,) that holds a link's angle or, with ``slides``, the slider or slot of that name.
+def held_motion(pose: Pose, driven: Coordinate) -> Real:
+    """Row (coordinates,) that holds a link's angle, or a slider or slot.
 
     Parameters
     ----------
     pose : Pose
         The pose.
-    driven : str
-        Name of the link, slider or slot.
-    slides : bool
-        Whether the name is that of a slider or slot.
+    driven : Coordinate
+        What is held.
 
     Returns
     -------
     ndarray
         Row (coordinates,).
     """
-    return _joint_motion(pose, driven)[0] if slides else _held(pose.linkage, driven)
+    return _joint_motion(pose, driven.name)[0] if driven.slides else _held(pose.linkage, driven.name)
 
 
 def constraint_jacobian(pose: Pose, *, bonds: bool = True) -> Real:

@@ -155,7 +155,7 @@ def own_dead_point(pose: Pose) -> Real | None:
     nearest = dead_points(pose.closure, pose.q[None], column)
     if not nearest.found[0]:
         return None
-    driven = DrivenClosure(pose.closure, pose.coordinate, pose.slides)
+    driven = DrivenClosure(pose.closure, pose.coordinate)
     here, there = float(pose.q[column]), float(nearest.q[0, column])
     beyond = there - np.sign(nearest.curvature[0, column]) * _BEYOND * driven.size
     try:

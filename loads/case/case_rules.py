@@ -5,6 +5,7 @@ import math
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import check_file_names
 from alula.geometry.bodies.body_rules import check_body, check_length
+from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
 from alula.geometry.parts.part import Body, FilePart
@@ -34,6 +35,7 @@ from alula.loads.records.check_spec import (
 from alula.loads.records.conditions import Conditions
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import WaysToHold
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.statics import Drive, check_drive
 from alula.loads.text.explain import require
 
@@ -112,7 +114,7 @@ def _check_drive(case: CoreCase) -> None:
     check_drive(case.linkage, case.pinned_drive)
     if case.drive is not None and case.drive.stiffness is not None:
         slides = case.joints[case.drive.joint].type == "slider"
-        if case.drive.stiffness.slides != slides:
+        if (case.drive.stiffness.measure is Measure.TRAVEL) != slides:
             kind, unit = ("slider", "20 N/mm") if slides else ("revolute joint", "2 N*m/rad")
             raise CaseError(
                 f"drive.stiffness: joint '{case.drive.joint}' is a {kind}, whose drive has a stiffness such as "
@@ -206,7 +208,7 @@ def _check_slides(case: CoreCase, entry: str, name: str | None) -> None:
 
 
 def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
-    name = case.motion_coordinate
+    name = case.motion_coordinate.name
     if spec.travel is not None:
         _check_slides(case, "motion.coordinate", name)
     elif spec.coordinate is None and case.pose.travel is not None:
@@ -315,7 +317,7 @@ def _check_displaced(case: CoreCase, name: str, check: DisplacementCheck) -> Non
 def _check_motor(case: CoreCase, name: str) -> None:
     if case.motion is None or case.drive is None:
         raise CaseError(f"checks.{name}: a motor needs a motion to drive; add [motion] and [drive]")
-    if Drive(link=case.drive.link, joint=case.drive.joint).pushes(case.linkage):
+    if Drive(link=case.drive.link, joint=case.drive.joint).effort(case.linkage) is DriveEffort.FORCE:
         raise CaseError(f"checks.{name}: a motor turns, but the drive pushes slider '{case.drive.joint}'; remove one")
     if not any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
         raise CaseError(

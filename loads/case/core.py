@@ -11,6 +11,7 @@ from alula.geometry.base.model import Name, Text
 from alula.geometry.base.units import NOT_NEGATIVE, Length
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.bodies.features import FlatFace
+from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Joint, Link, Linkage
 from alula.geometry.linkage.pose import Pose, solve_pose
 from alula.geometry.materials.material import Material, library
@@ -457,17 +458,23 @@ class CoreCase(Revisable):
         return set(self.links[link].arms.values()) - joints
 
     @property
-    def motion_coordinate(self) -> str:
+    def pose_coordinate(self) -> Coordinate | None:
+        """The link whose direction, or slider whose travel, fixes the stated pose; None where nothing moves."""
+        name, travel = self.pose.coordinate, self.pose.travel
+        return None if name is None else Coordinate(name, Measure.ANGLE if travel is None else Measure.TRAVEL)
+
+    @property
+    def motion_coordinate(self) -> Coordinate:
         """The link whose direction, or slider whose travel, the motion prescribes.
 
         Raises ``CaseError`` where the case has no motion.
         """
         name = None if self.motion is None else self.motion.coordinate or self.pose.coordinate
-        if name is None:
+        if self.motion is None or name is None:
             raise CaseError(
                 "motion: the case states no motion; add [motion] with a coordinate and a range or turn = true"
             )
-        return name
+        return Coordinate(name, Measure.ANGLE if self.motion.travel is None else Measure.TRAVEL)
 
     @property
     def moves(self) -> bool:

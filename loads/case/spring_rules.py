@@ -4,6 +4,7 @@ import itertools
 import math
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Measure
 from alula.loads.case.core import CoreCase
 from alula.loads.records.springs import Attachment, LineSpring
 from alula.loads.text.explain import require
@@ -77,7 +78,7 @@ def check_stops(case: CoreCase) -> None:
         require(f"stops.{name}.joint", stop.joint, [*_turning(case), *sliders], "is no joint that turns, and no slider")
         slides = case.joints[stop.joint].type == "slider"
         entry = f"stops.{name}.{'at_least' if stop.at_least is not None else 'at_most'}"
-        if slides != stop.limit.slides:
+        if slides != (stop.limit.measure is Measure.TRAVEL):
             kind = 'a slider, so it needs a travel: "5 mm"' if slides else 'revolute, so it needs an angle: "30 deg"'
             raise CaseError(f"{entry}: joint '{stop.joint}' is {kind}")
         if case.pose.coordinate is None:

@@ -7,6 +7,7 @@ from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length, parse
+from alula.geometry.linkage.coordinate import Measure
 from alula.loads.text.shares import Accuracy
 
 
@@ -34,20 +35,20 @@ class DriveStiffness(NamedTuple):
     ----------
     value : float
         Torque per angle [N mm/rad], or force per travel [N/mm].
-    slides : bool
-        True for a force per travel.
+    measure : Measure
+        Which of the two it is.
     """
 
     value: float
-    slides: bool
+    measure: Measure
 
 
 def _drive_stiffness(stated: object) -> DriveStiffness:
     try:
-        found = DriveStiffness(parse(stated, "torsional stiffness"), slides=False)
+        found = DriveStiffness(parse(stated, "torsional stiffness"), Measure.ANGLE)
     except PydanticCustomError as wrong:
         try:
-            found = DriveStiffness(parse(stated, "stiffness"), slides=True)
+            found = DriveStiffness(parse(stated, "stiffness"), Measure.TRAVEL)
         except PydanticCustomError:
             raise refusal(
                 f'{wrong.message()} for a drive about a joint, or a stiffness such as "20 N/mm" for one along a slider'

@@ -17,6 +17,7 @@ from alula.geometry.base.units import (
     TorsionalStiffness,
     parse,
 )
+from alula.geometry.linkage.coordinate import Measure
 
 Record = TypeVar("Record", bound=CaseModel)
 
@@ -101,20 +102,20 @@ class Limit(NamedTuple):
     ----------
     value : float
         Angle [rad] or travel [mm].
-    slides : bool
-        True for a travel.
+    measure : Measure
+        Which of the two it is.
     """
 
     value: float
-    slides: bool
+    measure: Measure
 
 
 def _limit(stated: object) -> Limit:
     try:
-        return Limit(parse(stated, "angle"), slides=False)
+        return Limit(parse(stated, "angle"), Measure.ANGLE)
     except PydanticCustomError as wrong:
         try:
-            return Limit(parse(stated, "length"), slides=True)
+            return Limit(parse(stated, "length"), Measure.TRAVEL)
         except PydanticCustomError:
             raise refusal(
                 f"{wrong.message()} for the angle of a revolute joint, or a length such as "

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.motion import Motion, refuse_slot_ends, solve_motion
 from alula.geometry.linkage.pose import Pose
-from alula.geometry.linkage.slot_ends import refuse_slot_ends
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, PartMass
@@ -32,6 +31,7 @@ from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
 from alula.loads.states.springs import spring_loads
 from alula.loads.states.standing import refuse_stops
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.friction import Presses
 from alula.loads.statics.momentum import LinkageMomentum, linkage_momentum
 from alula.loads.statics.statics import Drive
@@ -62,7 +62,7 @@ class CaseMotion:
     forces : mapping of str to Kinetostatics
         Load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages).
     torque : mapping of str to array (n,)
-        Load case -> drive torque [N mm], or force along the guide [N] where the drive ``pushes``; NaN at dead points
+        Load case -> drive torque [N mm], or force along the guide [N] where the drive exerts one; NaN at dead points
         of the driven link.
     dead_points : tuple of float
         Values of the coordinate [rad, mm] at which the driven link turns back.
@@ -153,14 +153,9 @@ class CaseMotion:
         return tuple(filter(None, told))
 
     @property
-    def pushes(self) -> bool:
-        """True where the drive is a force along a guide, and no torque."""
-        return self.drive.pushes(self.case.linkage)
-
-    @property
-    def effort(self) -> tuple[str, str]:
-        """What the drive exerts, and its unit, for people."""
-        return ("force", "N") if self.pushes else ("torque", "N·mm")
+    def effort(self) -> DriveEffort:
+        """What the drive exerts."""
+        return self.drive.effort(self.case.linkage)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -227,14 +222,13 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
     pose = case.solve_pose()
     angles = drive_angles(case, pose)
     speed, acceleration = drive_speeds(case, angles)
-    slides = spec.travel is not None
-    refuse_slot_ends(pose, angles, coordinate=coordinate, slides=slides)
-    motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
+    refuse_slot_ends(pose, angles, coordinate=coordinate)
+    motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
     refuse_turning_bonds(motion.virtual)
     refuse_stops(case, motion)
     masses = part_masses(case) if _weighed(case) else {}
     for name, load_case in case.load_cases.items():
-        if load_case.speed != 0.0 and (slides or coordinate != case.pose.coordinate):
+        if load_case.speed != 0.0 and (coordinate.slides or coordinate.name != case.pose.coordinate):
             raise CaseError(
                 f"load_cases.{name}.speed: it is the speed of the pose's coordinate '{case.pose.coordinate}', but the "
                 f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
@@ -253,7 +247,7 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
     if is_determinate(case.linkage):
         forces = {n: solve_kinetostatics(moved[n], drive, acting, power[n]) for n, acting in loads.items()}
     torque = {
-        n: drive_effort(forces[n]) if forces else torque_by_virtual_work(moved[n], drive, acting)
+        n: np.asarray(forces[n].effort) if forces else torque_by_virtual_work(moved[n], drive, acting)
         for n, acting in loads.items()
     }
     return CaseMotion(
@@ -275,22 +269,6 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
 def _weighed(case: Case) -> bool:
     """Return True where the parts of a motion are weighed: where weight or inertia acts."""
     return needs_masses(case) or case.inert
-
-
-def drive_effort(solved: Kinetostatics) -> Real:
-    """Return the drive torque, or the drive force where the drive pushes a slider.
-
-    Parameters
-    ----------
-    solved : Kinetostatics
-
-    Returns
-    -------
-    array (n,)
-        Torque [N mm] or force [N].
-    """
-    assert solved.drive is not None
-    return np.asarray(solved.drive_force if solved.drive.pushes(solved.motion.linkage) else solved.drive_torque)
 
 
 def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass], friction: Sequence[Load]) -> Power:
@@ -348,7 +326,7 @@ def drive_angles(case: Case, pose: Pose) -> Real:
     assert spec is not None
     if spec.ends is not None:
         return np.linspace(*spec.ends, spec.poses)
-    start = pose.angles[case.motion_coordinate]
+    start = pose.angles[case.motion_coordinate.name]
     return np.linspace(start, start + math.copysign(2.0 * math.pi, spec.speed), spec.poses)
 
 
@@ -379,7 +357,7 @@ def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
     square = first**2 + 2.0 * rate * np.abs(angles - angles[0])
     if square.min() < 0.0:
         stop = angles[0] + sense * first**2 / (-2.0 * rate)
-        where = f"{math.degrees(stop):.6g} deg" if spec.travel is None else f"{stop:.6g} mm"
+        where = case.motion_coordinate.measure.in_words(stop)
         raise CaseError(
             f"motion.acceleration: the drive slows down to a stop at {where}, before the motion ends; "
             "state a smaller deceleration, a higher speed or a shorter range"

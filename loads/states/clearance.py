@@ -146,7 +146,7 @@ class Clearance:
             return None
         start = float(self.motion.angles[0])
         ways = [abs((gap.at or 0.0) - start) for gap in touching]
-        return touching[first_least(ways, self.assembly.case.linkage.longest if self.motion.slides else 1.0)]
+        return touching[first_least(ways, self.motion.coordinate.measure.scale(self.motion.linkage))]
 
     @property
     def shown(self) -> Gap | None:
@@ -233,9 +233,7 @@ def way_of(case: Case, pose: Pose) -> Motion:
     Motion
     """
     assert case.motion is not None
-    return solve_motion(
-        pose, drive_angles(case, pose), coordinate=case.motion_coordinate, slides=case.motion.travel is not None
-    )
+    return solve_motion(pose, drive_angles(case, pose), coordinate=case.motion_coordinate)
 
 
 def start_of(motion: Motion) -> Real:
@@ -300,7 +298,7 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
         return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(case, gaps))
     motion = way_of(case, pose)
     longest, start = case.linkage.longest, start_of(motion)
-    step, at = _STEP * (longest if motion.slides else 1.0), along(motion)
+    step, at = _STEP * motion.coordinate.measure.scale(motion.linkage), along(motion)
     over: list[Gap] = []
     for number in ranked([gap.value for gap in gaps], longest):
         pair = found.pairs[number]

@@ -31,9 +31,7 @@ def pose_at(motion: Motion, number: int) -> Pose:
     -------
     Pose
     """
-    return Pose(
-        linkage=motion.linkage, q=motion.q[number], coordinate=motion.coordinate, residual=0.0, slides=motion.slides
-    )
+    return Pose(linkage=motion.linkage, q=motion.q[number], coordinate=motion.coordinate, residual=0.0)
 
 
 def least_dead_point_distance(moved: CaseMotion) -> float:
@@ -79,7 +77,7 @@ def _beyond(moved: CaseMotion, number: int, sense: float) -> float:
     """Return the way from a pose of the motion to the next dead point in one sense."""
     motion, linkage = moved.motion, moved.motion.linkage
     most, short = _TURN, _SHORT
-    if motion.slides:
+    if motion.coordinate.slides:
         most, short = _TRAVEL * len(linkage.moving) * linkage.longest, _SHORT * linkage.longest
     end, pose = float(motion.angles[number]), pose_at(motion, number)
     try:
@@ -95,13 +93,11 @@ def _beyond(moved: CaseMotion, number: int, sense: float) -> float:
 
 
 def _on(motion: Motion, pose: Pose, start: float, way: float) -> Motion:
-    return solve_motion(pose, [start, start + way], coordinate=motion.coordinate, slides=motion.slides)
+    return solve_motion(pose, [start, start + way], coordinate=motion.coordinate)
 
 
 def _holds_coordinate(moved: CaseMotion) -> bool:
     """Return whether the drive holds what the motion prescribes, so that both have the same dead points."""
     motion, drive = moved.motion, moved.drive
-    if motion.slides:
-        return moved.pushes and drive.joint == motion.coordinate
-    others = moved.case.joints[drive.joint].links
-    return not moved.pushes and drive.link == motion.coordinate and motion.linkage.ground in others
+    held, joint = drive.coordinate(motion.linkage), moved.case.joints[drive.joint]
+    return held == motion.coordinate and (held.slides or motion.linkage.ground in joint.links)

@@ -16,6 +16,7 @@ from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.placement import Placement
 from alula.loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.momentum import centroid_motion
 from alula.loads.statics.statics import (
     NEARLY_SINGULAR,
@@ -101,8 +102,7 @@ class Kinetostatics(Equilibrium):
     def drive_power(self) -> Real:
         """Power of the drive (n,) [N mm/s]."""
         assert self.drive is not None
-        effort = self.drive_force if self.drive.pushes(self.motion.linkage) else self.drive_torque
-        return np.asarray(effort * relative_motion(self.motion, self.drive) * self.motion.speed)
+        return np.asarray(self.effort * relative_motion(self.motion, self.drive) * self.motion.speed)
 
     @cached_property
     def imbalance(self) -> Real:
@@ -227,7 +227,7 @@ def dead_points(motion: Motion, drive: Drive) -> tuple[float, ...]:
     tuple of float
         Values of the motion's coordinate [rad, mm].
     """
-    if drive.pushes(motion.linkage):
+    if drive.effort(motion.linkage) is DriveEffort.FORCE:
         return motion.stopping_points(drive.joint)
     return motion.turning_points(drive.link, _counterpart(motion.linkage, drive))
 
@@ -246,9 +246,9 @@ def relative_motion(motion: Motion, drive: Drive) -> Real:
     array (n,)
         Of an angle by an angle without unit, of a travel by an angle [mm].
     """
-    if drive.pushes(motion.linkage):
-        column = len(motion.linkage.moving) + motion.closure.slots.index(drive.joint)
-        return drive.sign(motion.linkage) * motion.first[:, column]
+    held = drive.coordinate(motion.linkage)
+    if held.slides:
+        return drive.sign(motion.linkage) * motion.first[:, held.column(motion.closure)]
     return motion.virtual.spin(drive.link) - motion.virtual.spin(_counterpart(motion.linkage, drive))
 
 
@@ -270,7 +270,7 @@ def leverage(motion: Motion, drive: Drive) -> Real:
         From 0, at a dead point, to 1.
     """
     longest, moved = motion.linkage.longest, motion.virtual
-    unit = 1.0 if drive.pushes(motion.linkage) else longest
+    unit = 1.0 if drive.coordinate(motion.linkage).slides else longest
     squares = [np.abs(moved.velocity(n)) ** 2 + (longest * moved.spin(n)) ** 2 for n in motion.linkage.moving]
     return np.asarray(unit * np.abs(relative_motion(motion, drive)) / np.sqrt(np.sum(squares, axis=0)))
 

@@ -117,7 +117,7 @@ class LooseMotion:
         motion = moved.forces[load_case].motion
         moves = float(with_inertia(case, load_case))
         place, rates = motion.placement.chosen(poses), (moves * motion.speed[poses], moves * motion.acceleration[poses])
-        return play_at(case, load_case, place, moved.masses, motion.coordinate, motion.slides, *rates)
+        return play_at(case, load_case, place, moved.masses, motion.coordinate, *rates)
 
     @cached_property
     def passes(self) -> NDArray[np.bool_]:

@@ -14,6 +14,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.play import LooseJoints
@@ -394,7 +395,7 @@ def play_of(
     """
     speed = case.load_cases[load_case].speed
     coordinate = pose.coordinate if speed != 0.0 else None
-    return play_at(case, load_case, pose.placement, masses, coordinate, pose.slides, speed, presses=presses)
+    return play_at(case, load_case, pose.placement, masses, coordinate, speed, presses=presses)
 
 
 def play_at(
@@ -402,8 +403,7 @@ def play_at(
     load_case: str,
     place: Placement,
     masses: Mapping[str, PartMass],
-    coordinate: str | None,
-    slides: bool,
+    coordinate: Coordinate | None,
     speed: float | Real,
     acceleration: float | Real = 0.0,
     *,
@@ -420,10 +420,8 @@ def play_at(
         Without play.
     masses : mapping of str to PartMass
         Of the parts.
-    coordinate : str or None
-        Link, slider or slot that moves; None for that of the pose, at rest.
-    slides : bool
-        Whether it is a slider or slot.
+    coordinate : Coordinate or None
+        What moves; None for that of the pose, at rest.
     speed, acceleration : float or array (n,)
         Of the coordinate.
     presses : mapping of str to array (1,), optional
@@ -437,19 +435,19 @@ def play_at(
     radii = {name: play / 2.0 for name, play in clearances(case).items()}
     if not radii:
         return None
-    rates = partial(_with_rates, coordinate, slides, speed, acceleration)
-    friction = partial(_rubbed, case, load_case, coordinate, slides, presses)
+    rates = partial(_with_rates, coordinate, speed, acceleration)
+    friction = partial(_rubbed, case, load_case, coordinate, presses)
     loose = LooseJoints(place=place.at_rest, radii=radii, held=held_rows(place, case.pinned_drive))
     return Play(case=case, load_case=load_case, loose=loose, masses=masses, rates=rates, friction=friction)
 
 
 def _with_rates(
-    coordinate: str | None, slides: bool, speed: float | Real, acceleration: float | Real, place: Placement
+    coordinate: Coordinate | None, speed: float | Real, acceleration: float | Real, place: Placement
 ) -> Placement:
     """Return a placement with the rates that those of a coordinate give it."""
     if coordinate is None or not (np.any(speed) or np.any(acceleration)):
         return place
-    first, second = DrivenClosure(place.closure, coordinate, slides).coefficients(place.q)
+    first, second = DrivenClosure(place.closure, coordinate).coefficients(place.q)
     rate, change = (np.asarray(x)[..., None] for x in (speed, acceleration))
     return replace(place, qdot=rate * first, qddot=rate**2 * second + change * first)
 
@@ -457,18 +455,16 @@ def _with_rates(
 def _rubbed(
     case: Case,
     load_case: str,
-    coordinate: str | None,
-    slides: bool,
+    coordinate: Coordinate | None,
     presses: Presses,
     place: Placement,
     loads: Sequence[Load],
 ) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
     """Return what friction adds to the loads, and where it finds no balance."""
-    name, sense = coordinate or case.pose.coordinate, WAYS.get(case.load_cases[load_case].direction)
-    if not rubbing_joints(case) or name is None or sense is None or not is_determinate(case.linkage):
+    moves, sense = coordinate or case.pose_coordinate, WAYS.get(case.load_cases[load_case].direction)
+    if not rubbing_joints(case) or moves is None or sense is None or not is_determinate(case.linkage):
         return (), np.zeros(place.shape, dtype=np.bool_)
-    travels = slides if coordinate else case.pose.travel is not None
-    return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense, presses)
+    return friction_at(DrivenClosure(place.closure, moves), place, case.pinned_drive, loads, sense, presses)
 
 
 def held_rows(place: Placement, drive: Drive | None) -> Real:
@@ -486,9 +482,9 @@ def held_rows(place: Placement, drive: Drive | None) -> Real:
     """
     closure, linkage = place.closure, place.linkage
     rows = [_turning(place, *j.links) for j in linkage.joints.values() if j.bonded and not j.fixes_angle]
-    if drive is not None and drive.pushes(linkage):
+    if drive is not None and (held := drive.coordinate(linkage)).slides:
         row = np.zeros(closure.unknowns)
-        row[len(linkage.moving) + closure.slots.index(drive.joint)] = 1.0 / linkage.longest
+        row[held.column(closure)] = 1.0 / linkage.longest
         rows.append(row)
     elif drive is not None:
         rows.append(_turning(place, *linkage.joints[drive.joint].links))

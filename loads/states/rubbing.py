@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.motion import Motion, solve_motion
 from alula.geometry.linkage.placement import Placement
@@ -118,6 +119,7 @@ def pose_friction(
     CaseError
         Where the linkage locks itself.
     """
+    assert pose.coordinate is not None
     place = at_one_pose(pose).virtual
     way = case.load_cases[load_case].direction
     found = solve_friction(
@@ -126,7 +128,7 @@ def pose_friction(
     if found.locked[0]:
         raise CaseError(
             f"load_cases.{load_case}: with friction the linkage locks itself in this pose, driven "
-            f"{told_direction(way, pose.coordinate, pose.slides)}: no drive moves it, and joint forces grow without "
+            f"{told_direction(way, pose.coordinate)}: no drive moves it, and joint forces grow without "
             f"bound; with less than {_percent(found.lock[0])} of joints.*.friction it would move. Change the friction, "
             "the pose or the drive, or state the direction of the load case if it never moves that way"
         )
@@ -290,28 +292,26 @@ def lock_sentence(load_case: str, rubbing: Rubbing, motion: Motion) -> str:
     where = " and ".join(f"from {low:.4g} to {high:.4g} {motion.unit}" for low, high in spans)
     return (
         f"load case {load_case}: with friction the linkage locks itself {where} of {motion.coordinate}, driven "
-        f"{told_direction(rubbing.way, motion.coordinate, motion.slides)}; no drive moves it there"
+        f"{told_direction(rubbing.way, motion.coordinate)}; no drive moves it there"
     )
 
 
-def told_direction(way: str, coordinate: str | None, slides: bool) -> str:
+def told_direction(way: str, coordinate: Coordinate) -> str:
     """Return a direction of the motion for people.
 
     Parameters
     ----------
     way : str
         "forward" or "backward".
-    coordinate : str or None
+    coordinate : Coordinate
         Of the pose or motion.
-    slides : bool
-        Whether it is a slider or slot.
 
     Returns
     -------
     str
     """
     grows = "grows" if way == "forward" else "falls"
-    return f"{way} (the {'travel' if slides else 'angle'} of {coordinate} {grows})"
+    return f"{way} (the {coordinate.measure.word} of {coordinate} {grows})"
 
 
 def _percent(share: float) -> str:

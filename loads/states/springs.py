@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.linkage.placement import Complex, Placement, vector
 from alula.loads.case.core import CoreCase
 from alula.loads.records.applied import PointLoad
@@ -300,7 +301,7 @@ def joint_value(case: CoreCase, stop: Stop, place: Placement) -> Real:
     array (...)
         [rad] or [mm]
     """
-    if stop.limit.slides:
+    if stop.limit.measure is Measure.TRAVEL:
         return np.asarray(place.q[..., len(case.linkage.moving) + place.closure.slots.index(stop.joint)])
     limits = [other.limit.value for other in case.stops.values() if other.joint == stop.joint]
     middle = (min(limits) + max(limits)) / 2.0
@@ -321,4 +322,4 @@ def touching(case: CoreCase, stop: Stop) -> float:
     float
         [rad] or [mm]
     """
-    return TOUCHING * (case.linkage.longest if stop.limit.slides else 1.0)
+    return TOUCHING * stop.limit.measure.scale(case.linkage)

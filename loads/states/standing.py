@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.continuation import DeadPointError, Track
+from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.motion import Motion, solve_motion
 from alula.geometry.linkage.placement import Placement
@@ -139,15 +140,14 @@ def _told(case: Case, name: str, value: float) -> str:
     """Return the angle or travel of a stop's joint for people."""
     stop = case.stops[name]
     first, second = case.joints[stop.joint].links
-    if stop.limit.slides:
-        return f"the travel of joint '{stop.joint}' is {value:.6g} mm"
-    return f"the angle of {second} to {first} at joint '{stop.joint}' is {math.degrees(value):.6g} deg"
+    if stop.limit.measure is Measure.TRAVEL:
+        return f"the travel of joint '{stop.joint}' is {stop.limit.measure.in_words(value)}"
+    return f"the angle of {second} to {first} at joint '{stop.joint}' is {stop.limit.measure.in_words(value)}"
 
 
 def _rule(case: Case, name: str) -> str:
     limit, least = case.stops[name].limit, case.stops[name].at_least is not None
-    value = f"{limit.value:.6g} mm" if limit.slides else f"{math.degrees(limit.value):.6g} deg"
-    return f"{value} at {'least' if least else 'most'}"
+    return f"{limit.measure.in_words(limit.value)} at {'least' if least else 'most'}"
 
 
 class _Way:
@@ -157,7 +157,7 @@ class _Way:
         self.case, self.load_case, self.masses = case, load_case, masses
         self.pose = case.stated_pose
         assert self.pose.coordinate is not None
-        self.driven = DrivenClosure(self.pose.closure, self.pose.coordinate, self.pose.slides)
+        self.driven = DrivenClosure(self.pose.closure, self.pose.coordinate)
         self.size = self.driven.size
         self.track: Track | None = None
         self.ended: DeadPointError | None = None
@@ -171,7 +171,7 @@ class _Way:
     def far(self, sense: float) -> float:
         """Follow the branch in one sense as far as it goes, and return to where [rad, mm]."""
         linkage, near = self.case.linkage, 3.0 * _STEP * self.size
-        most = _TRAVEL * len(linkage.moving) * linkage.longest if self.pose.slides else _TURN
+        most = _TRAVEL * len(linkage.moving) * linkage.longest if self.driven.coordinate.slides else _TURN
         for _ in range(2):
             try:
                 self.follow(*sorted((-sense * near, sense * most)))
@@ -288,7 +288,7 @@ def _at(way: _Way, value: float) -> tuple[Pose, Placement]:
 def _balanced(way: _Way, at: float, load_case: str) -> Standing:
     stiffness, none = way.stiffness(at)
     if stiffness <= none:
-        unit = "N/mm" if way.pose.slides else "N·mm/rad"
+        unit = way.driven.coordinate.measure.stiffness_unit
         kind = (
             "but is indifferent there" if stiffness >= -none else f"but not stably (stiffness {stiffness:.4g} {unit})"
         )
@@ -321,10 +321,10 @@ def _standing(way: _Way, at: float) -> Standing:
             spring = way.case.springs[state.name]
             free = "free_length" if isinstance(spring, LineSpring) else "free_angle"
             springs[state.name] = spring.model_copy(update={free: None, "preload": float(state.effort)})
-    value = {"travel": pose.held} if pose.slides else {"angle": pose.held}
+    coordinate = way.driven.coordinate
     moving = way.case.linkage.moving
-    near = {link: angle for link, angle in pose.angles.items() if link in moving and link != pose.coordinate}
-    stated = way.case.pose.model_copy(update={"near": near, "equilibrium": False, **value})
+    near = {link: angle for link, angle in pose.angles.items() if link in moving and link != coordinate.name}
+    stated = way.case.pose.model_copy(update={"near": near, "equilibrium": False, coordinate.measure.word: pose.held})
     case = way.case.model_copy(update={"pose": stated, "springs": springs})
     stops = {name: float(joint_value(way.case, stop, both)[1]) for name, stop in case.stops.items()}
     return Standing(case=case, pose=pose, springs=states, stops=stops)
@@ -360,9 +360,7 @@ def _holder(case: Case, pose: Pose) -> Drive:
         for link in joint.links
         if link != ground
     ]
-    own = [
-        p for p in places if p.joint == pose.coordinate or (p.link == pose.coordinate and not p.pushes(case.linkage))
-    ]
+    own = [place for place in places if place.coordinate(case.linkage) == pose.coordinate]
     return max(own or places, key=lambda place: place.dead_point_distance(pose))
 
 

@@ -18,10 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Complex, Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.applied import Load, shifted
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction, travelled
 from alula.loads.statics.system import System, require_determinate
 
@@ -57,8 +59,8 @@ class Drive:
         """The link that it holds, for people."""
         return f"link '{self.link}' held by stop '{self.stop}'" if self.stop else f"driven link {self.link}"
 
-    def pushes(self, linkage: Linkage) -> bool:
-        """Return True where the drive is a force along a guide, and no torque.
+    def effort(self, linkage: Linkage) -> DriveEffort:
+        """Return what the drive exerts.
 
         Parameters
         ----------
@@ -66,9 +68,26 @@ class Drive:
 
         Returns
         -------
-        bool
+        DriveEffort
+            A force at a slider, along its guide; else a torque.
         """
-        return linkage.joints[self.joint].type == "slider"
+        return DriveEffort.FORCE if linkage.joints[self.joint].type == "slider" else DriveEffort.TORQUE
+
+    def coordinate(self, linkage: Linkage) -> Coordinate:
+        """Return what the drive holds.
+
+        Parameters
+        ----------
+        linkage : Linkage
+
+        Returns
+        -------
+        Coordinate
+            The angle of the driven link, or the travel of the driven slider.
+        """
+        if self.effort(linkage) is DriveEffort.FORCE:
+            return Coordinate(self.joint, Measure.TRAVEL)
+        return Coordinate(self.link)
 
     def dead_point_distance(self, pose: Pose) -> float:
         """Return how far a pose is from a dead point of the driven link or slider.
@@ -82,8 +101,7 @@ class Drive:
         float
             As ``Pose.dead_point_distance`` counts it.
         """
-        slides = self.pushes(pose.linkage)
-        return pose.dead_point_distance(self.joint if slides else self.link, slides=slides)
+        return pose.dead_point_distance(self.coordinate(pose.linkage))
 
     def sign(self, linkage: Linkage) -> float:
         """Return the sign of the driven link's motion in the joint's, which is that of its second link.
@@ -131,6 +149,12 @@ class Equilibrium:
         raise NotImplementedError
 
     @property
+    def effort(self) -> Any:
+        """The drive's torque [N mm] or force [N], as its kind is; 0 without drive."""
+        force = self.drive is not None and self.drive.effort(self.placement.linkage) is DriveEffort.FORCE
+        return self.drive_force if force else self.drive_torque
+
+    @property
     def driving(self) -> tuple[Any, Any]:
         """Torque [N mm] and force [N] of the drive: none where a stop or the balance of the pose takes its place."""
         drive = self.drive
@@ -171,7 +195,7 @@ class Equilibrium:
             The drive torque on the driven link, its reaction on the other, 0 elsewhere [N mm].
         """
         linkage = self.placement.linkage
-        if self.drive is None or self.drive.pushes(linkage):
+        if self.drive is None or self.drive.effort(linkage) is DriveEffort.FORCE:
             return 0.0
         if link == self.drive.link:
             return self.drive_torque
@@ -217,14 +241,15 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
     System
     """
     linkage = place.linkage
-    turns = None if drive is None or drive.pushes(linkage) else drive.joint
+    effort = None if drive is None else drive.effort(linkage)
+    turns = drive.joint if drive is not None and effort is DriveEffort.TORQUE else None
     unknowns = [
         (column, name, *unit)
         for name in linkage.joints
         for column, unit in _units(place, name).items()
         if (column, name) != (f"M:{turns}", turns)  # the drive's torque is the moment of its joint
     ]
-    if drive is not None and drive.pushes(linkage):
+    if drive is not None and effort is DriveEffort.FORCE:
         unknowns.append(("P", drive.joint, drive.sign(linkage) * along_joint(place, drive.joint), 0.0))
     columns = tuple(column for column, *_ in unknowns)
     turned = () if turns is None else linkage.joints[turns].links

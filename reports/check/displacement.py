@@ -8,6 +8,7 @@ from alula.fea.common.verdict import LINKAGE, Quantity, Subject
 from alula.fea.frame.thrust import thrusts
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.solid.buckling_factor import MOST
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
@@ -94,7 +95,7 @@ def _deformed(case: LoadCaseResult) -> Iterator[Table]:
         for name, joint in told.joints.items()
     ]
     drive = moved.drive
-    if drive is not None and drive.pushes(moved.pose.linkage):
+    if drive is not None and drive.effort(moved.pose.linkage) is DriveEffort.FORCE:
         what = f"force of stop {drive.stop}" if drive.stop else "drive force"
         rows.append((f"{what} [N]", Number(before.drive_force), Number(told.drive_force)))
     elif drive is not None and not drive.idle:

@@ -104,11 +104,11 @@ def linkage_section(result: CheckResult) -> Section:
 
 def _held(result: CheckResult) -> Iterator[Part]:
     pose, balanced, told = result.pose, result.case.pose.equilibrium, list[str | Number]()
-    if pose.slides:
+    if pose.coordinate is not None and pose.coordinate.slides:
         held = f"The pose is fixed by joint {pose.coordinate}, whose travel is "
         told = [held, Number(pose.held, "mm"), " in balance. " if balanced else ". "]
     elif pose.coordinate is not None:
-        angle = Number(math.degrees(pose.angles[pose.coordinate]) % 360.0, "", 6)
+        angle = Number(math.degrees(pose.held) % 360.0, "", 6)
         held = f"The pose is {'in balance with' if balanced else 'fixed by'} link {pose.coordinate}, whose axis points "
         told = [f"{held}to ", angle, "° (counter-clockwise from x). "]
     yield paragraph(*told, f"Degrees of freedom after Gruebler: {pose.linkage.mobility}")
@@ -138,22 +138,21 @@ def dead_points(result: CheckResult) -> Iterator[tuple[str, str, float]]:
     """
     pose, drive = result.pose, None if result.case.pose.equilibrium else result.case.pinned_drive
     if pose.coordinate is not None:
-        distance = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
-        yield "the pose coordinate", pose.coordinate, distance
+        yield "the pose coordinate", pose.coordinate.name, pose.dead_point_distance(pose.coordinate)
     if drive is not None:
         yield "the driven link", drive.link, drive.dead_point_distance(pose)
 
 
 def _data(result: CheckResult) -> dict[str, Any]:
-    pose, slides = result.pose, result.pose.slides
+    pose, coordinate = result.pose, result.pose.coordinate
     angles = {link: math.degrees(angle) % 360.0 for link, angle in pose.angles.items()}
     held = {what: {"link": link, "distance": distance} for what, link, distance in dead_points(result)}
     return {
         "points": {name: [float(x) for x in at] for name, at in pose.points.items()},
         "link_angles": angles,
-        "coordinate": pose.coordinate,
-        "coordinate_angle": None if pose.coordinate is None or slides else angles[pose.coordinate],
-        "coordinate_travel": pose.held if slides else None,
+        "coordinate": coordinate and coordinate.name,
+        "coordinate_angle": angles[coordinate.name] if coordinate and not coordinate.slides else None,
+        "coordinate_travel": pose.held if coordinate and coordinate.slides else None,
         "mobility": pose.linkage.mobility,
         "closure_residual": pose.residual,
         "longest_link": pose.linkage.longest,

@@ -87,7 +87,7 @@ def _size(found: Extent | None) -> dict[str, Any] | None:
         return None
     motion = found.motion
     return {
-        "coordinate": None if motion is None else motion.coordinate,
+        "coordinate": None if motion is None else motion.coordinate.name,
         "unit": None if motion is None else motion.unit,
         **{axis: data(size_band(found, k)) for k, axis in enumerate(AXES)},
         "sides": [

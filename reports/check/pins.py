@@ -7,6 +7,7 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.loads.case.case import Case
 from alula.loads.case.forks import forked_link
 from alula.loads.case.joint_rules import clearances, rubbing_joints
+from alula.loads.statics.effort import DriveEffort
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Part, Section, Text
 from alula.reports.sections.table import Column, Table, numbers, words
@@ -101,7 +102,7 @@ def _transfer(case: Case) -> Iterator[tuple[str, str]]:
     held = [name for name, joint in joints if joint.clamped and joint.clamp_length is not None]
     turned = [name for name, joint in joints if joint.type == "revolute" and joint.bonded and name not in held]
     drive = case.pinned_drive
-    if drive is not None and not drive.pushes(case.linkage):
+    if drive is not None and drive.effort(case.linkage) is DriveEffort.TORQUE:
         turned = [drive.joint, *turned]
     if turned:
         yield "Torque at shafts", _TRANSFER.format(joints=f"the pins of {joined(list(dict.fromkeys(turned)))}")

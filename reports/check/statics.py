@@ -11,6 +11,7 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.loads.case.case import Case
 from alula.loads.case.layers import pin_masses
 from alula.loads.records.carried import CarriedSpread
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.statics import Reactions
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import code, sub
@@ -127,10 +128,10 @@ def _system(case: LoadCaseResult) -> dict[str, object]:
 
 def _drive(reactions: Reactions) -> dict[str, float | None]:
     drive = reactions.drive
-    pushes = drive is not None and drive.pushes(reactions.pose.linkage)
+    force = drive is not None and drive.effort(reactions.pose.linkage) is DriveEffort.FORCE
     return {
         "drive_torque": None if drive is None else reactions.driving[0],
-        "drive_force": reactions.driving[1] if pushes else None,
+        "drive_force": reactions.driving[1] if force else None,
     }
 
 

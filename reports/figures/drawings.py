@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.geometry.linkage.coordinate import Measure
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import LineLoad, PointLoad, in_axes
 from alula.loads.records.springs import LineSpring
@@ -269,7 +270,7 @@ class _Drawing:
             found.append((f"{state.name}: {told}", line))
         for name, stop in case.stops.items():
             first, second = case.joints[stop.joint].links
-            if stop.limit.slides:
+            if stop.limit.measure is Measure.TRAVEL:
                 way = place.direction(first) * np.exp(1j * case.joints[stop.joint].direction)
                 zero = place.position(first, self.linkage.joint_points(stop.joint)[0])
                 middle, behind = zero + stop.limit.value * way, -stop.sense * way

@@ -40,7 +40,7 @@ def drive_section(found: MotionFindings) -> Section:
         parts=(
             chart(
                 "torque",
-                f"Drive {moved.effort[0]} on {moved.drive.link}",
+                f"Drive {moved.effort.word} on {moved.drive.link}",
                 lambda: figures().torque_figure(moved, found.play),
             ),
             *groups,
@@ -55,8 +55,8 @@ def drive_section(found: MotionFindings) -> Section:
 def _parts(
     found: MotionFindings, name: str, record: Mapping[str, Any], play: Mapping[str, Any] | None
 ) -> Iterator[Part]:
-    moved, (what, unit) = found.moved, found.moved.effort
-    rows = [(f"drive {what} on {moved.drive.link}", unit, record[f"drive_{what}"])]
+    moved, effort = found.moved, found.moved.effort
+    rows = [(f"drive {effort.word} on {moved.drive.link}", effort.unit, record[effort.entry])]
     rows += [("drive power", "W", record["drive_power"])] if "drive_power" in record else []
     rows += [(f"joint {joint}", "N", row) for joint, row in (record["joints"] or {}).items()]
     yield extremes_table("drive", name, rows, moved.motion.unit, ends=True, known=not moved.dead_points)
@@ -87,9 +87,9 @@ def _record(found: MotionFindings, load_case: str) -> dict[str, Any]:
 
     data: dict[str, Any] = {
         "inertia": with_inertia(result.case, load_case),
-        "speed_mm_per_s" if result.motion.slides else "speed_rad_per_s": result.case.load_cases[load_case].speed
+        f"speed_{result.motion.coordinate.measure.symbol}_per_s": result.case.load_cases[load_case].speed
         or float(moved.speed[0]),
-        f"drive_{result.effort[0]}": over(result.torque[load_case]),
+        result.effort.entry: over(result.torque[load_case]),
         "joints": None,
     }
     if result.rubbing:

@@ -144,7 +144,7 @@ def _motion(result: EnvelopeResult) -> Section:
         parts=tuple(parts),
         data={
             "motion": {
-                "coordinate": motion.coordinate,
+                "coordinate": motion.coordinate.name,
                 "first": first.value,
                 "last": last.value,
                 "poses": len(result.angles),
@@ -167,7 +167,7 @@ def _links(result: EnvelopeResult) -> Section:
 
         return envelope_figure(result)
 
-    coordinate, drive = result.moved.motion.coordinate, result.drive.link
+    coordinate, drive = result.moved.motion.coordinate.name, result.drive.link
     columns = (
         words("link"),
         words("load case"),

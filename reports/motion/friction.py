@@ -62,11 +62,12 @@ def friction_texts(moved: CaseMotion, work: DriveWork, load_case: str) -> Iterat
     ------
     Text
     """
-    record, motion, (what, unit) = friction_over_motion(moved, work, load_case), moved.motion, moved.effort
+    record, motion = friction_over_motion(moved, work, load_case), moved.motion
+    what, unit = moved.effort.word, moved.effort.unit
     torque, without = (_range(of[load_case]) for of in (moved.torque, moved.frictionless))
     low, high = _ends(work)
     yield say(
-        f"Friction, driven {told_direction(record['direction'], motion.coordinate, motion.slides)}: drive {what} "
+        f"Friction, driven {told_direction(record['direction'], motion.coordinate)}: drive {what} "
         f"{{with_low}} to {{with_high}} {unit}, without friction {{without_low}} to {{without_high}} {unit}; with all "
         f"friction that may be {{all_low}} to {{all_high}} {unit}",
         with_low=torque[0],

@@ -62,7 +62,7 @@ def play_record(found: MotionFindings) -> dict[str, Any] | None:
         "through_dead_point": stretches(motion, play.passes),
         "dead_point_distance": with_pose(motion, "smallest", *play.nearest),
         "points": points,
-        f"drive_{found.moved.effort[0]}": {
+        found.moved.effort.entry: {
             name: with_pose(motion, "smallest", *play.smallest[name])
             | with_pose(motion, "largest", *play.largest[name])
             for name in found.moved.loads
@@ -113,7 +113,7 @@ def drive_with_play(moved: CaseMotion, record: Mapping[str, Any], load_case: str
     -------
     Text
     """
-    (what, unit), at = moved.effort, moved.motion.unit
+    what, unit, at = moved.effort.word, moved.effort.unit, moved.motion.unit
     row = record[f"drive_{what}"][load_case]
     if not math.isfinite(row["largest"] - row["smallest"]):
         return Text(f"With play of pins the drive {what} has no end next to a dead point.")
@@ -160,8 +160,8 @@ def drive_play(found: MotionFindings, load_case: str) -> dict[str, Real]:
     play = found.play
     if play is None:
         return {}
-    (what, unit), (low, high) = found.moved.effort, play.effort[load_case]
-    unit = unit.replace("·", " ")
+    what, unit = found.moved.effort.word, found.moved.effort.unit.replace("·", " ")
+    low, high = play.effort[load_case]
     value, least = play.distance
     return {
         f"least {what} with play [{unit}]": low,

@@ -92,7 +92,7 @@ def _dead_points(found: MotionFindings) -> Iterator[Text]:
     for at in moved.dead_points:
         yield say(
             f"Dead point of the driven link {link} at {motion.coordinate} = {{at}}: {link} reverses its direction "
-            f"there; drive {moved.effort[0]} and joint forces grow without bound",
+            f"there; drive {moved.effort.word} and joint forces grow without bound",
             at=Number(float(motion.told(at)), motion.unit, decimals=4),
         )
     if not moved.dead_points:
@@ -122,12 +122,15 @@ def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
 
     links, points = ({}, {}) if own is None else (own.links, own.points)
     return {
-        "coordinate": motion.coordinate,
+        "coordinate": motion.coordinate.name,
         "unit": motion.unit,
         "first": float(motion.told(motion.angles[0])),
         "last": float(motion.told(motion.angles[-1])),
         "poses": len(motion.angles),
-        "speed_mm_per_s" if motion.slides else "speed_rad_per_s": [float(motion.speed[0]), float(motion.speed[-1])],
+        f"speed_{motion.coordinate.measure.symbol}_per_s": [
+            float(motion.speed[0]),
+            float(motion.speed[-1]),
+        ],
         "duration": None if motion.times is None else float(motion.times[-1]),
         "closure_residual": motion.residual,
         "returns_to_start": motion.returns,

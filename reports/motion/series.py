@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from alula.fea.findings.joint_paths import moving_points, owners
 from alula.fea.findings.of_motion import MotionFindings
 from alula.fea.findings.rates import QUANTITIES, Rates, Values
+from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.play import drive_play, point_play
@@ -64,27 +65,23 @@ def motion_series(found: MotionFindings, rates: Mapping[str, Rates], own: Rates 
 
 
 def _base(motion: Motion) -> dict[str, Real]:
-    columns = {
-        f"{motion.coordinate} {'travel' if motion.slides else 'angle'} [{motion.unit}]": motion.told(motion.angles)
-    }
+    columns = {f"{motion.coordinate} {motion.coordinate.measure.word} [{motion.unit}]": motion.told(motion.angles)}
     return columns if motion.times is None else columns | {"time [s]": motion.times}
 
 
 def _link_columns(result: CaseMotion, own: Rates | None) -> dict[str, Real]:
     motion, columns = result.motion, dict[str, Real]()
+    coordinate, per = motion.coordinate, "rad/mm" if motion.coordinate.slides else "1"
     for i, link in enumerate(motion.linkage.moving):
-        if motion.slides or link != motion.coordinate:
+        if coordinate != Coordinate(link):
             columns[f"{link} angle [deg]"] = np.degrees(motion.angle(link))
-        columns[f"{link} speed over speed of {motion.coordinate} [{'rad/mm' if motion.slides else '1'}]"] = (
-            motion.first[:, i]
-        )
+        columns[f"{link} speed over speed of {coordinate} [{per}]"] = motion.first[:, i]
         if motion.times is not None:
             columns[f"{link} speed [rad/s]"] = motion.angular_speed(link)
             columns[f"{link} acceleration [rad/s^2]"] = motion.angular_acceleration(link)
     for joint in motion.closure.slots:
-        if motion.slides and joint == motion.coordinate:
-            continue
-        columns[f"{joint} travel [mm]"] = motion.travel(joint)
+        if coordinate != Coordinate(joint, Measure.TRAVEL):
+            columns[f"{joint} travel [mm]"] = motion.travel(joint)
     for link, values in {} if own is None else own.links.items():
         columns |= _named(link, {key: found for key, found in values.items() if key not in ANGULAR})
     return columns
@@ -129,7 +126,7 @@ def _point_columns(found: MotionFindings) -> dict[str, Real]:
 
 def _torque_columns(found: MotionFindings, load_case: str) -> dict[str, Real]:
     result = found.moved
-    what, unit = result.effort
+    what, unit = result.effort.word, result.effort.unit
     columns = {f"{what} on {result.drive.link} [{unit.replace('·', ' ')}]": result.torque[load_case]}
     if result.rubbing:
         columns[f"{what} without friction [{unit.replace('·', ' ')}]"] = result.frictionless[load_case]

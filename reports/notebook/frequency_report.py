@@ -80,7 +80,7 @@ class FrequencyReport(Tabled):
 
         name, history = self._history(load_case)
         case = self.result.case
-        coordinate = "pose" if case.motion is None else case.motion_coordinate
+        coordinate = "pose" if case.motion is None else case.motion_coordinate.name
         return ShownPicture(campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name).png())
 
     def plot_shapes(self, load_case: str | None = None) -> ShownPicture:

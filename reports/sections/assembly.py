@@ -123,7 +123,7 @@ def gap_table(found: Clearance) -> Table:
     motion, gaps = found.motion, found.gaps[:MOST]
     bands = (Band(value=gap.value, low=gap.low, high=gap.high, sources=SOURCES) for gap in gaps)
     at = [_at(found, gap) for gap in gaps]
-    coordinate = Column("") if motion is None else Column(motion.coordinate, motion.unit)
+    coordinate = Column("") if motion is None else Column(motion.coordinate.name, motion.unit)
     smallest = f", the {MOST} smallest" if len(found.gaps) > MOST else ""
     return Table.by_columns(
         {
@@ -174,7 +174,7 @@ def clearance_record(found: Clearance | None) -> dict[str, Any] | None:
         return None
     motion = found.motion
     return {
-        "coordinate": None if motion is None else motion.coordinate,
+        "coordinate": None if motion is None else motion.coordinate.name,
         "unit": None if motion is None else motion.unit,
         "least": data(clearance_band(found)),
         "first_contact": None if found.contact is None else _gap(found, found.contact),

@@ -108,7 +108,7 @@ def _pictures(found: CaseFrequencies, name: str) -> Iterator[Picture]:
     """Yield the pictures of a load case."""
     case, history, moves = found.case, found.histories[name], found.case.motion is not None
 
-    coordinate = case.motion_coordinate if moves else "pose"
+    coordinate = case.motion_coordinate.name if moves else "pose"
     lines = [f"Load case “{name}”."]
     if moves:
         lines.append("Left: natural frequencies with their bands over the motion.")
@@ -196,7 +196,7 @@ def _series(found: CaseFrequencies) -> Series:
 def _record(found: CaseFrequencies) -> dict[str, Any]:
     case, links = found.case, found.links.items()
     return {
-        "coordinate": None if case.motion is None else case.motion_coordinate,
+        "coordinate": None if case.motion is None else case.motion_coordinate.name,
         "unit": None if case.motion is None else unit(case),
         "prestress": "included",
         "left_out": list(LEFT_OUT),

@@ -9,6 +9,7 @@ from alula.fea.common.source import play_source
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play, Span
+from alula.loads.statics.effort import DriveEffort
 from alula.reports.sections.data import data
 from alula.reports.sections.section import Part, Text, paragraph
 from alula.reports.sections.table import Column, Number, Table, numbers, words
@@ -75,9 +76,8 @@ def _told(play: Play) -> Text:
             ". That is with pins along z; where they tilt in their holes points move further, as checks of points hold"
         ]
     if drive is not None and play.nominal is not None:
-        pushes = drive.pushes(play.case.linkage)
-        effort = Number(_band(play, play.effort), "N" if pushes else "N·mm")
-        told += [f". Drive {'force' if pushes else 'torque'} ", effort]
+        effort = drive.effort(play.case.linkage)
+        told += [f". Drive {effort.word} ", Number(_band(play, play.effort), effort.unit)]
         told += [f", distance to a dead point of {drive.link} (a ratio) ", Number(_band(play, play.distance))]
     return paragraph(*told)
 
@@ -96,9 +96,9 @@ def play_record(play: Play | None) -> dict[str, Any] | None:
     """
     if play is None:
         return None
-    driven, effort, distance = "drive_torque", None, None
+    driven, effort, distance = DriveEffort.TORQUE, None, None
     if play.drive is not None:
-        driven = "drive_force" if play.drive.pushes(play.case.linkage) else "drive_torque"
+        driven = play.drive.effort(play.case.linkage)
         effort, distance = data(_band(play, play.effort)), data(_band(play, play.distance))
     return {
         "clearances": play.clearances,
@@ -114,7 +114,7 @@ def play_record(play: Play | None) -> dict[str, Any] | None:
             for point in play.case.links[link].points
         ],
         "joints": [{"joint": name, "force": data(_band(play, span))} for name, span in play.forces.items()],
-        **({"drive_torque": None, "drive_force": None} | {driven: effort}),
+        **driven.alone(effort, None),
         "dead_point_distance": distance,
     }
 

@@ -12,6 +12,7 @@ from alula.loads.records.applied import Load
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.rubbing import told_direction
 from alula.loads.states.standing import Standing
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.friction import friction_wrenches
 from alula.loads.statics.rounding import rounded, size_of, without_rounding
 from alula.loads.statics.statics import Reactions
@@ -114,7 +115,7 @@ def _driving(reactions: Reactions, told: Reactions, standing: Standing) -> Itera
     drive = reactions.drive
     if held := holding_sentence(standing):
         yield Text(bold(f"{held}."))
-    elif drive is not None and drive.pushes(reactions.pose.linkage):
+    elif drive is not None and drive.effort(reactions.pose.linkage) is DriveEffort.FORCE:
         yield say(
             "Drive force on {link} along {joint}: {force}, already included in the guide reaction above",
             link=drive.link, joint=drive.joint, force=Number(told.drive_force, "N"),
@@ -258,8 +259,9 @@ def friction_sentence(work: DriveWork, reactions: Reactions) -> str:
     str
     """
     pose, drive = reactions.pose, reactions.drive
-    pushes = drive is not None and drive.pushes(pose.linkage)
-    unit, size = ("N", size_of(reactions)[0]) if pushes else ("N·mm", size_of(reactions)[5])
+    effort = DriveEffort.TORQUE if drive is None else drive.effort(pose.linkage)
+    unit, size = effort.unit, size_of(reactions)[0 if effort is DriveEffort.FORCE else 5]
+    assert pose.coordinate is not None
     between = ""
     if work.ends is not None:
         low, high = (
@@ -267,7 +269,7 @@ def friction_sentence(work: DriveWork, reactions: Reactions) -> str:
         )
         between = f" ({low} to {high})"
     found = (
-        f"Friction, driven {told_direction(work.way, pose.coordinate, pose.slides)}: drive "
+        f"Friction, driven {told_direction(work.way, pose.coordinate)}: drive "
         f"{number(float(work.effort[0]), beside=size)}{between} {unit}, without friction "
         f"{number(float(work.without[0]), beside=size)} {unit}"
     )

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.geometry.linkage.coordinate import Measure
 from alula.loads.records.springs import TurnSpring
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.springs import SpringState, spring_states
@@ -27,19 +28,18 @@ def holding_sentence(standing: Standing) -> str:
         A sentence without its full stop; "" where the drive holds it, or nothing needs to.
     """
     pose, case = standing.pose, standing.case
-    value = f"{number(pose.held)} mm" if pose.slides else f"{number(math.degrees(pose.held))} deg"
     if standing.stop:
         joint = case.stops[standing.stop].joint
         first, second = case.joints[joint].links
-        slides = case.stops[standing.stop].limit.slides
-        how = f"N on {second} along joint {joint}" if slides else f"N·mm {turning(standing.contact)} on {second}"
-        size = number(standing.contact if slides else abs(standing.contact))
+        size, how = number(standing.contact), f"N on {second} along joint {joint}"
+        if case.stops[standing.stop].limit.measure is Measure.ANGLE:
+            size, how = number(abs(standing.contact)), f"N·mm {turning(standing.contact)} on {second}"
         return f"Stop '{standing.stop}' is reached and bears {size} {how}, the opposite on {first}; no drive is needed"
-    if standing.stiffness is not None:
-        unit = "N/mm" if pose.slides else "N·mm/rad"
+    if standing.stiffness is not None and pose.coordinate is not None:
+        measure = pose.coordinate.measure
         return (
-            f"The pose balances by itself at {pose.coordinate} = {value}, and is stable: its stiffness is "
-            f"{number(standing.stiffness)} {unit}"
+            f"The pose balances by itself at {pose.coordinate} = {number(float(measure.told(pose.held)))} "
+            f"{measure.unit}, and is stable: its stiffness is {number(standing.stiffness)} {measure.stiffness_unit}"
         )
     return ""
 
@@ -61,13 +61,13 @@ def spring_sentences(standing: Standing) -> Iterator[str]:
     for name, value in standing.stops.items():
         stop = standing.case.stops[name]
         at, limit = _told(standing, name, value), _told(standing, name, stop.limit.value)
-        unit, most = "mm" if stop.limit.slides else "deg", "least" if stop.sense > 0.0 else "most"
+        unit, most = stop.limit.measure.unit, "least" if stop.sense > 0.0 else "most"
         yield f"Stop {name}: joint {stop.joint} at {number(at)} {unit}, at {most} {number(limit)} {unit}"
 
 
 def _told(standing: Standing, stop: str, value: float) -> float:
     """Return a coordinate at a stop in the unit that is told [mm or deg]."""
-    return value if standing.case.stops[stop].limit.slides else math.degrees(value)
+    return float(standing.case.stops[stop].limit.measure.told(value))
 
 
 def _size(standing: Standing, state: SpringState) -> str:

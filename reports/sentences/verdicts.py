@@ -281,4 +281,8 @@ def told_speed(moved: "CaseMotion", load_case: str) -> str:
         In rpm, or in mm/s of a travel.
     """
     speed = moved.case.load_cases[load_case].speed or float(moved.moved[load_case].speed[0])
-    return f"{number(speed)} mm/s" if moved.motion.slides else f"{plain(float(f'{speed * 30.0 / math.pi:.4g}'))} rpm"
+    return (
+        f"{number(speed)} mm/s"
+        if moved.motion.coordinate.slides
+        else f"{plain(float(f'{speed * 30.0 / math.pi:.4g}'))} rpm"
+    )

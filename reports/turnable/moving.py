@@ -178,8 +178,8 @@ def _of_check(case: Case, pose: Pose, motion: Motion | None) -> Poses:
         return Poses(place=Placement(closure=pose.closure, q=pose.q[None]), texts=[stated])
     values = motion.angles[spread_poses(len(motion.angles))]
     start, end = float(values[0]), float(values[-1])
-    held = pose.travels[motion.coordinate] if motion.slides else pose.angles[motion.coordinate]
-    if not motion.slides:
+    held = float(pose.q[motion.coordinate.column(pose.closure)])
+    if not motion.coordinate.slides:
         held += 2.0 * math.pi * round(((start + end) / 2.0 - held) / (2.0 * math.pi))
     slack = _SAME * abs(end - start)
     inside = min(start, end) - slack <= held <= max(start, end) + slack

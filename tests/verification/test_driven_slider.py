@@ -14,6 +14,7 @@ from alula.fea.frame.build import build_frame
 from alula.fea.frame.linear import solve_frame
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import solve_motion
 from alula.geometry.linkage.pose import solve_pose
@@ -40,7 +41,7 @@ def piston_driven(travels, **rates):
 
 def test_the_pose_at_a_travel_is_the_one_whose_crank_gives_it() -> None:
     pose = solve_pose(LINKAGE, coordinate="S", travel=130.0, near=NEAR)
-    assert (pose.coordinate, pose.slides, pose.travels["S"]) == ("S", True, 130.0)
+    assert (pose.coordinate, pose.travels["S"]) == (Coordinate("S", Measure.TRAVEL), 130.0)
     again = solve_pose(LINKAGE, coordinate="crank", angle=pose.angles["crank"], near=NEAR | {"crank": 0.0})
     assert again.q == pytest.approx(pose.q, abs=1e-10)
     # The cosine rule about the crank's pin.
@@ -61,8 +62,8 @@ def test_the_motion_is_the_inverse_of_the_crank_driven_one() -> None:
     assert np.abs(pushed.qdot - cranked.qdot).max() < 1e-10 * np.abs(cranked.qdot).max()
     assert np.abs(pushed.qddot - cranked.qddot).max() < 1e-10 * np.abs(cranked.qddot).max()
     assert np.abs(pushed.points - cranked.points).max() < 1e-10 * size
-    assert pushed.slides
-    assert pushed.pose(3).slides
+    assert pushed.coordinate.slides
+    assert pushed.pose(3).coordinate == pushed.coordinate
 
 
 @pytest.mark.parametrize(("end", "stop"), [(170.0, LONGEST), (60.0, SHORTEST)])
@@ -76,8 +77,8 @@ def test_dead_points_are_named_by_their_travel(end: float, stop: float) -> None:
 def test_poses_next_to_a_dead_point_are_told_by_the_piston_and_not_by_the_crank() -> None:
     stretched = math.asin(OFFSET / (A + B))
     pose = solve_pose(LINKAGE, coordinate="crank", angle=stretched + 1e-4, near={"coupler": -0.1, "block": 0.0})
-    assert pose.dead_point_distance("S", slides=True) < 1e-3
-    assert pose.dead_point_distance("crank") > 0.1
+    assert pose.dead_point_distance(Coordinate("S", Measure.TRAVEL)) < 1e-3
+    assert pose.dead_point_distance(Coordinate("crank")) > 0.1
 
 
 def loads():
@@ -189,7 +190,7 @@ def test_a_travel_of_what_does_not_slide_is_refused() -> None:
         solve_pose(LINKAGE, coordinate="S", travel=170.0, near=NEAR)
     pose = solve_pose(LINKAGE, coordinate="S", travel=130.0, near=NEAR)
     with pytest.raises(CaseError, match="'crank' is not a slider or slot; choose one of S"):
-        solve_motion(pose, [1.0], coordinate="crank", slides=True)
+        solve_motion(pose, [1.0], coordinate=Coordinate("crank", Measure.TRAVEL))
 
 
 def test_a_link_and_a_slider_may_have_one_name() -> None:

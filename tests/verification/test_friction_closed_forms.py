@@ -39,7 +39,7 @@ def rubbed(
 
 def effort(linkage: Linkage, drive: Drive, found: Friction, load: PointLoad) -> np.ndarray:
     columns = assemble(found.place, drive, [load]).columns
-    return found.unknowns[:, columns.index("P" if drive.pushes(linkage) else "T")]
+    return found.unknowns[:, columns.index("P" if drive.coordinate(linkage).slides else "T")]
 
 
 def bell_crank(friction: float) -> Linkage:

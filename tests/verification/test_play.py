@@ -24,7 +24,7 @@ PLAY = {"A": 0.1, "B": 0.2, "C": 0.3, "D": 0.05}
 
 def loose(pose: Pose, play: dict[str, float]) -> LooseJoints:
     held = np.zeros(pose.closure.unknowns)
-    held[pose.held_column] = 1.0 / (pose.linkage.longest if pose.slides else 1.0)
+    held[pose.held_column] = 1.0 / pose.coordinate.measure.scale(pose.linkage)
     return LooseJoints(place=pose.placement, radii={name: c / 2.0 for name, c in play.items()}, held=held[None])
 
 

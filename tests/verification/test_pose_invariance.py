@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from planar_linkages import OPEN_WING, four_bar, six_bar
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.pose import CLOSED, Pose, solve_pose
 
 LENGTHS = st.floats(20.0, 200.0)
@@ -85,4 +86,6 @@ def test_the_owl_wing_moves_with_its_ground(
         z = complex(xy[0], sign * xy[1]) * np.exp(1j * turn) * scale + offset
         np.testing.assert_allclose(moved.points[name], [z.real, z.imag], atol=1e-8 * moved.linkage.longest)
     for driven in ("AE", "GF"):
-        assert moved.dead_point_distance(driven) == pytest.approx(plain.dead_point_distance(driven), rel=1e-6)
+        assert moved.dead_point_distance(Coordinate(driven)) == pytest.approx(
+            plain.dead_point_distance(Coordinate(driven)), rel=1e-6
+        )

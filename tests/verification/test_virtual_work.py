@@ -10,6 +10,7 @@ from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, slid
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.closure import LoopClosure
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.pose import Pose, solve_pose
 from alula.loads.records.applied import PointLoad
@@ -94,7 +95,7 @@ def test_drive_torque_from_velocities_and_from_joint_forces(kind: str) -> None:
                 wrench = rng.normal(size=6) * [1, 1, 1, 30, 30, 30]
                 loads.append(PointLoad(link=name, point=point, wrench=wrench))
         for drive in drives:
-            if pose.dead_point_distance(drive.link) < 1e-3:
+            if pose.dead_point_distance(Coordinate(drive.link)) < 1e-3:
                 continue
             torque = solve_statics(pose, drive, loads).drive_torque
             expected = _torque_by_virtual_work(pose, drive, loads)

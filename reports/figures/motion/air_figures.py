@@ -42,9 +42,9 @@ def air_figure(airs: AirRange, load_case: str) -> Figure:
     Figure
     """
     result = airs.stated
-    (what, unit), air = result.effort, result.case.load_cases[load_case].flapping
+    air, kind = result.case.load_cases[load_case].flapping, result.effort
     assert air is not None
-    figure, panels = over_angle(result.motion, [f"drive {what} [{unit}]", "drive power [W]"], _SIZE)
+    figure, panels = over_angle(result.motion, [f"drive {kind.word} [{kind.unit}]", "drive power [W]"], _SIZE)
     at, (low, high) = result.motion.told(result.motion.angles), air.ends
 
     def effort(one: CaseMotion) -> Real:

@@ -51,7 +51,7 @@ def draw_animation(motion: Motion, path: Path) -> None:
     points = motion.closure.positions(motion.track.at(angles))
     frames = []
     with quiet_glyphs():
-        title.set_text(motion.coordinate)
+        title.set_text(motion.coordinate.name)
         moving = [*(line for line, _ in drawn), *axes.texts, title]  # names stand above the links
         for artist in moving:
             artist.set_animated(True)

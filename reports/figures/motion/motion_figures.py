@@ -65,7 +65,7 @@ def torque_figure(result: CaseMotion, play: PlayOverMotion | None = None) -> Fig
     Figure
     """
     motion = result.motion
-    figure, [axes] = over_angle(motion, [f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]"])
+    figure, [axes] = over_angle(motion, [f"drive {result.effort.word} on {result.drive.link} [{result.effort.unit}]"])
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
     _with_play(axes, result, play)
@@ -301,7 +301,7 @@ def over_angle(motion: Motion, labels: Sequence[str], size: tuple[float, float] 
         axes.set_ylabel(label, parse_math=False)
         axes.set_xlim(*motion.told(motion.angles[[0, -1]]))
         axes.grid(color="0.9", linewidth=0.8)
-    what = "travel" if motion.slides else "direction"
+    what = "travel" if motion.coordinate.slides else "direction"
     panels[-1].set_xlabel(f"{what} of {motion.coordinate} [{motion.unit}]", parse_math=False)
     return figure, panels
 

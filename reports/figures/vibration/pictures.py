@@ -53,7 +53,7 @@ def frequency_pictures(found: CaseFrequencies | None, *, every: bool = False) ->
     case, drawn = found.case, dict[str, Canvas]()
     for name in found.histories if every else [deciding_load_case(found)]:
         history = found.histories[name]
-        coordinate = "pose" if case.motion is None else case.motion_coordinate
+        coordinate = "pose" if case.motion is None else case.motion_coordinate.name
         drawn[shapes_name(name)] = shapes_drawing(history.lowest)
         drawn[campbell_name(name)] = campbell_diagram(history, coordinate=coordinate, unit=unit(case), load_case=name)
     return drawn

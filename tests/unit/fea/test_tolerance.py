@@ -27,6 +27,7 @@ from alula.fea.tolerance.states import Sampler
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.closure import LoopClosure
 from alula.geometry.linkage.continuation import DeadPointError, follow
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.sampled import assemble_samples
 from alula.geometry.materials.material import TOLD
@@ -131,7 +132,7 @@ def test_samples_that_do_not_assemble_come_to_a_dead_point_before_the_pose():
     assert there.all()
     wanted = float(pose.q[pose.held_column])
     for number, q in list(zip(lost, further.q, strict=True))[:3]:
-        drawn = DrivenClosure(LoopClosure(direct_case(case, variables, rows[number]).linkage), "GF")
+        drawn = DrivenClosure(LoopClosure(direct_case(case, variables, rows[number]).linkage), Coordinate("GF"))
         with pytest.raises(DeadPointError) as stopped:
             follow(drawn, q, wanted, wanted + away)
         assert stopped.value.angle - wanted == pytest.approx(states.short[number], abs=1e-6)

@@ -19,6 +19,7 @@ from planar_linkages import four_bar
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.motion import solve_motion
 from alula.geometry.linkage.pose import solve_pose
 from alula.geometry.mechanisms.fourbar import FourBar
@@ -107,7 +108,7 @@ def test_owl_wing_closes_as_published():
     assert motion.angular_speed("AE")[0] == 0.0  # it stands still: no speed was given
     # There AE, held, does not hold the wing.
     at = solve_motion(wing_pose(), [angle]).pose(0)
-    assert at.dead_point_distance("AE") < 1e-10 < at.dead_point_distance("GF")
+    assert at.dead_point_distance(Coordinate("AE")) < 1e-10 < at.dead_point_distance(Coordinate("GF"))
 
 
 def test_owl_wing_cannot_be_driven_past_the_point_where_AE_turns_back():
@@ -115,7 +116,7 @@ def test_owl_wing_cannot_be_driven_past_the_point_where_AE_turns_back():
     [turn] = motion.turning_points("AE")
     limit = solve_motion(wing_pose(), [turn]).angle("AE")[0]
     with pytest.raises(DeadPointError) as caught:
-        solve_motion(wing_pose(), np.radians([143.5, 150.0]), coordinate="AE")
+        solve_motion(wing_pose(), np.radians([143.5, 150.0]), coordinate=Coordinate("AE"))
     assert caught.value.angle == pytest.approx(limit, abs=1e-9)
     assert caught.value.exit_status == 2
     assert "AE = 144.977865 deg" in str(caught.value)
@@ -236,4 +237,4 @@ def test_angles_that_are_none(angles):
 
 def test_a_coordinate_that_does_not_move():
     with pytest.raises(CaseError, match="'AG' is not a moving link"):
-        solve_motion(wing_pose(), [3.9], coordinate="AG")
+        solve_motion(wing_pose(), [3.9], coordinate=Coordinate("AG"))

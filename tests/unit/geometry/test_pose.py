@@ -17,6 +17,7 @@ from planar_linkages import (
 )
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.pose import CLOSED, Pose, constraint_jacobian, solve_pose
 
@@ -214,9 +215,9 @@ def test_the_dead_point_distance_of_ae_vanishes_where_ae_turns_back() -> None:
     assert angle == pytest.approx(213.51, abs=0.01)
     near = {k: v for k, v in OPEN_WING.items() if k != "CF"} | {"CF": math.radians(angle)}
     pose = solve_pose(six_bar(), coordinate="GF", angle=math.radians(angle), near=near)
-    assert pose.dead_point_distance("AE") < 1e-12
-    assert pose.dead_point_distance("GF") > 0.05
-    distances = [_wing(angle + away).dead_point_distance("AE") for away in (2.0, 1.0, 0.5)]
+    assert pose.dead_point_distance(Coordinate("AE")) < 1e-12
+    assert pose.dead_point_distance(Coordinate("GF")) > 0.05
+    distances = [_wing(angle + away).dead_point_distance(Coordinate("AE")) for away in (2.0, 1.0, 0.5)]
     for wider, closer in pairwise(distances):
         assert closer / wider == pytest.approx(0.5, abs=0.02)  # it falls linearly to zero
 
@@ -229,8 +230,8 @@ def test_a_toggle_is_a_dead_point_of_the_rocker_alone() -> None:
     angle = math.atan2(end[1], end[0])
     linkage = four_bar(a, float(np.linalg.norm(end)) - a, c, 100)
     pose = solve_pose(linkage, coordinate="crank", angle=angle, near={"coupler": angle, "rocker": rocker})
-    assert pose.dead_point_distance("rocker") < 1e-7
-    assert pose.dead_point_distance("crank") > 0.05
+    assert pose.dead_point_distance(Coordinate("rocker")) < 1e-7
+    assert pose.dead_point_distance(Coordinate("crank")) > 0.05
 
 
 def test_the_constraint_jacobian_is_the_derivative_of_the_constraints() -> None:
@@ -282,7 +283,7 @@ def test_inputs_are_left_unchanged() -> None:
     before = linkage.links.copy(), linkage.joints.copy()  # type: ignore[attr-defined]
     pose = solve_pose(linkage, coordinate="GF", angle=math.radians(228.15), near=near)
     q = pose.q.copy()
-    constraint_jacobian(pose), pose.dead_point_distance("AE"), pose.points
+    constraint_jacobian(pose), pose.dead_point_distance(Coordinate("AE")), pose.points
     assert near == OPEN_WING
     assert (linkage.links, linkage.joints) == before
     np.testing.assert_array_equal(pose.q, q)

@@ -16,6 +16,7 @@ from planar_linkages import (
 )
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.pose import Pose, constraint_jacobian, solve_pose
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
@@ -157,7 +158,7 @@ def test_the_smallest_singular_value_is_the_dead_point_distance() -> None:
     for angle in (216.0, 222.0, 228.15):
         pose = wing(angle)
         system = assemble(pose.placement, AE, [])
-        assert system.singular_values[-1] == pytest.approx(pose.dead_point_distance("AE"), rel=1e-9)
+        assert system.singular_values[-1] == pytest.approx(pose.dead_point_distance(Coordinate("AE")), rel=1e-9)
 
 
 def test_superposition_and_scaling() -> None:

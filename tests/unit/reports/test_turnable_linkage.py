@@ -76,7 +76,7 @@ def test_poses_are_those_of_the_motion_for_the_values_that_are_told():
     frames = unpacked(motion["frames"], 3 * len(motion["links"]))
     told = np.radians([float(text.split()[2].replace("−", "-")) for text in motion["texts"]])
     found = solve_motion(case.solve_pose(), drive_angles(case, case.solve_pose()), coordinate=case.motion_coordinate)
-    crank = motion["links"].index(case.motion_coordinate)
+    crank = motion["links"].index(case.motion_coordinate.name)
     assert np.angle(np.exp(1j * (frames[:, 3 * crank] - told))) == pytest.approx(0.0, abs=1e-3)
     assert frames[0, ::3] == pytest.approx(found.q[0, : len(motion["links"])] % (2 * np.pi), abs=1e-3) or np.allclose(
         np.exp(1j * frames[0, ::3]), np.exp(1j * found.q[0, : len(motion["links"])]), atol=1e-3
