@@ -17,6 +17,7 @@ from alula.fea.motion import envelope_outcomes
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.link_history import link_histories
 from alula.geometry.bodies.body import hand_section
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.records.applied import LineLoad
@@ -103,7 +104,9 @@ def test_of_both_plates_and_all_poses_the_least_factor_is_told_where_it_is(
 ) -> None:
     """Three records of what acts on a link under one load case; poses that were left out leave it open."""
     case = read_case("owl-wing-static", [PLANAR])
-    moved = SimpleNamespace(case=case, motion=SimpleNamespace(coordinate="GF", angles=np.radians([10, 20, 30, 40])))
+    moved = SimpleNamespace(
+        case=case, motion=SimpleNamespace(coordinate=Coordinate("GF"), angles=np.radians([10, 20, 30, 40]))
+    )
     histories = [SimpleNamespace(name="weight", number=i) for i in range(3)]
 
     def factors(_: Case, __: str, history: SimpleNamespace) -> ColumnFactors:

@@ -41,6 +41,7 @@ from alula.fea.solid.stress import principal, stress_field, von_mises
 from alula.fea.superposition.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
 from alula.fea.superposition.unit_solutions import nodal_stress
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.meshing.mesh import mesh_body
 from alula.loads.case.case_file import read_case
 from alula.loads.records.check_spec import BearingCheck
@@ -400,7 +401,7 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     forces = {"B": np.array([[9.0, 0.0], [8.0, 0.0], [7.0, 0.0], [6.0, 0.0]])}
     solved = SimpleNamespace(joints={"B": SimpleNamespace(wrench=wrenches)}, forces=forces)
     case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
-    motion = SimpleNamespace(coordinate="crank", angles=np.zeros(4))
+    motion = SimpleNamespace(coordinate=Coordinate("crank"), angles=np.zeros(4))
     check = BearingCheck.model_validate({"type": "bearing"})
     moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
     list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3, {}))

@@ -20,6 +20,7 @@ from alula.fea.solid.layers import Layers, best_directions, build_directions, on
 from alula.fea.solid.stress import von_mises
 from alula.fea.superposition.peaks import ModeMeasures, largest_stress
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.materials.material import library
 from alula.loads.case.case_file import read_case
 from alula.reports.sentences import told
@@ -213,7 +214,7 @@ def test_peaks_over_many_loads_are_those_of_all_nodes():
 
 
 def over_motion(case, factor):
-    motion = SimpleNamespace(coordinate="GF", angles=np.radians([0.0, 45.0]))
+    motion = SimpleNamespace(coordinate=Coordinate("GF"), angles=np.radians([0.0, 45.0]))
     layers = (
         {"weight": LayerEnvelope(safety_factor=factor, pose=1, location=np.zeros(3), fatigue=None, no_fatigue="")}
         if factor

@@ -9,6 +9,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.motion import linkage_history
 from alula.fea.nonlinear.stability import SNAP
+from alula.geometry.linkage.coordinate import Coordinate
 from alula.reports.sentences import told
 
 
@@ -54,7 +55,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         monkeypatch.setattr(linkage_history, name, stub)
     moved = SimpleNamespace(
         case=SimpleNamespace(large_displacement="auto"),
-        motion=SimpleNamespace(coordinate="crank", angles=np.radians([10.0, 20.0])),
+        motion=SimpleNamespace(coordinate=Coordinate("crank"), angles=np.radians([10.0, 20.0])),
         loads={"push": ()},
         drive=None,
     )
