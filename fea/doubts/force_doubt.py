@@ -21,7 +21,7 @@ from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import LEAST, Growths
 from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.joint_forces import JointForces
-from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule, widest
 from alula.loads.case.case import Case
@@ -231,11 +231,12 @@ def measures_and_column(case: Case, link: str, loads: LinkLoads) -> tuple[float,
     tuple of (float, float, float)
         [MPa], [mm], pure; three times [N] without beam.
     """
-    hands = [link_by_hand(case, link, plate) for plate in plates(loads, apart(case, link))]
-    told = measures(case, link, loads)
+    each = borne(case, link, loads)
+    hands = [link_by_hand(case, link, plate) for plate in each]
+    stress, displacement = _numbers(hands, each)
     if hands[0].check.without:
-        return *told, told[0]
-    return *told, max(1.0 / least_factor(case, link, hand.check) for hand in hands)
+        return stress, displacement, stress
+    return stress, displacement, max(1.0 / least_factor(case, link, hand.check) for hand in hands)
 
 
 def borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> Plates:
@@ -255,7 +256,11 @@ def borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> Pl
 
 
 def _by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[float, float]:
-    hands = [link_by_hand(case, link, plate) for plate in borne]
+    return _numbers([link_by_hand(case, link, plate) for plate in borne], borne)
+
+
+def _numbers(hands: Sequence[LinkByHand], borne: Sequence[LinkLoads]) -> tuple[float, float]:
+    """Stress and displacement of the worse plate; the largest pin force for both without beam."""
     if hands[0].check.without:
         largest = max(float(np.linalg.norm(pin.wrench[:3])) for plate in borne for pin in plate.pins)
         return largest, largest

@@ -179,15 +179,19 @@ def _displacements(task: LinkTask, refined: RefinedSolid, modes: _Modes) -> Real
 
 
 def _factors(values: Real, answers: NDArray[np.int64], rule: Rule) -> Scatter:
-    """What all answers make of a value; variants and plates of a pair count by the worst one, and by the best one."""
+    """What all answers make of a value; variants and plates of a pair count by the worst one, and by the best one.
+
+    Where the best one is 0 as stated, as of an idle plate, nothing is known of the low end.
+    """
     each = [values[answers == number] for number in np.unique(answers)]
-    if not each[0].min() > 0.0:
+    if not each[0].max() > 0.0:
         raise CannotRunError("a link without stress has no share of one")
     ends = [
         rule(float(first), list(map(float, rest)))
         for first, *rest in ([one.min() for one in each], [one.max() for one in each])
     ]
-    return replace(ends[1], low=min(ends[0].low, 1.0), high=max(ends[1].high, 1.0))
+    low = min(ends[0].low, 1.0) if each[0].min() > 0.0 else 0.0
+    return replace(ends[1], low=low, high=max(ends[1].high, 1.0))
 
 
 def _error(refined: RefinedSolid, modes: _Modes, load: int, node: int) -> float:

@@ -20,7 +20,8 @@ from alula.fea.nonlinear.large_displacement import examine
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
-from alula.fea.superposition.solid_shares import solid_shares
+from alula.fea.superposition.link_answers import widest
+from alula.fea.superposition.solid_shares import _factors, solid_shares
 from alula.geometry.meshing.mesh import mesh_body
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case_file import validate
@@ -106,3 +107,11 @@ def test_wherever_pins_with_play_stand_the_solid_bears_no_more(link):
     assert found["von_mises"].high >= max(most for _, most in sizes) / stated[1]
     assert max(most for _, most in sizes) / stated[1] > 1.01  # play tells
     assert found["von_mises"].high < 1.6
+
+
+def test_of_an_idle_plate_nothing_is_known_of_the_low_end():
+    """Stated: 2 and 4, or 0 and 4; another answer has 1 and 6."""
+    answers = np.array([3, 3, 5, 5])
+    both, idle = (_factors(np.array([first, 4.0, 1.0, 6.0]), answers, widest(())) for first in (2.0, 0.0))
+    assert (both.low, both.high) == (0.5, 1.5)
+    assert (idle.low, idle.high) == (0.0, 1.5)
