@@ -594,7 +594,7 @@ def _bearing(
     for name, check in case.checks.items():
         if isinstance(check, BearingCheck):
             for joint in check.joints or case.bearing_joints:
-                every = [one.joints[joint].wrench for one in (reactions, *(way.reactions for way in forces.sharings))]
+                every = [one.joints[joint].wrench for one in (reactions, *forces.sharings)]
                 yield bearing_outcome(case, load_case, name, check, joint, every, growth.get(joint))
 
 

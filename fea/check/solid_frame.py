@@ -30,7 +30,7 @@ from alula.fea.frame.case_statics import CaseStatics
 from alula.fea.frame.condensed import LinkFlexibility
 from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.displacement_band import flexibility_ranges
-from alula.fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces
+from alula.fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces, on_pins
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -164,7 +164,7 @@ def centre_lines_do(case: Case, forces: JointForces) -> bool:
     for link, ends in ranges.items():
         for end in ends:
             found = _solved(frame, {link: end})[1]
-            if _change(found, forces.reactions) > SAME * _size(forces.reactions):
+            if _change(found, forces.on_tight_pins) > SAME * _size(forces.on_tight_pins):
                 return False
     return True
 
@@ -231,7 +231,7 @@ class _Linkage:
             found = self._answer({key: (force, give.value) for key, (force, give) in pressed.items()})
             if _change(found.reactions, before.reactions) <= SETTLED * _size(found.reactions):
                 break
-        return JointForces(
+        tight = JointForces(
             reactions=found.reactions,
             model=OF_SOLIDS[self.plain.model],
             reason=self.plain.reason,
@@ -241,6 +241,7 @@ class _Linkage:
             deviations=tuple(self._deviations(found, pressed)),
             play=self.plain.play,
         )
+        return on_pins(self.case, tight)
 
     def _answer(
         self, gives: Mapping[tuple[str, str], tuple[Real, float]], softer: Mapping[str, float] | None = None

@@ -19,7 +19,6 @@ from alula.fea.common.plates import plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import LEAST, Growths
-from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
 from alula.fea.links.second_order import on_tilting_pins
@@ -27,6 +26,7 @@ from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule, wide
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
 from alula.loads.records.applied import Load
+from alula.loads.statics.statics import Reactions
 
 FLAT = 1e-4
 """Extent of points in a direction, over their largest, below which they have none."""
@@ -54,7 +54,8 @@ def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequ
     if not forces.open_by:
         return Growths()
     answers = {link: stiffness_answers(case, load_case, link, forces, loads) for link in case.checked_links}
-    return _growths(case, forces, forces.open_by, _summed(forces.sources), answers)
+    changed = [one.reactions for one in forces.open_by]
+    return _growths(case, forces.on_tight_pins, changed, _summed(forces.sources), answers)
 
 
 def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> LinkAnswers:
@@ -73,7 +74,7 @@ def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces
     body, rule = case.body(link), _summed(forces.sources)
     stated, *others = (
         borne(case, link, link_loads(load_case, link, body, reactions, loads), tilts=False)
-        for reactions in (forces.reactions, *(one.reactions for one in forces.open_by))
+        for reactions in (forces.on_tight_pins, *(one.reactions for one in forces.open_by))
     )
     return LinkAnswers(stated=stated, others=tuple(others), stress=rule, displacement=rule)
 
@@ -107,7 +108,7 @@ def sharing_doubt(
         return Growths()
     links = case.checked_links if links is None else links
     answers = {link: sharing_answers(case, load_case, link, forces, loads, grown=grown) for link in links}
-    return _growths(case, forces, forces.sharings, widest(COUPLES), answers)
+    return _growths(case, forces.reactions, forces.sharings, widest(COUPLES), answers)
 
 
 def sharing_answers(
@@ -131,8 +132,7 @@ def sharing_answers(
     """
     body = case.body(link)
     tight, *others = (
-        link_loads(load_case, link, body, reactions, loads)
-        for reactions in (forces.reactions, *(one.reactions for one in forces.sharings))
+        link_loads(load_case, link, body, reactions, loads) for reactions in (forces.reactions, *forces.sharings)
     )
     longest = case.linkage.longest
     across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
@@ -145,8 +145,8 @@ def sharing_answers(
 
 def _growths(
     case: Case,
-    forces: JointForces,
-    changes: Sequence[Deviation],
+    stated: Reactions,
+    changes: Sequence[Reactions],
     rule: Rule,
     answers: Mapping[str, LinkAnswers],
 ) -> Growths:
@@ -156,7 +156,7 @@ def _growths(
         plain, *others = (_by_hand(case, link, borne) for borne in one.every)
         stress[link] = one.stress(plain[0], [other[0] for other in others])
         displacement[link] = one.displacement(plain[1], [other[1] for other in others])
-    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, changes, rule)))
+    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(stated, changes, rule)))
 
 
 def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -188,11 +188,11 @@ def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.arange(count)
 
 
-def _joints(forces: JointForces, changes: Sequence[Deviation], around: Rule) -> dict[str, Scatter]:
+def _joints(stated: Reactions, changes: Sequence[Reactions], around: Rule) -> dict[str, Scatter]:
     joints = {}
-    for name, joint in forces.reactions.joints.items():
+    for name, joint in stated.joints.items():
         along = joint.force / (joint.magnitude or 1.0)
-        joints[name] = around(joint.magnitude, [float(along @ one.reactions.joints[name].force) for one in changes])
+        joints[name] = around(joint.magnitude, [float(along @ one.joints[name].force) for one in changes])
     return joints
 
 

@@ -44,6 +44,8 @@ YIELDS_NOT = 3e3
 tip of a cantilever 0.1 % too far; in small ones it does not give. Measured on a portal frame with clamps of 0.5 % to
 45 % of its links: equilibrium is followed with 2e3 to 2e4, and with 1e5 no more."""
 _SAME_PLACE = 1e-9
+Eye = tuple[str, str]
+"""Link and point."""
 
 
 def build_frame(
@@ -93,7 +95,8 @@ def build_frame(
     revolute = {name: joint for name, joint in case.linkage.joints.items() if joint.type == "revolute"}
     bonds = frozenset(name for name, joint in revolute.items() if bonded or joint.bonded)
     stiff = bonds if held is None else bonds | {held.joint}
-    contacts = {name: builder.contact(name, twists=name not in stiff) for name in case.joints}
+    by_length = sorted(case.joints, key=lambda name: abs(case.linkage.rise(name)))
+    contacts = {name: builder.contact(name, twists=name not in stiff) for name in by_length}
     places = np.array(builder.places)
     for name, joint in case.joints.items():
         held_here = held is not None and name == held.joint
@@ -132,6 +135,7 @@ def build_frame(
         pins=builder.pins,
         pin_ends=builder.pin_ends,
         pin_beams=builder.pin_beams,
+        pin_eyes=builder.pin_eyes,
         stations=builder.stations,
         arms=builder.arms,
         beams=builder.beams,
@@ -182,6 +186,7 @@ class _Builder:
         self.supports: list[Support] = []
         self.pin_ends: dict[str, int] = {}
         self.pin_beams: dict[str, int] = {}
+        self.pin_eyes: dict[str, tuple[Eye, Eye]] = {}
         self.slack = _SAME_PLACE * case.linkage.longest
         for link in case.linkage.moving:
             own = [load for load in loads if load.link == link]
@@ -214,8 +219,9 @@ class _Builder:
         """Return the nodes that a joint brings together, and put its pin between them where its links lie apart.
 
         The pin is a beam from the mid-plane of the one link to that of the other: of a revolute joint built into the
-        first link; of a pin in a slot, or along a guide, into the second, since the first cannot hold it. ``twists``:
-        false of the pin of the drive's joint, and of a bonded one.
+        first link; of a pin in a slot, or along a guide, into the second, since the first cannot hold it. Where the pin
+        of a shorter joint goes the same way from that link, it is one pin, which goes on from that joint's other link.
+        ``twists``: false of the pin of the drive's joint, and of a bonded one.
         """
         first, second = self.pins[name]
         linkage, joint = self.case.linkage, self.case.joints[name]
@@ -224,10 +230,17 @@ class _Builder:
             return first, second
         revolute = joint.type == "revolute"
         root, link = (first, joint.links[0]) if revolute else (second, joint.links[1])
+        eye, far, up = ((one, linkage.point_of(name, one)) for one in joint.links), 0.0, rise if revolute else -rise
+        own, other = eye if revolute else reversed([*eye])
+        for shorter, (start, end) in self.pin_eyes.items() if revolute else ():
+            reach = linkage.rise(shorter)
+            if start == own and far < reach / up < 1.0 and linkage.joints[shorter].type == "revolute":
+                root, own, far = self.pin_ends[shorter], end, reach / up
         if root is None:
             root = self._node(link, *self.case.links[link].points[linkage.point_of(name, link)], name)
             self.supports.append(Support(node=root))
-        self.places.append(self.places[root] + np.array([0.0, 0.0, rise if revolute else -rise]))
+        self.pin_eyes[name] = own, other
+        self.places.append(self.places[root] + np.array([0.0, 0.0, (1.0 - far) * up]))
         self.names.append(f"the pin at {name}")
         self.pin_ends[name] = end = len(self.places) - 1
         self.pin_beams[name] = len(self.elements)

@@ -29,16 +29,3 @@ class Deviation:
     source: Source | None
     reactions: Reactions
     points: Mapping[tuple[str, str], Real]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Sharing(Deviation):
-    """The answer with pins that tilt in some of their holes.
-
-    Attributes
-    ----------
-    hinges : frozenset of tuple of 2 str
-        The holes in which pins tilt: joint, and link.
-    """
-
-    hinges: frozenset[tuple[str, str]]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.source import Source, SourceKind, distinct
-from alula.fea.frame.deviation import Deviation, Sharing
+from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.linkage_frame import out_of_plane
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from alula.fea.frame.condensed import LinkFlexibility
     from alula.fea.frame.linear import FrameSolution
     from alula.fea.frame.linkage_frame import LinkageFrame
+    from alula.fea.pins.states import PinStates
 
 Real = NDArray[np.float64]
 
@@ -46,7 +47,7 @@ class JointForces:
     Attributes
     ----------
     reactions : Reactions
-        Joint forces and drive torque.
+        Joint forces and drive torque; between layers with pins that stand in their holes as their clearances are.
     model : str
         Which one gave them.
     reason : Reason
@@ -54,13 +55,15 @@ class JointForces:
     frame : LinkageFrame or None
         Of the linkage where the model is a frame; None for equilibrium alone.
     solution : FrameSolution or None
-        Of that frame; None for equilibrium alone.
+        Of that frame, with pins that are tight; None for equilibrium alone.
     solids : tuple of str
         Links that are condensed solids in the frame.
     deviations : tuple of Deviation
         What the stiffness of condensed solids leaves open; empty where no link is one.
     play : Play or None
         What the play of pins does under the load case; None where no joint has play.
+    pins : PinStates or None
+        How pins stand between layers; None where none may run.
     """
 
     reactions: Reactions
@@ -71,23 +74,22 @@ class JointForces:
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
     play: Play | None = None
+    pins: "PinStates | None" = None
 
     @cached_property
-    def sharings(self) -> tuple[Sharing, ...]:
-        """The answers with pins that tilt in one of their links, so that the other bears the whole couple between them.
+    def sharings(self) -> tuple[Reactions, ...]:
+        """Joint forces with pins that stand otherwise in their holes, those in which couples are largest and least.
 
-        Empty without layers. Solved where they are asked for, since they are dozens.
+        Empty without layers, and where nothing is open. Solved where they are asked for, since they are dozens.
         """
-        from alula.fea.frame.sharing import sharings
+        return () if self.pins is None else self.pins.ends
 
-        return () if self.frame is None else sharings(self.frame)
-
-    @property
-    def on_tight_pins(self) -> "JointForces":
-        """The same with pins that tilt in no hole."""
-        found = replace(self)
-        found.__dict__["sharings"] = ()  # as if it had been asked for
-        return found
+    @cached_property
+    def on_tight_pins(self) -> Reactions:
+        """Joint forces with pins that are tight in both links, of which ``deviations`` tell what stiffness changes."""
+        if self.pins is None or self.frame is None or self.solution is None:
+            return self.reactions
+        return self.frame.reactions(self.solution.joint_wrenches, self.solution.residual)
 
     @property
     def by_equilibrium(self) -> bool:
@@ -105,7 +107,7 @@ class JointForces:
         return distinct(tuple(one.source for one in self.deviations if one.source is not None))
 
     def displaced(self, link: str, point: str, *, meshes: float = 1.0, sunk: bool = False) -> Band:
-        """Return how far a point moves by a frame of solids, with all that stiffness and pins leave open at its worst.
+        """Return how far a point moves by a frame of solids on tight pins, with all that stiffness leaves open.
 
         Parameters
         ----------
@@ -132,9 +134,7 @@ class JointForces:
         kinds = [one.source and one.source.kind for one in every]
         parts = [meshes if kind is SourceKind.DISCRETISATION else 1.0 for kind in kinds]
         steps = np.array(parts) * [float(along @ one.points[link, point]) - size for one in every]
-        shared = [0.0, *(float(np.linalg.norm(one.points[link, point])) - size for one in self.sharings)]
-        low = float(np.minimum(steps, 0.0).sum()) + min(shared)
-        high = float(np.maximum(steps, 0.0).sum()) + max(shared)
+        low, high = float(np.minimum(steps, 0.0).sum()), float(np.maximum(steps, 0.0).sum())
         return Band(value=size, low=max(size + low, 0.0), high=size + high)
 
     @property
@@ -187,13 +187,37 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         )
     refuse_dead_point(system, case.pinned_drive)
     frame, solution = solved_frame(case, pose, loads, case.pinned_drive)
-    return JointForces(
-        reactions=frame.reactions(solution.joint_wrenches, solution.residual),
-        model=model,
-        reason=together(why, *frame.notes),
-        frame=frame,
-        solution=solution,
+    return on_pins(
+        case,
+        JointForces(
+            reactions=frame.reactions(solution.joint_wrenches, solution.residual),
+            model=model,
+            reason=together(why, *frame.notes),
+            frame=frame,
+            solution=solution,
+        ),
     )
+
+
+def on_pins(case: Case, tight: JointForces) -> JointForces:
+    """Return joint forces with pins that stand in their holes between layers.
+
+    Parameters
+    ----------
+    case : Case
+    tight : JointForces
+        By a frame, with pins that are tight.
+
+    Returns
+    -------
+    JointForces
+    """
+    if not case.layered or tight.frame is None:
+        return tight
+    from alula.fea.pins.states import pin_states
+
+    pins = pin_states(case, tight.frame)
+    return tight if pins is None else replace(tight, reactions=pins.reactions(pins.value), pins=pins)
 
 
 def solved_frame(

@@ -83,7 +83,9 @@ class LinkageFrame:
         Joint between links at different heights -> node at the far end of its pin, where the link is that the pin is
         not built into.
     pin_beams : dict of str to int
-        The same joints -> element that is the pin.
+        The same joints -> element that is the pin, or what of it goes on from a shorter joint.
+    pin_eyes : dict of str to tuple of 2 tuples of 2 str
+        The same joints -> (link, point) at either end of that element.
     stations : dict of str to tuple of tuple of float and int
         Link with a part -> (x in the link's frame, node) along its axis; the node may stand off the axis.
     arms : dict of int to ndarray
@@ -103,6 +105,7 @@ class LinkageFrame:
     pins: Mapping[str, tuple[int | None, int | None]]
     pin_ends: Mapping[str, int]
     pin_beams: Mapping[str, int]
+    pin_eyes: Mapping[str, tuple[tuple[str, str], tuple[str, str]]]
     stations: Mapping[str, tuple[tuple[float, int], ...]]
     arms: Mapping[int, Real]
     beams: Mapping[int, LinkBeam]

@@ -141,7 +141,7 @@ def presses_of(case: Case, found: JointForces, end: End = "stated") -> Presses:
     """
     if end == "least" or found.frame is None:
         return NOTHING_MORE
-    every = [found.reactions, *(one.reactions for one in (found.sharings if end == "largest" else ()))]
+    every = [found.reactions, *(found.sharings if end == "largest" else ())]
     wrenches = {name: np.array([one.joints[name].wrench for one in every]) for name in found.reactions.joints}
     return {name: ratio.max(keepdims=True) for name, ratio in bore_presses(case, wrenches).items()}
 

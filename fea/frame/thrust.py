@@ -30,7 +30,7 @@ def thrusts(forces: JointForces, deformed: Reactions | None = None) -> dict[str,
         Revolute joint that is not bonded -> size of the force along z [N]; none where there is no thrust beyond
         rounding.
     """
-    plain, linkage = forces.reactions.joints, forces.reactions.pose.linkage
+    plain, tight, linkage = forces.reactions.joints, forces.on_tight_pins.joints, forces.reactions.pose.linkage
     shown = forces.reactions.joints if deformed is None else deformed.joints
     largest = max((joint.magnitude for joint in shown.values()), default=0.0)
     sources = distinct(forces.sources, COUPLES if forces.sharings else ())
@@ -39,8 +39,10 @@ def thrusts(forces: JointForces, deformed: Reactions | None = None) -> dict[str,
         if joint.type != "revolute" or joint.bonded:
             continue
         value, own = float(shown[name].wrench[2]), float(plain[name].wrench[2])
-        steps = np.array([float(one.reactions.joints[name].wrench[2]) - own for one in forces.open_by])
-        shared = [float(one.reactions.joints[name].wrench[2]) - own for one in forces.sharings]
+        steps = np.array(
+            [float(one.reactions.joints[name].wrench[2] - tight[name].wrench[2]) for one in forces.open_by]
+        )
+        shared = [float(one.joints[name].wrench[2]) - own for one in forces.sharings]
         low = value + float(np.minimum(steps, 0.0).sum()) + min([0.0, *shared])
         high = value + float(np.maximum(steps, 0.0).sum()) + max([0.0, *shared])
         ends = sorted((abs(low), abs(high)))

@@ -245,7 +245,7 @@ def _joints(
             if isinstance(check, BearingCheck):
                 every = [wrenches[pose]]
                 if case.linkage.rise(joint) != 0.0 and any(case.links[x].count == 2 for x in case.joints[joint].links):
-                    every += [way.reactions.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
+                    every += [way.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
                 outcome = bearing_outcome(case, load_case, name, check, joint, every, growth)
             elif by_itself:
                 shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))

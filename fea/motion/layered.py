@@ -1,9 +1,8 @@
 """Links in layers over a motion: the couples between layers at every pose, and how pins may share them.
 
 Equilibrium in the plane gives the joint forces of all poses at once. What acts out of it, F_z, M_x and M_y of every
-joint, is that of the spatial frame of each pose. The ways in which pins may share the couples
-(``alula.fea.frame.sharing``) are tried where a link bears most, and widen its bands by what they make of its solid
-there.
+joint, is that of the spatial frame of each pose, on pins that stand in their holes (``alula.fea.pins``). How they may
+stand otherwise is tried where a link bears most, and widens its bands by what it makes of its solid there.
 """
 
 from collections.abc import Mapping
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.doubts.force_doubt import sharing_answers
 from alula.fea.frame.joint_forces import JointForces, joint_forces, solved_frame
+from alula.fea.pins.states import pin_states
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.ties import first_largest
 from alula.loads.records.applied import Load, chosen
@@ -34,8 +34,8 @@ class LayeredMotion:
     moved : CaseMotion
         With all six components of the joint forces at the poses that count; as it was without layers.
     ways : mapping of tuple of 2 str to LinkAnswers
-        (load case, link) -> what acts on it with tight pins and in every way of sharing (``sharing_answers``), where it
-        bears most; empty without layers.
+        (load case, link) -> what acts on it with pins as they may stand (``sharing_answers``), where it bears most;
+        empty without layers.
     """
 
     moved: CaseMotion
@@ -72,8 +72,13 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
     for i in map(int, np.flatnonzero(evaluated)):
         stands = pose_at(moved.motion, i)
         for name in moved.forces:  # pose by pose: all load cases have one factorisation
-            frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.drive, bonded=False)
-            found = frame.reactions(solution.joint_wrenches, solution.residual)
+            frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.drive)
+            pins = pin_states(case, frame)
+            found = (
+                frame.reactions(solution.joint_wrenches, solution.residual)
+                if pins is None
+                else pins.reactions(pins.value)
+            )
             for joint, wrench in wrenches[name].items():
                 wrench[i, 2:5] = found.joints[joint].wrench[2:5]
     for name, solved in moved.forces.items():

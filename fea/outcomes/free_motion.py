@@ -22,10 +22,10 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
+from alula.fea.pins.clearances import loose_holes
+from alula.fea.pins.holes import known_hole, rims_of, shortest
 from alula.geometry.linkage.play import Reach
 from alula.loads.case.case import Case
-from alula.loads.case.forks import eye_of
-from alula.loads.case.heights import thickness
 from alula.loads.records.applied import shifted
 
 Real = NDArray[np.float64]
@@ -105,68 +105,6 @@ def free_motion(case: Case, frame: LinkageFrame, link: str, point: str) -> FreeM
     return FreeMotion(plane=plane, across=float(across.sum(axis=-1).max(axis=-1, initial=0.0).sum()))
 
 
-def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], ...]:
-    """Return the holes in which the play of a joint's pin may lie.
-
-    Parameters
-    ----------
-    case : Case
-    joint : str
-
-    Returns
-    -------
-    tuple of tuple of (str, float)
-        Links with the play in their hole [mm]. Of those in one tuple any may have all of it, where nothing states in
-        which link the pin is tight; slot and hole, in different ones, have theirs beside each other.
-    """
-    record = case.joints[joint]
-    loose = tuple(link for link in record.links if not record.is_tight_in(link))
-    found = [tuple((link, record.clearance) for link in loose)]
-    if record.type == "pin-in-slot":
-        link, point = record.links[0], case.linkage.joint_points(joint)[0]
-        slot = case.links[link].slots.get(point)
-        found = [((record.links[1], record.clearance),), ((link, 0.0 if slot is None else slot.clearance),)]
-    return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
-
-
-def known_hole(case: Case, joint: str, link: str) -> tuple[float, float] | None:
-    """Return the rims of a joint's hole in one of its links.
-
-    Parameters
-    ----------
-    case : Case
-    joint, link : str
-
-    Returns
-    -------
-    tuple of 2 float or None
-        z of both, from the mid-plane of the link [mm]; None where neither a part nor a thickness of the link tells.
-    """
-    if case.links[link].part is not None:
-        ring = eye_of(case, joint, link)
-        return ring.low, ring.high
-    height = thickness(case.links[link], case.parts)
-    return None if height is None else (-height / 2.0, height / 2.0)
-
-
-def rims(case: Case, joint: str, link: str) -> tuple[float, float]:
-    """Return the rims of a joint's hole in one of its links; of an unknown one those of the shortest.
-
-    Parameters
-    ----------
-    case : Case
-        With a part whose holes are known.
-    joint, link : str
-
-    Returns
-    -------
-    tuple of 2 float
-        z of both, from the mid-plane of the link [mm].
-    """
-    found = known_hole(case, joint, link)
-    return found or (-_shortest(case) / 2.0, _shortest(case) / 2.0)
-
-
 def unknown_lengths(case: Case) -> tuple[Reason, ...]:
     """Say how long holes with play are taken to be whose length no part and no thickness tells.
 
@@ -183,7 +121,7 @@ def unknown_lengths(case: Case) -> tuple[Reason, ...]:
     unknown = [link for link in case.links if any(on == link and not known_hole(case, j, on) for j, on in holes)]
     if not unknown:
         return ()
-    return (reason("holes_as_long_as_shortest", links=unknown, length=_shortest(case)),)
+    return (reason("holes_as_long_as_shortest", links=unknown, length=shortest(case)),)
 
 
 def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> Mapping[tuple[str, str], Real]:
@@ -211,15 +149,7 @@ def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> 
             wrench = joints[name].wrench
             if link == case.joints[name].links[0]:
                 wrench = shifted(-wrench, np.array([0.0, 0.0, case.linkage.rise(name)]))
-            low, high = rims(case, name, link)
+            low, high = rims_of(case, name, link)
             force, turned = wrench[:2], np.array([wrench[4], -wrench[3]])  # the sum of z R over both rims
             found[name, link] = np.array([high * force - turned, turned - low * force]) / (high - low)
     return found
-
-
-def _shortest(case: Case) -> float:
-    """Length of the shortest hole that is known [mm]."""
-    known = [
-        hole for name, joint in case.joints.items() for link in joint.links if (hole := known_hole(case, name, link))
-    ]
-    return min(high - low for low, high in known)

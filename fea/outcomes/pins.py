@@ -371,7 +371,7 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     found = stress_at(case, joint, reaction)
     if not forces.sharings or case.linkage.rise(joint) == 0.0:
         return found
-    every = (forces.reactions, *(shared.reactions for shared in forces.sharings))
+    every = (forces.reactions, *forces.sharings)
     plain, *others = _stresses_between(case, joint, np.array([one.joints[joint].wrench for one in every]))
 
     def widened(name: str) -> Band:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
@@ -30,6 +31,8 @@ from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play
+
+Real = NDArray[np.float64]
 
 ROOM = 0.8
 """Share of the way to a limit that meshes may leave open, since a finer mesh moves the number as well."""
@@ -166,9 +169,6 @@ class PointDisplacement:
             why = reason("gives_way_in_some_air") if in_air else reason("gives_way_with_any_friction")
             if self._endless.endless and self._free_to_tilt and not locks_on_tight_pins(self.case, self.load_case):
                 why = reason("locks_by_tilting_pins", joints=self._free_to_tilt)
-        elif math.isfinite(self.elastic(tilted=False).high):
-            plain, _, most = self._tilted
-            why = reason("softly_held_by_tilting_pins", most=most, tight=plain, joints=self._free_to_tilt)
         elif self.moved.followed:
             why = reason("gives_way_as_soft_as_may_be")
         else:
@@ -206,28 +206,50 @@ class PointDisplacement:
         Band
             [mm]; its value where pins rest under the load, its ends where they stand worst.
         """
-        found, play = self.elastic(meshes=meshes, sunk=sunk), self.play
-        if play is None:
+        found = self.elastic(meshes=meshes, sunk=sunk)
+        if self.play is None and self.tilting is None:
             return found
         moved = self.moved.points[self.link, self.point]
-        size = float(np.linalg.norm(moved))
-        plane, across = complex(*moved[:2]) / (size or 1.0), float(moved[2]) / (size or 1.0)
-
-        value = math.hypot(abs(found.value * plane + complex(play.shift(self.link, self.point))), found.value * across)
-        least, most = (self._loose(play, end * plane, abs(end * across)) for end in (found.low, found.high))
+        along = moved / (float(np.linalg.norm(moved)) or 1.0)
+        plane, across = complex(*along[:2]), float(along[2])
+        rests = self._rests
+        value = float(np.linalg.norm(found.value * along + rests[0]))
+        least, most = (self._loose(end * plane, abs(end * across)) for end in (found.low, found.high))
+        low = math.hypot(*least[0])
+        if len(rests) > 1:  # between layers they rest as the load says
+            low = min(float(np.linalg.norm(end * along + one)) for end in (found.low, found.value) for one in rests)
+        sources = COUPLES if self.play is None else (play_source(self.play.clearances),)
         return Band(
             value=value,
-            low=min(math.hypot(*least[0]), value),
+            low=min(low, value),
             high=max(math.hypot(*most[1]), value),
-            sources=distinct(found.sources, (play_source(play.clearances),)),
+            sources=distinct(found.sources, sources),
         )
 
-    def _loose(self, play: Play, plane: complex, across: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    @cached_property
+    def _rests(self) -> Real:
+        """How far the point stands off its place (n, 3) as pins rest under the load, without any strain [mm].
+
+        First with the values of all clearances; between layers with their ends after it.
+        """
+        forces = self.shares.framed or self.forces
+        if forces is not None and forces.pins is not None:
+            assert forces.frame is not None
+            assert forces.solution is not None
+            node, tight = forces.frame.points[self.link, self.point], forces.solution.displacements
+            stands = (forces.pins.value, *forces.pins.states)
+            return np.array([(forces.pins.answer(v).displacements - tight)[node, :3] for v in stands])
+        shift = 0j if self.play is None else complex(self.play.shift(self.link, self.point))
+        return np.array([[shift.real, shift.imag, 0.0]])
+
+    def _loose(self, plane: complex, across: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and largest displacement in the plane and across it, where pins take up their play beside one."""
+        play, tilting = self.play, self.tilting
         if not math.isfinite(abs(plane)):
             return (0.0, 0.0), (math.inf, math.inf)
-        least, most = play.loose.spread(self.link, self.point, plane)
-        tilting = self.tilting
+        least = most = abs(plane)
+        if play is not None:
+            least, most = play.loose.spread(self.link, self.point, plane)
         if tilting is None:
             return (least, across), (most, across)
         least, most = min(least, tilting.plane.least(plane)), max(most, tilting.plane.largest(plane))
@@ -236,18 +258,19 @@ class PointDisplacement:
     @cached_property
     def free_motion(self) -> float:
         """How far the play of pins lets the point go by itself [mm]."""
-        return 0.0 if self.play is None else math.hypot(*self._loose(self.play, 0j, 0.0)[1])
+        return math.hypot(*self._loose(0j, 0.0)[1])
 
     @cached_property
     def tilting(self) -> FreeMotion | None:
-        """How far play lets the point go as pins tilt in their holes; None without play, or where all is in a plane."""
+        """How far play lets the point go as pins tilt in their holes; None without any, or where all is in a plane."""
         moved = self.moved
-        if self.play is None or moved.frame is None or moved.solution is None:
+        if moved.frame is None or moved.solution is None:
             return None
-        spatial = self.case.layered or np.any(moved.solution.displacements[:, 2:5])
-        return free_motion(self.case, moved.frame, self.link, self.point) if spatial else None
+        layered = self.case.layered and self.forces is not None and self.forces.pins is not None
+        loose = self.play is not None and (self.case.layered or np.any(moved.solution.displacements[:, 2:5]))
+        return free_motion(self.case, moved.frame, self.link, self.point) if layered or loose else None
 
-    def elastic(self, *, meshes: float = 1.0, sunk: bool = False, tilted: bool = True) -> Band:
+    def elastic(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
         """Return the band without play: what solids or beams leave open, the moduli, and the load.
 
         The linear answer may grow as a toggle does (``alula.fea.nonlinear.stability``); on the deformed shape
@@ -260,20 +283,12 @@ class PointDisplacement:
             Share of what meshes of solids leave open that the band holds.
         sunk : bool, optional
             Whether pins may sink into their bores.
-        tilted : bool, optional
-            Whether pins may tilt in their holes.
 
         Returns
         -------
         Band
             [mm]
         """
-        if not tilted:
-            framed = self.shares.framed
-            tight = None if framed is None else framed.on_tight_pins
-            return replace(self, forces=None, shares=replace(self.shares, framed=tight)).elastic(
-                meshes=meshes, sunk=sunk
-            )
         case, moved, shares, link, point = self.case, self.moved, self.shares, self.link, self.point
         assert moved.frame is not None
         assert moved.solution is not None
@@ -286,7 +301,7 @@ class PointDisplacement:
         softer = min((*ratios, 1.0)), max((*ratios, 1.0))
         if shares.framed is None:
             bounds = partial(point_bounds, case, moved.frame, moved.solution, link, point, solids, shares.carried)
-            found, either = self._shared(bounds()), self._shared(bounds(moduli=self._moduli(solids)))
+            found, either = bounds(), bounds(moduli=self._moduli(solids))
         else:
             found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
             either = replace(found, low=found.low * softer[0], high=found.high * softer[1])
@@ -340,38 +355,6 @@ class PointDisplacement:
         node = moved.frame.points[self.link, self.point]
         return float(np.linalg.norm(moved.solution.displacements[node, :3]))
 
-    @cached_property
-    def _tilted(self) -> tuple[float, float, float]:
-        """Displacement by the frame with pins tight in both links, and the least and largest as pins tilt in them."""
-        moved, at = self.moved, (self.link, self.point)
-        assert moved.frame is not None
-        assert moved.solution is not None
-        frame, solution, forces = moved.frame, moved.solution, self.forces
-        if self.shares.framed is not None:
-            forces = self.shares.framed
-            assert forces.frame is not None
-            assert forces.solution is not None
-            frame, solution = forces.frame, forces.solution
-        plain = float(np.linalg.norm(frame.at_points(solution.displacements)[at]))
-        sharings = () if forces is None else forces.sharings
-        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in sharings)]
-        return plain, min(sizes), max(sizes)
-
-    def _shared(self, found: Band) -> Band:
-        """Band with all ways in which pins may share couples between layers.
-
-        What tilting adds goes with the softness of the links, or is that of plain beams beside it if that is more.
-        """
-        plain, least, most = self._tilted
-        less, more = (end / plain if plain > 0.0 else 1.0 for end in (least, most))
-        sources = COUPLES if most - least > WORTH_TELLING * plain else ()
-        return replace(
-            found,
-            low=less * found.low,
-            high=max(more * found.high, found.high + most - plain),
-            sources=(*found.sources, *sources),
-        )
-
     def _framed(self, found: Band, solids: Mapping[str, tuple[Band, ...]]) -> Band:
         """Band of the displacement without what the ground's part adds."""
         case, moved, ground = self.case, self.moved, self.case.linkage.ground
@@ -380,8 +363,7 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         bending = {other: bands for other, bands in solids.items() if other != ground}
-        framed = point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
-        return self._shared(framed)
+        return point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
 
     def _followed(
         self,
@@ -486,9 +468,9 @@ def point_outcome(
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
         notes.append(reason("pins_may_sink_beyond_limit" if beyond else "pins_may_sink", most=told.sinking))
-    if told.play is not None:
+    if told.play is not None or told.tilting is not None:
         alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), check.maximum)
-        loose, tilting = told.play.free_motion(told.link, told.point), told.tilting
+        loose, tilting = 0.0 if told.play is None else told.play.free_motion(told.link, told.point), told.tilting
         notes.append(
             reason(
                 "play_lets_it_move",

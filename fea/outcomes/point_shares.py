@@ -150,7 +150,7 @@ def shares_of(
         result, body = links[name], case.body(name)
         plain = all(pin.foot is None and pin.slot == 0.0 for pin in body.pins) and has_centre_line(case, name)
         # The plates of a pair between layers bear differently, and one of them does not tell what both give.
-        alike = case.links[name].count == 1 or forces is None or not forces.sharings
+        alike = case.links[name].count == 1 or forces is None or forces.pins is None
         known = left <= NOTHING and alike and (moved.state == "small" or plain)
         if not (known and isinstance(result, SolidResult) and not result.displacement_max.unknowable):
             beams.append(name)

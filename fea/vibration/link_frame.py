@@ -75,6 +75,7 @@ def link_frame(case: Case, link: str, pose: Pose, holding: LinkHolding) -> Linka
         pins={name: (ends[0], ends[1]) for name, ends in pins.items()},
         pin_ends={},
         pin_beams={},
+        pin_eyes={},
         stations={link: tuple((x, number[node]) for x, node in whole.stations[link])},
         arms={number[node]: arm for node, arm in whole.arms.items() if node in number},
         beams={new: whole.beams[old] for new, old in enumerate(elements) if old in whole.beams},

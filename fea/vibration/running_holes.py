@@ -72,8 +72,10 @@ def with_hinges(
     names = [model.name(i) for i in range(len(nodes))]
     for name, link in holes:
         [i] = np.flatnonzero(parents == frame.pin_beams[name])
-        joint, ends = frame.pose.linkage.joints[name], list(elements[i].nodes)
-        side = int(link != joint.links[joint.type != "revolute"])  # the frame builds it into that link
+        ends, eyes = list(elements[i].nodes), [own for own, _ in frame.pin_eyes[name]]
+        if link not in eyes:
+            continue  # a shorter joint's part of the same pin is there
+        side = eyes.index(link)
         for free in ACROSS:
             ties.append(Tie(nodes=(ends[side], len(nodes)), dofs=ALL_DOFS - {free}))
             ends[side] = len(nodes)

@@ -25,7 +25,8 @@ from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
-from alula.fea.outcomes.free_motion import loose_holes, rim_forces
+from alula.fea.outcomes.free_motion import rim_forces
+from alula.fea.pins.clearances import loose_holes
 from alula.geometry.clearance.shape import TOUCHING
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import clearances

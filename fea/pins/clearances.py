@@ -1,0 +1,176 @@
+"""How wide the holes of pins between layers may be: what a case states, and radii of rims' discs by what is open."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.loads.case.case import Case
+
+Real = NDArray[np.float64]
+HoleName = tuple[str, str]
+"""Joint and link."""
+
+LOOSE = 0.1
+"""Clearance over the pin's diameter up to which a hole is tried of which nothing is stated. From there on forces hardly
+depend on it: measured on a four-bar of PLA and of aluminium, 0.1 and 0.02 of the diameter."""
+RUNNING = 0.01
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clearance:
+    """What the diametral clearance of one or two holes may be.
+
+    Attributes
+    ----------
+    holes : tuple of (str, str)
+        Joint and link of each; two share one clearance in a way that nothing states.
+    low, value, high : float
+        Of the hole, or of both together [mm].
+    """
+
+    holes: tuple[HoleName, ...]
+    low: float
+    value: float
+    high: float
+
+
+def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
+    """Return the clearances of all holes between layers in which pins may run.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        Of its linkage.
+
+    Returns
+    -------
+    tuple of Clearance
+        Without holes that hold their pin tightly, slots and guides.
+    """
+    found = []
+    for name in frame.pin_beams:
+        joint = frame.pose.linkage.joints[name]
+        if joint.type != "revolute" or name in frame.bonded:
+            continue
+        loose = tuple((name, link) for link in joint.links if not joint.is_tight_in(link))
+        if "clearance" in joint.model_fields_set:
+            if joint.clearance > 0.0 and loose:
+                size = joint.clearance
+                found.append(Clearance(holes=loose, low=size, value=size, high=size))
+            continue
+        for hole in loose:
+            d = joint.pin_diameter or 3.0
+            found.append(Clearance(holes=(hole,), low=0.0, value=0.006 * d, high=LOOSE * d))
+    return tuple(found)
+
+
+def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], ...]:
+    """Return the holes in which the play of a joint's pin may lie.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+
+    Returns
+    -------
+    tuple of tuple of (str, float)
+        Links with the play in their hole [mm]. Of those in one tuple any may have all of it, where nothing states in
+        which link the pin is tight; slot and hole, in different ones, have theirs beside each other.
+    """
+    record = case.joints[joint]
+    loose = tuple(link for link in record.links if not record.is_tight_in(link))
+    found = [tuple((link, record.clearance) for link in loose)]
+    if "clearance" not in record.model_fields_set and case.linkage.rise(joint) != 0.0 and record.type == "revolute":
+        return tuple(((link, RUNNING * (record.pin_diameter or 3.0)),) for link in loose)
+    if record.type == "pin-in-slot":
+        link, point = record.links[0], case.linkage.joint_points(joint)[0]
+        slot = case.links[link].slots.get(point)
+        found = [((record.links[1], record.clearance),), ((link, 0.0 if slot is None else slot.clearance),)]
+    return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Radii:
+    """The radii of rims' discs in h holes by k shares, each from 0 to 1.
+
+    Attributes
+    ----------
+    holes : tuple of int
+        Of each hole of each clearance, its number among the h holes.
+    count : int
+        h
+    clearances : tuple of Clearance
+    """
+
+    numbers: tuple[tuple[int, ...], ...]
+    count: int
+    clearances: tuple[Clearance, ...]
+
+    @property
+    def value(self) -> Real:
+        """(k,) the shares of the values; of a clearance that two holes share, half of it in each."""
+        found = []
+        for one in self.clearances:
+            found += [(one.value - one.low) / (one.high - one.low)] if one.high > one.low else []
+            found += [0.5] if len(one.holes) == 2 else []
+        return np.array(found)
+
+    def of(self, shares: Real) -> tuple[Real, Real]:
+        """Return the radii of the discs, and how they change with shares.
+
+        Parameters
+        ----------
+        shares : ndarray, shape (n, k)
+
+        Returns
+        -------
+        tuple of ndarray
+            Radii of both rims of every hole (n, 2 h) [mm], and their slopes (n, k, 2 h).
+        """
+        n, k = shares.shape
+        radii, slope, at = np.zeros((n, self.count)), np.zeros((n, k, self.count)), 0
+        for one, numbers in zip(self.clearances, self.numbers, strict=True):
+            size, wide = np.full(n, one.value / 2.0), (one.high - one.low) / 2.0
+            parts = [np.ones(n)]
+            if wide > 0.0:
+                size, of_size, at = one.low / 2.0 + wide * shares[:, at], at, at + 1
+            if len(numbers) == 2:
+                parts = [shares[:, at], 1.0 - shares[:, at]]
+                for number, sign in zip(numbers, (1.0, -1.0), strict=True):
+                    slope[:, at, number] = sign * size
+                at += 1
+            for number, part in zip(numbers, parts, strict=True):
+                radii[:, number] = size * part
+                if wide > 0.0:
+                    slope[:, of_size, number] = wide * part
+        return np.repeat(radii, 2, axis=1), np.repeat(slope, 2, axis=2)
+
+
+def radii_of(clearances: Sequence[Clearance], order: Sequence[Sequence[HoleName]]) -> Radii:
+    """Return the radii of holes by what is open of their clearances.
+
+    Parameters
+    ----------
+    clearances : sequence of Clearance
+    order : sequence of sequence of (str, str)
+        The names of every hole: where several joints have one pin, it has several.
+
+    Returns
+    -------
+    Radii
+        A hole of several names has the clearance that comes first.
+    """
+    number = {name: k for k, names in enumerate(order) for name in names}
+    known, numbers, kept = set[int](), [], []
+    for one in clearances:
+        own = tuple(number[hole] for hole in one.holes if hole in number)
+        if own and not known.intersection(own):
+            known.update(own)
+            numbers.append(own)
+            kept.append(one)
+    return Radii(numbers=tuple(numbers), count=len(order), clearances=tuple(kept))

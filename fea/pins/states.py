@@ -1,0 +1,224 @@
+"""How pins may stand between layers: the state of the stated clearances, and those in which links bear most and least.
+
+What each hole may be between is open. A joint force is a function of the radii that is neither convex nor monotonic,
+so that its ends are sought: for each couple that a pin carries into a link, upwards and downwards, the shares of what
+is open go to that end of their range to which the slope points, until they stay.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.frame.linear import FrameSolution
+from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.pins.clearances import Radii, clearances_of, radii_of
+from alula.fea.pins.holes import RimFrame, rims_of
+from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
+from alula.loads.case.case import Case
+from alula.loads.statics.statics import Reactions
+
+Real = NDArray[np.float64]
+
+ROUNDS = 6
+"""At most, in which shares go to the ends of their ranges."""
+LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
+"""Shares of all that is open at which the search starts, beside the values."""
+DRAWS = 24
+"""Further states at which the search starts, drawn at random: most of them with some small clearances."""
+ASCENTS = 2
+"""How many of the starts each couple is followed from, the largest ones."""
+PARTS = (1.0, 0.3, 0.1, 0.03, 0.01)
+"""Of the way to the ends of ranges, tried in turn until a couple grows."""
+ALIKE = 1e-3
+"""Share of a couple by which it must grow to count."""
+FLAT = 1e-6
+"""Slope, over the steepest, that tells nothing."""
+ROUGH = 1e-8
+"""Residual at which the states of the search end."""
+NOTHING = 1e-9
+"""Share of the largest couple, or of the stiffness of a pin, below which there is none but by rounding."""
+LEAST_RADIUS = 1e-7
+"""Of a disc, in place of none, so that what a wider hole would make can be told [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PinStates:
+    """States of the pins of a frame.
+
+    Attributes
+    ----------
+    rims : RimFrame
+    radii : Radii
+    """
+
+    rims: RimFrame
+    radii: Radii
+
+    def solved(self, shares: Real) -> InDiscs:
+        """Return where pins stand.
+
+        Parameters
+        ----------
+        shares : ndarray, shape (n, k)
+            Of what is open.
+
+        Returns
+        -------
+        InDiscs
+        """
+        radii, _ = self.radii.of(shares)
+        return least_in_discs(self.rims.K, self.rims.g, radii)
+
+    def answer(self, v: Real) -> FrameSolution:
+        """Return the frame's answer with its pins as they stand.
+
+        Parameters
+        ----------
+        v : ndarray, shape (4 h,)
+
+        Returns
+        -------
+        FrameSolution
+            Its displacements hold what pins move and tilt without any strain.
+        """
+        return self.rims.solved.solved(self.rims.opened @ v)
+
+    def reactions(self, v: Real) -> Reactions:
+        """Return the joint forces with the pins as they stand.
+
+        Parameters
+        ----------
+        v : ndarray, shape (4 h,)
+
+        Returns
+        -------
+        Reactions
+        """
+        found = self.answer(v)
+        return self.rims.frame.reactions(found.joint_wrenches, found.residual)
+
+    @cached_property
+    def value(self) -> Real:
+        """(4 h,) where pins stand with the values of all clearances."""
+        return np.asarray(self.solved(self.radii.value[None]).v[0])
+
+    def couples(self, v: Real) -> Real:
+        """Return the couples that all pins carry into both of their links.
+
+        Parameters
+        ----------
+        v : ndarray, shape (n, 4 h)
+
+        Returns
+        -------
+        ndarray, shape (n, c)
+            [N mm]
+        """
+        return np.asarray(self.rims.couples @ self.rims.tight + v @ self._by_rims.T)
+
+    @cached_property
+    def _by_rims(self) -> Real:
+        return np.asarray(self.rims.couples @ self.rims.by_rims)
+
+    @cached_property
+    def states(self) -> Real:
+        """(n, 4 h) where pins stand where some couple is largest or least."""
+        found = self.solved(self.extremes()).v
+        return np.asarray(found[_telling(self.couples(found))])
+
+    @cached_property
+    def ends(self) -> tuple[Reactions, ...]:
+        """Joint forces in these states."""
+        return tuple(map(self.reactions, self.states))
+
+    def extremes(self) -> Real:
+        """Return the shares at which couples are largest and least, and that of the values first.
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        value = self.radii.value
+        if not len(value):
+            return value[None]
+        aims = self._by_rims[np.abs(self._by_rims).max(axis=1) > 0.0]
+        aims = np.vstack([aims, -aims])
+        starts = np.vstack([value, *np.outer(LEVELS, np.ones(len(value))), _drawn(DRAWS, len(value))])
+        reached = self._stands(starts)[1].v @ aims.T
+        order = np.argsort(-reached, axis=0)[:ASCENTS]
+        shares, best = starts[order.ravel()], np.take_along_axis(reached, order, axis=0).ravel()
+        aims = np.tile(aims, (len(order), 1))
+        going = np.arange(len(aims))
+        for _ in range(ROUNDS):
+            ends = self._ends(shares[going], aims[going])
+            rest = np.ones(len(going), dtype=bool)
+            for part in PARTS:
+                own = going[rest]
+                tried = shares[own] + part * (ends[rest] - shares[own])
+                known, state = np.unique(tried, axis=0, return_inverse=True)
+                now = (self._stands(known)[1].v[state] * aims[own]).sum(axis=1)
+                better = now > best[own] + ALIKE * np.abs(best[own])
+                shares[own[better]], best[own[better]] = tried[better], now[better]
+                rest[np.flatnonzero(rest)[better]] = False
+                if not rest.any():
+                    break
+            going = going[~rest]
+            if not len(going):
+                break
+        return np.vstack([value, np.unique(shares, axis=0)])
+
+    def _stands(self, shares: Real) -> tuple[Real, InDiscs]:
+        """Radii, and where pins stand, near enough to tell which state is worse."""
+        radii = np.maximum(self.radii.of(shares)[0], LEAST_RADIUS)
+        return radii, least_in_discs(self.rims.K, self.rims.g, radii, ROUGH)
+
+    def _ends(self, shares: Real, aims: Real) -> Real:
+        """The ends of shares' ranges to which each aim rises, from each of its shares."""
+        known, state = np.unique(shares, axis=0, return_inverse=True)
+        radii, at = self._stands(known)
+        rising = np.einsum("akr,ar->ak", self.radii.of(known)[1][state], slopes(self.rims.K, radii, at, state, aims))
+        telling = np.abs(rising) > FLAT * np.abs(rising).max(axis=1, keepdims=True)
+        return np.where(telling, (rising > 0.0).astype(float), shares)
+
+
+def _drawn(count: int, shares: int) -> Real:
+    draw = np.random.default_rng(0)
+    return np.asarray(draw.uniform(size=(count, shares)) ** draw.choice([0.5, 1.0, 4.0], size=(count, 1)))
+
+
+def _telling(couples: Real) -> NDArray[np.int64]:
+    """Numbers of the fewest states found that hold every couple's ends (n, c) to ``ALIKE`` of its size."""
+    size = np.maximum(np.abs(couples).max(axis=0), NOTHING * np.abs(couples).max(initial=0.0))
+    near = np.hstack([couples >= couples.max(axis=0) - ALIKE * size, couples <= couples.min(axis=0) + ALIKE * size])
+    found, rest = list[int](), np.ones(near.shape[1], dtype=bool)
+    while rest.any():
+        best = int(near[:, rest].sum(axis=1).argmax())
+        found.append(best)
+        rest &= ~near[best]
+    return np.array(found, dtype=np.int64)
+
+
+def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
+    """Return how the pins of a frame may stand in their holes.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        With pins that are tight in both links.
+
+    Returns
+    -------
+    PinStates or None
+        None where no pin between layers may run.
+    """
+    open_holes = clearances_of(case, frame)
+    if not open_holes:
+        return None
+    rims = RimFrame.of(frame, {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes})
+    if rims.borne_alone:
+        return None
+    names = [[(joint, hole.link) for joint in hole.joints] for hole in rims.holes]
+    return PinStates(rims=rims, radii=radii_of(open_holes, names))
