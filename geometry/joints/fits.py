@@ -13,7 +13,7 @@ import itertools
 import math
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 from alula.geometry.base.errors import CaseError
 
@@ -35,7 +35,7 @@ _CODE = re.compile(r"H\s?([1-9]\d?)\s?/\s?([d-h])\s?([1-9]\d?)", re.ASCII)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fit:
+class FitLimits:
     """The limits of a hole and its pin.
 
     Attributes
@@ -86,14 +86,14 @@ def parse_fit(code: str) -> tuple[int, str, int]:
     grades = (int(found[1]), int(found[3])) if found else ()
     if found is None or not all(grade in GRADES for grade in grades):
         raise CaseError(
-            f'the fit must be that of a hole H and a pin d to h, of grades 5 to 12, such as "{RUNNING}"; of another '
-            'state clearance = ["0.01 mm", "0.05 mm"], its least and its largest'
+            f'the fit must be that of a hole H and a pin d to h, of grades 5 to 12, such as "{RUNNING}"; in place of '
+            'another one state clearance = ["0.01 mm", "0.05 mm"], its least and its largest'
         )
     return grades[0], found[2], grades[1]
 
 
-@cache
-def fit(code: str, diameter: float) -> Fit:
+@lru_cache(maxsize=1024)
+def fit(code: str, diameter: float) -> FitLimits:
     """Return the limits of a fit.
 
     Parameters
@@ -105,7 +105,7 @@ def fit(code: str, diameter: float) -> Fit:
 
     Returns
     -------
-    Fit
+    FitLimits
 
     Raises
     ------
@@ -130,7 +130,7 @@ def fit(code: str, diameter: float) -> Fit:
     share = 0.0
     if max(hole, shaft) > 8 or diameter > 315.0:
         share = COARSE if diameter > 3.0 else COARSE_AND_SMALL
-    return Fit(hole=limits, shaft=(lower, upper), rounding=max(EXACT, share * (limits[1] - lower)))
+    return FitLimits(hole=limits, shaft=(lower, upper), rounding=max(EXACT, share * (limits[1] - lower)))
 
 
 def tolerance(grade: int, diameter: float) -> float:
@@ -159,6 +159,6 @@ def _mean(diameter: float) -> float:
 
 
 def _rounded(microns: float, up: float = 0.5) -> float:
-    """Return micrometres in mm, to 1, 5 or 10 µm by their size, as tolerances of the standard are (1988, annex A)."""
+    """Return a length [mm], given in µm and rounded to 1, 5 or 10 µm by its size as the standard has it."""
     step = 1.0 if microns <= 100.0 else 5.0 if microns <= 200.0 else 10.0
     return 1e-3 * step * math.floor(microns / step + up)

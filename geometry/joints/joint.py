@@ -1,11 +1,13 @@
 """A joint between two links, as a case states it."""
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from alula.geometry.base.model import CaseModel, Name
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from alula.geometry.joints.pin_entries import PRESS, PinClearance, PinFit
 
 
 def _as_list(stated: object) -> object:
@@ -55,9 +57,17 @@ class Joint(CaseModel):
     guide_length: Annotated[Length, POSITIVE] | None = None
     """Length over which the guide holds a slider, half of it on either side of the second link's point. With it a
     moment on the slider presses its ends on the guide, and these rub; without it the normal force alone does."""
-    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """Play of the pin: how much wider its hole is than the pin, which moves by up to half of it to any side. A pin in a
-    slot has the slot's clearance beside it."""
+    clearance: PinClearance | None = None
+    """Play of the pin: how much wider its hole is than the pin, which moves by up to half of it to any side. A length,
+    or a range [least, largest], of the hole in which the pin is not tight; where that is not stated, either hole may
+    have it, and anything between. Or a table with one for each link, such as
+    { crank = "0.02 mm", coupler = ["0.01 mm", "0.05 mm"] }; both count one after the other. In the plane the larger end
+    of a range counts. A pin in a slot has the slot's clearance beside it. Left out, there is no play in the plane."""
+    fit: PinFit | None = None
+    """In place of a clearance: the fit of hole and pin at pin_diameter. "H8/f7" or another one of ISO 286, of a hole H
+    and a pin d to h in grades 5 to 12 (rounded by up to 2 µm; coarser than IT8 or above 315 mm by up to 5 %, and 16 %
+    up to 3 mm); "running", for which H8/f7 is assumed; or, for a link, "press". Of the hole in which the pin is not
+    tight, or a table with one for each link, such as { crank = "press", coupler = "H8/f7" }."""
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0
@@ -76,7 +86,7 @@ class Joint(CaseModel):
     held within a circle of this diameter; on an imported part the nearest face, as a load at a point is."""
 
     def model_post_init(self, context: object) -> None:
-        """Let a clamped joint be a bonded one, which it is but for the pin.
+        """Let a clamped joint be a bonded one, which it is but for the pin, and a pressed pin be tight.
 
         Parameters
         ----------
@@ -86,6 +96,9 @@ class Joint(CaseModel):
         super().model_post_init(context)
         if self.clamped:
             self.__dict__["bonded"] = True
+        fits = self.fit if isinstance(self.fit, Mapping) else {}
+        if pressed := [link for link in self.links if fits.get(link) == PRESS]:
+            self.__dict__["tight_in"] = tuple(dict.fromkeys((*self.tight_in, *pressed)))
 
     @property
     def friction_ends(self) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Name, refusal
 from alula.geometry.base.units import POSITIVE, Length
+from alula.geometry.joints.holes import PinHoles, pin_holes
 from alula.geometry.joints.joint import Joint
 from alula.geometry.parts.part import EyeSizes, HoleRow, Slot
 
@@ -90,7 +91,12 @@ def _check_clamp(name: str, joint: Joint) -> None:
             f"{entry}: a clamp holds an end over its clamp_length, or a bore of its pin_diameter, but both are stated; "
             "leave one out"
         )
-    for wrong, why in (("friction", "does not turn"), ("clearance", "has no play"), ("tight_in", "has no pin")):
+    for wrong, why in (
+        ("friction", "does not turn"),
+        ("clearance", "has no play"),
+        ("fit", "has no pin"),
+        ("tight_in", "has no pin"),
+    ):
         if getattr(joint, wrong):
             raise CaseError(f"{entry}.{wrong}: a clamped joint {why}; leave it out")
 
@@ -221,6 +227,23 @@ class Linkage:
             Names of points.
         """
         return self.joints[name].points or (name, name)
+
+    def pin_holes(self, name: str) -> PinHoles:
+        """Return the holes in which a joint's pin sits, as far as they are stated.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+
+        Returns
+        -------
+        PinHoles
+            Of a pin in a slot, the slot's clearance across it is that of the first link.
+        """
+        joint = self.joints[name]
+        slot = self.links[joint.links[0]].slots.get(self.joint_points(name)[0])
+        return pin_holes(joint, 0.0 if slot is None else slot.clearance)
 
     def joints_of(self, link: str) -> tuple[str, ...]:
         """Names of the joints on a link.
