@@ -1,5 +1,6 @@
 """How wide the holes of pins between layers may be: what a case states, and radii of rims' discs by what is open."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.pins.holes import known_hole, shortest
 from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -16,7 +18,6 @@ HoleName = tuple[str, str]
 LOOSE = 0.1
 """Clearance over the pin's diameter up to which a hole is tried of which nothing is stated. From there on forces hardly
 depend on it: measured on a four-bar of PLA and of aluminium, 0.1 and 0.02 of the diameter."""
-RUNNING = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,23 +50,43 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
     Returns
     -------
     tuple of Clearance
-        Without holes that hold their pin tightly, slots and guides.
+        Without holes that hold their pin tightly, slots and guides. The ground, where nothing tells its thickness or
+        how a pin sits in it, holds it tightly.
     """
-    found = []
+    linkage, found = frame.pose.linkage, []
     for name in frame.pin_beams:
-        joint = frame.pose.linkage.joints[name]
+        joint = linkage.joints[name]
         if joint.type != "revolute" or name in frame.bonded:
             continue
-        loose = tuple((name, link) for link in joint.links if not joint.is_tight_in(link))
-        if "clearance" in joint.model_fields_set:
-            if joint.clearance > 0.0 and loose:
-                size = joint.clearance
-                found.append(Clearance(holes=loose, low=size, value=size, high=size))
+        sits = linkage.pin_holes(name)
+        if sits.shared is not None:
+            low, high = sits.shared
+            every = tuple((name, hole.link) for hole in sits.holes)
+            found.append(Clearance(holes=every, low=low, value=(low + high) / 2.0, high=high))
             continue
-        for hole in loose:
-            d = joint.pin_diameter or 3.0
-            found.append(Clearance(holes=(hole,), low=0.0, value=0.006 * d, high=LOOSE * d))
-    return tuple(found)
+        for hole in sits.holes:
+            if hole.stated:
+                found.append(Clearance(holes=((name, hole.link),), low=hole.low, value=hole.nominal, high=hole.high))
+            elif known_hole(case, name, hole.link) is not None:
+                most = max(LOOSE * pin_size(case, name), hole.high if math.isfinite(hole.high) else 0.0)
+                found.append(Clearance(holes=((name, hole.link),), low=0.0, value=hole.nominal, high=most))
+    return tuple(one for one in found if one.high > 0.0)
+
+
+def pin_size(case: Case, joint: str) -> float:
+    """Return the diameter of a pin; where none is stated, that of a pin as thick as the shortest hole is long.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+
+    Returns
+    -------
+    float
+        [mm]
+    """
+    return case.joints[joint].pin_diameter or shortest(case)
 
 
 def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], ...]:
@@ -79,18 +100,17 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     Returns
     -------
     tuple of tuple of (str, float)
-        Links with the play in their hole [mm]. Of those in one tuple any may have all of it, where nothing states in
-        which link the pin is tight; slot and hole, in different ones, have theirs beside each other.
+        Links with the largest play in their hole [mm]. Of those in one tuple any may have all of it, where nothing
+        states in which link the pin is tight; holes in different ones have theirs beside each other. Where nothing is
+        stated of a hole between layers, its pin runs.
     """
-    record = case.joints[joint]
-    loose = tuple(link for link in record.links if not record.is_tight_in(link))
-    found = [tuple((link, record.clearance) for link in loose)]
-    if "clearance" not in record.model_fields_set and case.linkage.rise(joint) != 0.0 and record.type == "revolute":
-        return tuple(((link, RUNNING * (record.pin_diameter or 3.0)),) for link in loose)
-    if record.type == "pin-in-slot":
-        link, point = record.links[0], case.linkage.joint_points(joint)[0]
-        slot = case.links[link].slots.get(point)
-        found = [((record.links[1], record.clearance),), ((link, 0.0 if slot is None else slot.clearance),)]
+    sits = case.linkage.pin_holes(joint)
+    if sits.shared is not None:
+        found = [tuple((hole.link, sits.shared[1]) for hole in sits.holes)]
+    else:
+        layered = case.linkage.rise(joint) != 0.0
+        told = [hole for hole in sits.holes if hole.stated or (layered and known_hole(case, joint, hole.link))]
+        found = [((hole.link, hole.high),) for hole in told if math.isfinite(hole.high)]
     return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
 
 

@@ -43,7 +43,7 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     for name, joint in linkage.joints.items():
         if joint.type != "slider" and linkage.rise(name) != 0.0:
             ends = joint.links if joint.type == "revolute" else joint.links[1:]
-            found += [(name, link) for link in ends if not joint.is_tight_in(link)]
+            found += [(name, link) for link in ends if linkage.pin_holes(name)[link].high > 0.0]
     return tuple(found)
 
 
