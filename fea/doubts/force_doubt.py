@@ -239,6 +239,24 @@ def measures_and_column(case: Case, link: str, loads: LinkLoads) -> tuple[float,
     return stress, displacement, max(1.0 / least_factor(case, link, hand.check) for hand in hands)
 
 
+def stress_by_hand(case: Case, link: str, borne: Plates) -> float:
+    """Return the stress by hand of a link, or of the worse plate of a pair; the largest pin force where no beam stands.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    borne : tuple of LinkLoads
+        What acts on it, or on each plate.
+
+    Returns
+    -------
+    float
+        [MPa], or [N].
+    """
+    return _by_hand(case, link, borne)[0]
+
+
 def borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> Plates:
     """Return what acts on a link, or on each plate of a pair.
 

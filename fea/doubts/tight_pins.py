@@ -1,10 +1,10 @@
-"""Whether it would help to state in which links pins are tight: asked of the checks that the sharing of couples opens.
+"""Whether it would help to state how pins sit in their holes: asked of the checks that the sharing of couples opens.
 
-Entries ``tight_in`` are recommended only where some would decide what is open, and these are told: the ways of sharing
-that they leave are solved, and take the place of all ways in the band.
+Fits are recommended only where they would decide what is open: the states of pins that a running fit leaves are sought,
+and take the place of all states in the band. Where none decides, the joint is told whose fit narrows the band most.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
@@ -12,9 +12,9 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
-from alula.fea.doubts.force_doubt import sharing_doubt
+from alula.fea.doubts.force_doubt import sharing_answers, stress_by_hand
 from alula.fea.frame.joint_forces import JointForces
-from alula.geometry.linkage.linkage import Linkage
+from alula.fea.pins.states import running, unstated
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 
@@ -67,46 +67,54 @@ class SharedCouples:
         own = (one for one in self.checks if one.link == link and one.quantity in strength)
         return [one for one in own if one.verdict is Verdict.UNDECIDED and _open(one, one.value)]
 
-    def decided_by(self, link: str, tight: Mapping[str, tuple[str, ...]] | None) -> bool:
-        """Return whether all of a link's checks would be decided with pins stated tight.
+    def decided_by(self, link: str, joints: tuple[str, ...]) -> bool:
+        """Return whether all of a link's checks would be decided with running fits stated.
 
         Parameters
         ----------
         link : str
-        tight : mapping of str to tuple of str, or None
-            Joint -> its entry ``tight_in``; None for pins that tilt nowhere.
+        joints : tuple of str
+            Whose pins run in holes of which nothing is stated.
 
         Returns
         -------
         bool
         """
-        known, every = self.told[link], self.by_hand.get(link, Scatter())
-        left = Scatter() if tight is None else self._left(tight, link)
-        # The band may hold what solids make of all ways; of those that are left, hand calculation tells their part.
+        known, every, left = self.told[link], self.by_hand.get(link, Scatter()), self.left(link, joints)
+        # The band may hold what solids make of all states; of those that are left, hand calculation tells their part.
         low = 1.0 - (1.0 - known.low) * _part(1.0 - left.low, 1.0 - every.low)
         high = 1.0 + (known.high - 1.0) * _part(left.high - 1.0, every.high - 1.0)
         lower = low / known.low if known.low > 0.0 else 1.0
         return all(_decided(one, lower, high / known.high) for one in self.open_checks(link))
 
-    def _left(self, tight: Mapping[str, tuple[str, ...]], link: str) -> Scatter:
-        """What the ways of sharing that are left make of the stress of a link."""
-        forces = self._stated(tuple(sorted(tight.items())))
-        doubt = sharing_doubt(self.case, self.load_case, forces, self.loads, grown=self.grown, links=[link])
-        return doubt.stress.get(link, Scatter())
+    def left(self, link: str, joints: tuple[str, ...]) -> Scatter:
+        """Return what pins leave of a link's stress by hand with running fits stated.
+
+        Parameters
+        ----------
+        link, joints
+            As of ``decided_by``.
+
+        Returns
+        -------
+        Scatter
+        """
+        return self._left(link, self._stated(joints))
+
+    def _left(self, link: str, forces: JointForces) -> Scatter:
+        answers = sharing_answers(self.case, self.load_case, link, forces, self.loads, grown=self.grown)
+        plain, *others = (stress_by_hand(self.case, link, one) for one in answers.every)
+        return Scatter(low=min(others) / plain, high=max(others) / plain) if plain > 0.0 else Scatter()
 
     @cached_property
-    def _stated(self) -> Callable[[tuple[tuple[str, tuple[str, ...]], ...]], JointForces]:
-        """The joint forces with pins stated tight; the same for all links."""
-        frame = self.forces.frame
-        assert frame is not None
-        linkage = frame.pose.linkage
+    def _stated(self) -> Callable[[tuple[str, ...]], JointForces]:
+        """The joint forces as they stand, and the states that running fits of joints leave; the same for all links."""
+        pins = self.forces.pins
+        assert pins is not None
 
         @cache
-        def stated(tight: tuple[tuple[str, tuple[str, ...]], ...]) -> JointForces:
-            said = dict(tight)
-            joints = {n: j.model_copy(update={"tight_in": said.get(n, j.tight_in)}) for n, j in linkage.joints.items()}
-            pose = replace(frame.pose, linkage=Linkage(linkage.links, joints, linkage.heights))
-            return replace(self.forces, frame=replace(frame, pose=pose))
+        def stated(joints: tuple[str, ...]) -> JointForces:
+            return replace(self.forces, pins=running(self.case, pins, joints))
 
         return stated
 
@@ -147,31 +155,21 @@ def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[Reason]:
     told = []
     for link, cases in found.items():
         names, most = [one.load_case for one in cases], max(one.told[link].high for one in cases)
-        words = reason("no_tight_pins_decide")
-        if all(one.decided_by(link, None) for one in cases):
-            helps = (said for said, tight in _statements(cases[0].case, link)
-                     if all(one.decided_by(link, tight) for one in cases))  # fmt: skip
-            words = next(helps, words)
         kind = "couples_of_layers" if len(names) == 1 else "couples_of_layers_at_most"
-        told.append(under_load_cases(names, reason(kind, link=link, times=most, helps=words)))
+        told.append(under_load_cases(names, reason(kind, link=link, times=most, helps=_helps(cases, link))))
     return told
 
 
-def _statements(case: Case, link: str) -> Iterator[tuple[Reason, dict[str, tuple[str, ...]]]]:
-    """Yield what may be stated of pins, the least first: as a reason, and joint by joint."""
-    joints = case.linkage.joints
-    unknown = [name for name, joint in joints.items()
-               if joint.type == "revolute" and case.linkage.rise(name) != 0.0
-               and not (joint.tight_in or joint.bonded)]  # fmt: skip
-    own = [name for name in unknown if link in joints[name].links]
-    for names, kind, which in (
-        (own, "tight_in_both_decides", slice(2)),
-        (unknown, "tight_in_first_decides", slice(1)),
-        (unknown, "tight_in_second_decides", slice(1, 2)),
-        (unknown, "tight_in_both_decides", slice(2)),
-    ):
-        if names:
-            yield (
-                reason(kind, joints=names),
-                {name: tuple(joints[name].links)[which] for name in names},
-            )
+def _helps(cases: Sequence[SharedCouples], link: str) -> Reason:
+    """Return the least statement that decides a link's checks, else the one that narrows them most."""
+    first = cases[0]
+    assert first.forces.pins is not None
+    open_joints = unstated(first.case, first.forces.pins)
+    own = tuple(name for name in open_joints if link in first.case.joints[name].links)
+    for joints in dict.fromkeys([*((name,) for name in own), own, open_joints]):
+        if joints and all(one.decided_by(link, joints) for one in cases):
+            return reason("fits_decide", joints=list(joints))
+    if not own:
+        return reason("no_fit_decides")
+    widths = {name: max(one.left(link, (name,)).high for one in cases) for name in own}
+    return reason("fit_narrows_most", joint=min(own, key=lambda name: widths[name]))

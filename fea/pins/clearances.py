@@ -50,8 +50,9 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
     Returns
     -------
     tuple of Clearance
-        Without holes that hold their pin tightly, slots and guides. The ground, where nothing tells its thickness or
-        how a pin sits in it, holds it tightly.
+        Without holes that hold their pin tightly, slots and guides. Where nothing tells how a pin sits in a hole, it
+        may be pressed and as loose as ``LOOSE``; the value is a running fit, and a pressed pin in a link, such as the
+        ground, whose thickness nothing tells.
     """
     linkage, found = frame.pose.linkage, []
     for name in frame.pin_beams:
@@ -67,9 +68,10 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
         for hole in sits.holes:
             if hole.stated:
                 found.append(Clearance(holes=((name, hole.link),), low=hole.low, value=hole.nominal, high=hole.high))
-            elif known_hole(case, name, hole.link) is not None:
+            else:
+                value = hole.nominal if known_hole(case, name, hole.link) else 0.0
                 most = max(LOOSE * pin_size(case, name), hole.high if math.isfinite(hole.high) else 0.0)
-                found.append(Clearance(holes=((name, hole.link),), low=0.0, value=hole.nominal, high=most))
+                found.append(Clearance(holes=((name, hole.link),), low=0.0, value=value, high=most))
     return tuple(one for one in found if one.high > 0.0)
 
 

@@ -5,7 +5,8 @@ so that its ends are sought: for each couple that a pin carries into a link, upw
 is open go to that end of their range to which the slope points, until they stay.
 """
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,9 +14,10 @@ from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.pins.clearances import Radii, clearances_of, radii_of
+from alula.fea.pins.clearances import Radii, clearances_of, pin_size, radii_of
 from alula.fea.pins.holes import RimFrame, rims_of
 from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
+from alula.geometry.joints.fits import RUNNING, fit
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
 
@@ -222,3 +224,43 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
         return None
     names = [[(joint, hole.link) for joint in hole.joints] for hole in rims.holes]
     return PinStates(rims=rims, radii=radii_of(open_holes, names))
+
+
+def unstated(case: Case, pins: PinStates) -> tuple[str, ...]:
+    """Return the joints that do not state how their pins sit in some hole between layers.
+
+    Parameters
+    ----------
+    case : Case
+    pins : PinStates
+
+    Returns
+    -------
+    tuple of str
+    """
+    open_holes = [hole for one in pins.radii.clearances for hole in one.holes]
+    known = {name: case.linkage.pin_holes(name) for name, _ in open_holes}
+    return tuple(dict.fromkeys(name for name, link in open_holes if not known[name][link].stated))
+
+
+def running(case: Case, pins: PinStates, joints: Collection[str]) -> PinStates:
+    """Return the states of pins that would run in the holes of some joints of which nothing is stated.
+
+    Parameters
+    ----------
+    case : Case
+    pins : PinStates
+    joints : collection of str
+
+    Returns
+    -------
+    PinStates
+    """
+    found = []
+    for one in pins.radii.clearances:
+        [name, link] = one.holes[0]
+        if name in joints and not case.linkage.pin_holes(name)[link].stated:
+            low, high = fit(RUNNING, pin_size(case, name)).bounds
+            one = replace(one, low=low, value=(low + high) / 2.0, high=high)
+        found.append(one)
+    return replace(pins, radii=replace(pins.radii, clearances=tuple(found)))
