@@ -83,13 +83,13 @@ def parse_fit(code: str) -> tuple[int, str, int]:
         For any but a hole H with a pin d to h, of grades 5 to 12.
     """
     found = _CODE.fullmatch(code.strip())
-    grades = (int(found[1]), int(found[3])) if found else ()
-    if found is None or not all(grade in GRADES for grade in grades):
+    hole, shaft = (int(found[1]), int(found[3])) if found else (0, 0)
+    if found is None or hole not in GRADES or shaft not in GRADES:
         raise CaseError(
             f'the fit must be that of a hole H and a pin d to h, of grades 5 to 12, such as "{RUNNING}"; in place of '
             'another one state clearance = ["0.01 mm", "0.05 mm"], its least and its largest'
         )
-    return grades[0], found[2], grades[1]
+    return hole, found[2], shaft
 
 
 @lru_cache(maxsize=1024)
