@@ -4,14 +4,16 @@ import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema, field_validator
+from pydantic import BeforeValidator, Field, PlainValidator, ValidationInfo, WithJsonSchema, field_validator
+from pydantic_core import PydanticKnownError
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Name, refusal
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from alula.geometry.linkage.joint_kinds import IN_PLANE, JOINT_KINDS, JointKind, Way, Ways
 from alula.geometry.parts.part import EyeSizes, HoleRow, Slot
 
 
@@ -87,6 +89,14 @@ class Link(CaseModel):
         return (*itertools.pairwise(chain), *((foot, point) for point, foot in self.arms.items()))
 
 
+def _kind_name(stated: object) -> str:
+    if isinstance(stated, str) and stated in JOINT_KINDS:
+        return stated
+    *first, last = map(repr, JOINT_KINDS)
+    raise PydanticKnownError("literal_error", {"expected": f"{', '.join(first)} or {last}"})
+
+
+KindName = Annotated[str, PlainValidator(_kind_name), WithJsonSchema({"type": "string", "enum": list(JOINT_KINDS)})]
 Coefficient = Annotated[float, Field(ge=0.0, le=2.0)]
 UNSTATED = 0.3
 """Share by which a coefficient of friction without a stated range may be off to either side."""
@@ -95,7 +105,7 @@ UNSTATED = 0.3
 class Joint(CaseModel):
     """A joint between two links."""
 
-    type: Literal["revolute", "pin-in-slot", "slider"] = "revolute"
+    type: KindName = "revolute"
     """revolute: the two points coincide. pin-in-slot: the second link's point lies on the line through the first link's
     point along ``direction`` (a half joint: it may turn and slide). slider: as pin-in-slot, and the second link keeps
     the angle ``angle`` to the first."""
@@ -159,9 +169,44 @@ class Joint(CaseModel):
         return self.friction_range or ((1.0 - UNSTATED) * self.friction, (1.0 + UNSTATED) * self.friction)
 
     @property
+    def kind(self) -> JointKind:
+        """Its kind."""
+        return JOINT_KINDS[self.type]
+
+    @property
+    def bears(self) -> Ways:
+        """The ways in which it holds its second link on its first."""
+        return self.kind.bears | {Way.ABOUT_PIN} if self.bonded else self.kind.bears
+
+    @property
     def fixes_angle(self) -> bool:
         """Whether the case states the angle between its links, which takes part in closing the loops."""
-        return self.type == "slider" or self.clamped or (self.bonded and "angle" in self.model_fields_set)
+        return self.kind.keeps_angle or self.clamped or (self.bonded and "angle" in self.model_fields_set)
+
+    @property
+    def slides(self) -> bool:
+        """Whether it has a slot or guide, with a travel along it."""
+        return self.kind.slides
+
+    @property
+    def pivots(self) -> bool:
+        """Whether its links turn about its pin, and do nothing else."""
+        return not (self.slides or self.bears_moment)
+
+    @property
+    def carrier(self) -> str | None:
+        """The link that carries its slot or guide; None where it does not slide."""
+        return self.links[0] if self.slides else None
+
+    @property
+    def slotted(self) -> str | None:
+        """The link in whose slot its pin runs; None where there is no pin in a slot."""
+        return self.carrier if self.kind.has_pin else None
+
+    @property
+    def bored(self) -> tuple[Name, ...]:
+        """The links that have its pin at the point that they state, in a round hole."""
+        return self.links[1:] if self.slides else self.links
 
     def is_tight_in(self, link: str) -> bool:
         """Return True if the pin is stated to be tight in one of the joint's links.
@@ -181,7 +226,7 @@ class Joint(CaseModel):
     @property
     def bears_moment(self) -> bool:
         """Whether it bears a moment about z."""
-        return self.type == "slider" or self.bonded
+        return self.bonded or self.kind.keeps_angle
 
 
 def _check_clamp(name: str, joint: Joint) -> None:
@@ -191,7 +236,7 @@ def _check_clamp(name: str, joint: Joint) -> None:
         if joint.clamp_length is not None:
             raise CaseError(f"{entry}.clamp_length: joint {name} is not clamped; add clamped = true, or leave it out")
         return
-    if joint.type != "revolute":
+    if joint.slides:
         raise CaseError(
             f"{entry}.clamped: a joint of type {joint.type} slides, but a clamped one holds its links; leave clamped "
             "out, or remove the type"
@@ -264,7 +309,7 @@ class Linkage:
                 )
         if joint.links[0] == joint.links[1]:
             raise CaseError(f"joints.{name}: it joins link '{joint.links[0]}' to itself; name two different links")
-        if joint.bonded and not joint.clamped and joint.type != "revolute":
+        if joint.bonded and not joint.clamped and joint.slides:
             raise CaseError(
                 f"joints.{name}.bonded: a joint of type {joint.type} slides, and only a revolute joint can be bonded; "
                 "leave bonded out, or remove the type"
@@ -293,14 +338,18 @@ class Linkage:
 
     @cached_property
     def mobility(self) -> int:
-        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) - 2 J1 - J2, less one per stated angle of a bond.
+        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) less what joints bear, bonds with a stated angle.
 
         Norton, Design of Machinery, 5th ed., chapter 2. It counts, and can be wrong for special
         dimensions (parallelograms): there the rank of the Jacobian decides.
         """
-        half = sum(j.type == "pin-in-slot" for j in self.joints.values())
-        bonds = sum(j.bonded and j.fixes_angle for j in self.joints.values())
-        return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half - bonds
+        unstated = sum(joint.bears_moment and not joint.fixes_angle for joint in self.joints.values())
+        return 3 * len(self.moving) - self.borne + unstated
+
+    @cached_property
+    def borne(self) -> int:
+        """Number of the forces and moments in the plane that its joints bear."""
+        return sum(len(joint.bears & IN_PLANE) for joint in self.joints.values())
 
     def rise(self, name: str) -> float:
         """Return how far a joint's second link lies above its first, along z.
