@@ -113,9 +113,9 @@ def check_rules(case: CoreCase) -> None:
 def _check_drive(case: CoreCase) -> None:
     check_drive(case.linkage, case.pinned_drive)
     if case.drive is not None and case.drive.stiffness is not None:
-        slides = case.joints[case.drive.joint].type == "slider"
-        if (case.drive.stiffness.measure is Measure.TRAVEL) != slides:
-            kind, unit = ("slider", "20 N/mm") if slides else ("revolute joint", "2 N*m/rad")
+        pushed = case.joints[case.drive.joint].kind.guided
+        if (case.drive.stiffness.measure is Measure.TRAVEL) != pushed:
+            kind, unit = ("slider", "20 N/mm") if pushed else ("revolute joint", "2 N*m/rad")
             raise CaseError(
                 f"drive.stiffness: joint '{case.drive.joint}' is a {kind}, whose drive has a stiffness such as "
                 f'"{unit}"; state that'
@@ -203,7 +203,7 @@ def _check_pose(case: CoreCase) -> None:
 
 
 def _check_slides(case: CoreCase, entry: str, name: str | None) -> None:
-    slots = [joint for joint, record in case.joints.items() if record.type != "revolute"]
+    slots = [joint for joint, record in case.joints.items() if record.slides]
     require(entry, name, slots, "is no slider or slot, but a travel is stated")
 
 
@@ -389,8 +389,7 @@ def _check_slots(case: CoreCase, link: str) -> None:
         raise CaseError(
             f"links.{link}.arms.{next(iter(record.arms))}: a part of shape {part.shape} takes no arms; leave them out"
         )
-    sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)
-               if linkage.joints[name].type == "pin-in-slot" and linkage.joints[name].links[0] == link}  # fmt: skip
+    sliding = {linkage.point_of(name, link): name for name, joint in linkage.joints.items() if joint.slotted == link}
     for point in record.slots:
         joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
         if point not in sliding or len(joints) != 1:

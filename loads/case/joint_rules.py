@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterator
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.joint_kinds import Surface
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
@@ -26,6 +27,22 @@ def rubbing_joints(case: CoreCase) -> tuple[str, ...]:
     tuple of str
     """
     return tuple(name for name, joint in case.joints.items() if joint.friction > 0.0)
+
+
+def guides_without_length(case: CoreCase) -> tuple[str, ...]:
+    """Return the guides with friction of which nothing says over which length they hold, so that moments add none.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    tuple of str
+    """
+    joints = case.joints
+    guides = (name for name in rubbing_joints(case) if joints[name].kind.rubs is Surface.GUIDE)
+    return tuple(name for name in guides if joints[name].guide_length is None)
 
 
 def friction_ranges(case: CoreCase) -> dict[str, tuple[float, float]]:
@@ -55,7 +72,7 @@ def check_friction(case: CoreCase) -> None:
         For the first rule that is broken.
     """
     for name, joint in case.joints.items():
-        if joint.guide_length is not None and joint.type != "slider":
+        if joint.guide_length is not None and joint.kind.rubs is not Surface.GUIDE:
             raise CaseError(f"joints.{name}.guide_length: joint {name} is no slider and has no guide; leave it out")
     rubbing = rubbing_joints(case)
     for name in rubbing:
@@ -66,11 +83,11 @@ def check_friction(case: CoreCase) -> None:
                 f"joints.{name}.friction_range: it goes from {low:g} to {high:g}, but friction is {joint.friction:g}; "
                 "state the least and the largest coefficient about it"
             )
-        if joint.type == "revolute" and joint.pin_diameter is None:
+        if joint.kind.rubs is Surface.BORE and joint.pin_diameter is None:
             raise CaseError(
                 f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"
             )
-        if joint.bonded or (case.joint_model == "bonded" and joint.type == "revolute"):
+        if case.linkage.joints[name].bonded:
             raise CaseError(f"{entry}, but a bonded joint does not turn; leave friction out, or do not bond it")
         if case.pose.equilibrium:
             raise CaseError(
@@ -137,8 +154,8 @@ def clearances(case: CoreCase) -> dict[str, float]:
     found = {}
     for name, joint in case.joints.items():
         play = joint.clearance
-        if joint.type == "pin-in-slot":
-            slot = case.links[joint.links[0]].slots.get(case.linkage.joint_points(name)[0])
+        if joint.slotted is not None:
+            slot = case.links[joint.slotted].slots.get(case.linkage.joint_points(name)[0])
             play += 0.0 if slot is None else slot.clearance
         if play > 0.0:
             found[name] = play
@@ -161,7 +178,7 @@ def check_clearances(case: CoreCase) -> None:
         if joint.clearance == 0.0:
             continue
         entry = f"joints.{name}.clearance"
-        if joint.type == "slider":
+        if not joint.kind.has_pin:
             raise CaseError(
                 f"{entry}: a slider has no pin with play, and play of its guide is not modelled; leave it out"
             )
@@ -194,8 +211,7 @@ def _bound(case: CoreCase, name: str) -> tuple[float, str]:
 
 def _redundant(case: CoreCase) -> bool:
     """Whether equilibrium has fewer equations than unknowns."""
-    unknowns = sum(1 if j.type == "pin-in-slot" else 2 + j.bonded for j in case.linkage.joints.values())
-    return unknowns + bool(case.drive) > 3 * len(case.linkage.moving)
+    return case.linkage.borne + bool(case.drive) > 3 * len(case.linkage.moving)
 
 
 def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
@@ -213,9 +229,7 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
         held = [name for name, joint in case.linkage.joints.items() if joint.bonded and joint.clamped == clamped]
         if held:
             yield Caveat(topic=Topic.BONDS, what=reason(kind, joints=held), why=reason("not_judged_what_holds"))
-    short = [name for name in rubbing_joints(case) if case.joints[name].type == "slider"]
-    short = [name for name in short if case.joints[name].guide_length is None]
-    if short:
+    if short := guides_without_length(case):
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.FRICTION,

@@ -178,7 +178,7 @@ def _check_torque(case: CoreCase, entry: str, load: PointMoment) -> None:
     """A pin that turns freely passes no torque about its own axis; only the drive's does."""
     linkage = case.linkage
     pins = [name for name in linkage.joints_of(load.link)
-            if linkage.point_of(name, load.link) == load.at and linkage.joints[name].type == "revolute"]  # fmt: skip
+            if linkage.point_of(name, load.link) == load.at and not linkage.joints[name].slides]  # fmt: skip
     driven = case.drive is not None and case.drive.joint in pins
     if pins and not driven and not any(linkage.joints[name].bonded for name in pins):
         raise CaseError(

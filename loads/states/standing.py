@@ -356,7 +356,7 @@ def _holder(case: Case, pose: Pose) -> Drive:
     places = [
         Drive(link=link, joint=name)
         for name, joint in case.joints.items()
-        if joint.type != "pin-in-slot" and ground in joint.links
+        if (joint.kind.guided or not joint.slides) and ground in joint.links
         for link in joint.links
         if link != ground
     ]
@@ -419,7 +419,7 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
             why=reason("stiffness_for_frequencies"),
         )
     elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
-        usual = "20 N/mm" if case.joints[case.drive.joint].type == "slider" else "2 N*m/rad"
+        usual = "20 N/mm" if case.joints[case.drive.joint].kind.guided else "2 N*m/rad"
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.DRIVE,

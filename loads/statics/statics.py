@@ -71,7 +71,7 @@ class Drive:
         DriveEffort
             A force at a slider, along its guide; else a torque.
         """
-        return DriveEffort.FORCE if linkage.joints[self.joint].type == "slider" else DriveEffort.TORQUE
+        return DriveEffort.FORCE if linkage.joints[self.joint].kind.guided else DriveEffort.TORQUE
 
     def coordinate(self, linkage: Linkage) -> Coordinate:
         """Return what the drive holds.
@@ -250,7 +250,7 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
         if (column, name) != (f"M:{turns}", turns)  # the drive's torque is the moment of its joint
     ]
     if drive is not None and effort is DriveEffort.FORCE:
-        unknowns.append(("P", drive.joint, drive.sign(linkage) * along_joint(place, drive.joint), 0.0))
+        unknowns.append(("P", drive.joint, drive.sign(linkage) * place.along(drive.joint), 0.0))
     columns = tuple(column for column, *_ in unknowns)
     turned = () if turns is None else linkage.joints[turns].links
     columns += ("T",) if turned else ()
@@ -308,32 +308,33 @@ def joint_column(place: Placement, name: str, force: Complex, moment: Real | flo
 
 def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
     """Return, by unknown of a joint, force (...) and moment of the first link on the second at the pin for one unit."""
-    along, joint = along_joint(place, name), place.linkage.joints[name]
+    along, joint = place.along(name), place.linkage.joints[name]
     units = {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
-    if joint.type != "revolute":
+    if joint.slides:
         units = {f"N{name}": (1j * along, 0.0)}
     return units | ({f"M:{name}": (0.0 * along, 1.0)} if joint.bears_moment else {})
 
 
-def along_joint(place: Placement, name: str) -> Complex:
-    """Return the direction of a joint's slot or guide.
+def unknowns_of(place: Placement, wrenches: Mapping[str, Real]) -> dict[str, Any]:
+    """Return the unknowns that joints' wrenches stand for; ``joint_reactions`` goes the other way.
 
     Parameters
     ----------
     place : Placement
         Where the links stand.
-    name : str
-        The joint.
+    wrenches : mapping of str to array (..., 6)
+        Joint -> what its first link exerts on its second about the second's point, global axes [N, N mm].
 
     Returns
     -------
-    complex array (...)
-        Unit vector in global axes; x for a revolute joint.
+    dict of str to array (...)
+        By their names in ``System.columns``, and the moment of the drive's joint [N, N mm].
     """
-    joint = place.linkage.joints[name]
-    if joint.type == "revolute":
-        return np.ones(place.shape, dtype=complex)
-    return np.asarray(place.direction(joint.links[0]) * np.exp(1j * joint.direction))
+    return {
+        column: (np.conj(force) * (wrench[..., 0] + 1j * wrench[..., 1])).real + moment * wrench[..., 5]
+        for name, wrench in wrenches.items()
+        for column, (force, moment) in _units(place, name).items()
+    }
 
 
 def check_drive(linkage: Linkage, drive: Drive | None) -> None:
@@ -440,14 +441,11 @@ def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, A
     """
     found = {}
     for name, joint in place.linkage.joints.items():
-        wrench, along = np.zeros((*place.shape, 6)), along_joint(place, name)
-        if joint.type == "revolute":
-            wrench[..., 0], wrench[..., 1] = value[f"R{name}x"], value[f"R{name}y"]
-        else:
-            force = value[f"N{name}"] * 1j * along
-            if drive is not None and drive.joint == name:
-                force = force + drive.sign(place.linkage) * value.get("P", 0.0) * along
-            wrench[..., 0], wrench[..., 1] = force.real, force.imag
+        wrench = np.zeros((*place.shape, 6))
+        force = sum(value.get(column, 0.0) * unit for column, (unit, _) in _units(place, name).items())
+        if drive is not None and drive.joint == name:
+            force = force + drive.sign(place.linkage) * value.get("P", 0.0) * place.along(name)
+        wrench[..., 0], wrench[..., 1] = np.real(force), np.imag(force)
         wrench[..., 5] = value.get(f"M:{name}", 0.0)
         arm = travelled(place, name)
         found[name] = JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=arm)
