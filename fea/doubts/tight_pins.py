@@ -160,9 +160,7 @@ def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[Reason]:
 def _statements(case: Case, link: str) -> Iterator[tuple[Reason, dict[str, tuple[str, ...]]]]:
     """Yield what may be stated of pins, the least first: as a reason, and joint by joint."""
     joints = case.linkage.joints
-    unknown = [name for name, joint in joints.items()
-               if joint.type == "revolute" and case.linkage.rise(name) != 0.0
-               and not (joint.tight_in or joint.bonded)]  # fmt: skip
+    unknown = [n for n, joint in joints.items() if joint.pivots and case.linkage.rise(n) != 0.0 and not joint.tight_in]
     own = [name for name in unknown if link in joints[name].links]
     for names, kind, which in (
         (own, "tight_in_both_decides", slice(2)),

@@ -11,12 +11,13 @@ from alula.fea.beam.cut_beam import changes
 from alula.fea.beam.flanks import Flanks, flanks_of
 from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.condensed import CondensedLink, LinkFlexibility
-from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
-from alula.fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
+from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam
+from alula.fea.frame.model import Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from alula.fea.frame.spring import FrameSpring
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import patch_span
 from alula.geometry.bodies.section import ring
+from alula.geometry.linkage.joint_kinds import ALL_WAYS, MOVES, TURNS, Way, Ways
 from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.parts.part import Section
@@ -28,12 +29,15 @@ from alula.loads.states.springs import spring_states
 from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
-TURNS: frozenset[Dof] = frozenset({"rx", "ry", "rz"})
 STIFF_IN_TWIST = 1e6
 """How many times its own twist stiffness the pin of the drive's joint, or of a bonded one, has between layers: the
 torque goes from the one link to the other beside the pin."""
-JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot": frozenset(), "slider": TURNS}
-"""What the two links of a joint share; guides add what slots hold."""
+DOFS: Mapping[Way, Dof] = {
+    **dict(zip(MOVES, ("ux", "uy", "uz"), strict=True)),
+    **dict(zip(TURNS, ("rx", "ry", "rz"), strict=True)),
+}
+"""What the two links of a joint share in each way that is tied."""
+TILTS: Ways = frozenset((Way.ABOUT_ALONG, Way.ABOUT_ACROSS))
 ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
@@ -90,28 +94,24 @@ def build_frame(
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
     builder = _Builder(case, pose, loads, solids or {})
     supports, ties, guides = builder.supports, [], []
-    revolute = {name: joint for name, joint in case.linkage.joints.items() if joint.type == "revolute"}
-    bonds = frozenset(name for name, joint in revolute.items() if bonded or joint.bonded)
+    joints = case.linkage.joints
+    bonds = frozenset(name for name, joint in joints.items() if joint.bonded or (bonded and not joint.slides))
     stiff = bonds if held is None else bonds | {held.joint}
     contacts = {name: builder.contact(name, twists=name not in stiff) for name in case.joints}
     places = np.array(builder.places)
     for name, joint in case.joints.items():
-        held_here = held is not None and name == held.joint
-        keeps = ALL_DOFS if joint.type == "slider" else TURNS
-        dofs = ALL_DOFS if name in bonds else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
+        ways = ALL_WAYS if name in bonds else joint.bears
+        if held is not None and name == held.joint:
+            ways |= joint.kind.driven
+        tied = _tied(ways)
+        dofs = frozenset(DOFS[way] for way in tied)
         first, second = contacts[name]
         if first is not None and second is not None:
             places[second] = places[first]
             ties += [Tie(nodes=(first, second), dofs=dofs)] if dofs else []
         else:
             supports += [Support(node=node, dofs=dofs) for node in (first, second) if node is not None and dofs]
-        if not {"ux", "uy"} <= dofs:
-            across = slot_normal(pose, name)
-            guides.append(Guide(carrier=first, pin=second, normal=across))
-            if joint.type == "slider":
-                guides.append(Guide(carrier=first, pin=second, normal=ALONG_PINS))
-            elif not dofs:
-                guides.append(Guide(carrier=first, pin=second, normal=across, axis=ALONG_PINS))
+        guides += [Guide(carrier=first, pin=second, **_guiding(pose, name, way)) for way in Way if way in ways - tied]
     return LinkageFrame(
         pose=pose,
         held=held,
@@ -137,6 +137,22 @@ def build_frame(
         beams=builder.beams,
         notes=tuple(builder.notes),
     )
+
+
+def _tied(ways: Ways) -> Ways:
+    """Return which of the ways that a joint bears a tie holds, in global axes: those that have no direction alone.
+
+    Guides hold the others: the place along or across a slot, of which both turn with its link, and a single tilt.
+    """
+    whole = {Way.ABOUT_PIN} | (set(MOVES) if Way.ALONG in ways else set()) | (TILTS if ways >= TILTS else set())
+    return ways & whole
+
+
+def _guiding(pose: Pose, name: str, way: Way) -> dict[str, Real]:
+    """Return normal and axis of the guide that holds a joint in a way."""
+    along = pose.placement.along(name)
+    normal = {Way.PIN: ALONG_PINS, Way.ABOUT_ACROSS: vector(along)}.get(way, vector(1j * along))
+    return {"normal": normal} | ({"axis": ALONG_PINS} if way in TILTS else {})
 
 
 def _springs(case: Case, pose: Pose, points: Mapping[tuple[str, str], int]) -> Iterator[FrameSpring]:
@@ -222,16 +238,15 @@ class _Builder:
         rise = linkage.rise(name)
         if rise == 0.0:
             return first, second
-        revolute = joint.type == "revolute"
-        root, link = (first, joint.links[0]) if revolute else (second, joint.links[1])
+        root, link = (second, joint.links[1]) if joint.slides else (first, joint.links[0])
         if root is None:
             root = self._node(link, *self.case.links[link].points[linkage.point_of(name, link)], name)
             self.supports.append(Support(node=root))
-        self.places.append(self.places[root] + np.array([0.0, 0.0, rise if revolute else -rise]))
+        self.places.append(self.places[root] + np.array([0.0, 0.0, -rise if joint.slides else rise]))
         self.names.append(f"the pin at {name}")
         self.pin_ends[name] = end = len(self.places) - 1
         self.pin_beams[name] = len(self.elements)
-        if joint.pin_diameter is None or joint.type == "slider":
+        if joint.pin_diameter is None or not joint.kind.has_pin:
             self._stiff(root, end, z_axis=ALONG_X)
         else:
             material = at_temperature(self.case.all_materials[joint.pin_material], self.case.conditions)
@@ -241,13 +256,13 @@ class _Builder:
             self.elements.append(
                 FrameElement(nodes=(root, end), section=section, young=young, poisson=poisson, z_axis=ALONG_X)
             )
-        return (end, second) if revolute else (first, end)
+        return (first, end) if joint.slides else (end, second)
 
     def _contacts(self, link: str) -> dict[str, tuple[float, float]]:
         """Joint -> place of its pin in the frame of a link that carries the slot."""
         found = {}
         for name, joint in self.case.joints.items():
-            if joint.type != "revolute" and joint.links[0] == link:
+            if joint.carrier == link:
                 pin = self.pose.position(joint.links[1], self.case.linkage.joint_points(name)[1])
                 x, y = self.pose.rotation(link).T @ (pin - self.pose.origins[link])
                 found[name] = (float(x), float(y))

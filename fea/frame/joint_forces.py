@@ -290,7 +290,7 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[WayToHo
     drives: Mapping[str, Drive] = {
         link: Drive(link=link, joint=name)
         for name, joint in case.joints.items()
-        if joint.type == "revolute" and ground in joint.links
+        if not joint.slides and ground in joint.links
         for link in joint.links
         if link != ground
     }

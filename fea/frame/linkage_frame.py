@@ -13,7 +13,6 @@ free to slide along the slot, which turns with that station, to turn about its o
 along it and to tilt along the slot. A slider is free to slide, and carries all else.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,11 +23,12 @@ from numpy.typing import NDArray
 from alula.fea.common.reason import Reason
 from alula.fea.frame.model import FrameModel
 from alula.geometry.base.errors import CaseError
+from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction, travelled
-from alula.loads.statics.statics import Drive, Reactions, assemble
+from alula.loads.statics.statics import Drive, Reactions, assemble, unknowns_of
 from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
@@ -138,14 +138,10 @@ class LinkageFrame:
                 joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=self._arm(name, shape)
             )
         system = self._equilibrium
-        value = {f"R{name}{axis}": joints[name].wrench[k] for name in joints for k, axis in enumerate("xy")}
-        for name in joints:
-            value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
-            value[f"M:{name}"] = float(joints[name].wrench[5])
+        value = unknowns_of(self.pose.placement, {name: joint.wrench for name, joint in joints.items()})
         if self.held is not None and effort is DriveEffort.FORCE:
-            across = slot_normal(self.pose, self.held.joint)
-            force = joints[self.held.joint].wrench
-            push = self.held.sign(self.pose.linkage) * float(across[1] * force[0] - across[0] * force[1])
+            along = vector(self.pose.placement.along(self.held.joint))
+            push = self.held.sign(self.pose.linkage) * float(along @ joints[self.held.joint].force)
         value |= {"T": torque, "P": push}
         return Reactions(
             pose=self.pose,
@@ -166,7 +162,7 @@ class LinkageFrame:
     def _arm(self, name: str, shape: Real) -> Real:
         """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""
         linkage, arm = self.pose.linkage, travelled(self.pose.placement, name)
-        if linkage.joints[name].type == "revolute" and name not in self.pin_beams:
+        if not linkage.joints[name].slides and name not in self.pin_beams:
             return arm  # one place in both links
         first, second = linkage.joints[name].links
         if second != linkage.ground:
@@ -218,26 +214,6 @@ def out_of_plane(loads: Sequence[Load]) -> bool:
     return False
 
 
-def slot_normal(pose: Pose, name: str) -> Real:
-    """Return the direction in the linkage's plane in which a joint's slot holds its pin.
-
-    Parameters
-    ----------
-    pose : Pose
-        The linkage's pose.
-    name : str
-        Of the joint.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        Unit vector, global axes.
-    """
-    joint = pose.linkage.joints[name]
-    along = pose.angles[joint.links[0]] + joint.direction
-    return np.array([-math.sin(along), math.cos(along), 0.0])
-
-
 def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> dict[str, Real]:
     """What each joint does to its second link (6,), told apart where several joints share a node.
 
@@ -259,7 +235,7 @@ def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> d
     for name, end in frame.pin_ends.items():
         held_by, wrench = frame.pins[name][1], -left[end]
         found[name] = wrench
-        if linkage.joints[name].type != "revolute":
+        if linkage.joints[name].slides:
             held_by = frame.pins[name][0]
             found[name] = shifted(-wrench, np.array([0.0, 0.0, -linkage.rise(name)]))
         if held_by is not None:

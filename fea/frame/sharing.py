@@ -115,8 +115,7 @@ def sharings(frame: LinkageFrame) -> tuple[Sharing, ...]:
         Where forces do not balance.
     """
     linkage = frame.pose.linkage
-    revolute = {name for name, joint in linkage.joints.items() if joint.type == "revolute"}
-    beams = {name: i for name, i in frame.pin_beams.items() if name in revolute - frame.bonded}
+    beams = {n: i for n, i in frame.pin_beams.items() if linkage.joints[n].pivots and n not in frame.bonded}
     if not beams:
         return ()
     hinges = [(name, link) for name in beams for link in linkage.joints[name].links]

@@ -122,10 +122,10 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     record = case.joints[joint]
     loose = tuple(link for link in record.links if not record.is_tight_in(link))
     found = [tuple((link, record.clearance) for link in loose)]
-    if record.type == "pin-in-slot":
-        link, point = record.links[0], case.linkage.joint_points(joint)[0]
-        slot = case.links[link].slots.get(point)
-        found = [((record.links[1], record.clearance),), ((link, 0.0 if slot is None else slot.clearance),)]
+    if record.slotted is not None:
+        slot = case.links[record.slotted].slots.get(case.linkage.joint_points(joint)[0])
+        own = 0.0 if slot is None else slot.clearance
+        found = [((record.links[1], record.clearance),), ((record.slotted, own),)]
     return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
 
 

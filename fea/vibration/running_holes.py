@@ -41,9 +41,8 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():
-        if joint.type != "slider" and linkage.rise(name) != 0.0:
-            ends = joint.links if joint.type == "revolute" else joint.links[1:]
-            found += [(name, link) for link in ends if not joint.is_tight_in(link)]
+        if joint.kind.has_pin and linkage.rise(name) != 0.0:
+            found += [(name, link) for link in joint.bored if not joint.is_tight_in(link)]
     return tuple(found)
 
 
@@ -73,7 +72,7 @@ def with_hinges(
     for name, link in holes:
         [i] = np.flatnonzero(parents == frame.pin_beams[name])
         joint, ends = frame.pose.linkage.joints[name], list(elements[i].nodes)
-        side = int(link != joint.links[joint.type != "revolute"])  # the frame builds it into that link
+        side = int(link != joint.bored[0])  # the frame builds it into that link
         for free in ACROSS:
             ties.append(Tie(nodes=(ends[side], len(nodes)), dofs=ALL_DOFS - {free}))
             ends[side] = len(nodes)
