@@ -126,7 +126,7 @@ def holding(case: Case, link: str) -> Holding:
     first, last = min(plain), max(plain)
     drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
     # A pin that holds the link off its axis may keep its angle, held by other pins as well.
-    fixed = {name for name in joints if linkage.joints[name].bonded}
+    fixed = {name for name in joints if linkage.joints[name].fixed}
     guides = {name for name in carried if Way.PIN in linkage.joints[name].bears}
     alone = {foot[name] for name in (fixed | drive) & set(joints)}
     return Holding(

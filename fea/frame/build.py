@@ -37,7 +37,8 @@ DOFS: Mapping[Way, Dof] = {
     **dict(zip(TURNS, ("rx", "ry", "rz"), strict=True)),
 }
 """What the two links of a joint share in each way that is tied."""
-TILTS: Ways = frozenset((Way.ABOUT_ALONG, Way.ABOUT_ACROSS))
+TIED_TURNS = (frozenset(TURNS), frozenset((Way.ABOUT_ALONG, Way.ABOUT_ACROSS)))
+"""All turns, or those but about the pin: of a node that is tied in others large displacements know no equations."""
 ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
@@ -95,7 +96,7 @@ def build_frame(
     builder = _Builder(case, pose, loads, solids or {})
     supports, ties, guides = builder.supports, [], []
     joints = case.linkage.joints
-    bonds = frozenset(name for name, joint in joints.items() if joint.bonded or (bonded and not joint.slides))
+    bonds = frozenset(name for name, joint in joints.items() if joint.fixed or (bonded and not joint.slides))
     stiff = bonds if held is None else bonds | {held.joint}
     contacts = {name: builder.contact(name, twists=name not in stiff) for name in case.joints}
     places = np.array(builder.places)
@@ -140,19 +141,25 @@ def build_frame(
 
 
 def _tied(ways: Ways) -> Ways:
-    """Return which of the ways that a joint bears a tie holds, in global axes: those that have no direction alone.
-
-    Guides hold the others: the place along or across a slot, of which both turn with its link, and a single tilt.
-    """
-    whole = {Way.ABOUT_PIN} | (set(MOVES) if Way.ALONG in ways else set()) | (TILTS if ways >= TILTS else set())
-    return ways & whole
+    """Return which of the ways that a joint bears a tie holds, in global axes: what has no direction of its own."""
+    moves, turns = ways & frozenset(MOVES), ways & frozenset(TURNS)
+    return (moves if Way.ALONG in ways else frozenset()) | (turns if turns in TIED_TURNS else frozenset())
 
 
 def _guiding(pose: Pose, name: str, way: Way) -> dict[str, Real]:
-    """Return normal and axis of the guide that holds a joint in a way."""
-    along = pose.placement.along(name)
-    normal = {Way.PIN: ALONG_PINS, Way.ABOUT_ACROSS: vector(along)}.get(way, vector(1j * along))
-    return {"normal": normal} | ({"axis": ALONG_PINS} if way in TILTS else {})
+    """Return normal, and axis of a turn, of the guide that holds a joint in a way; both turn with its links."""
+    planar = pose.placement.along(name)
+    along, across = vector(planar), vector(1j * planar)
+    match way:
+        case Way.PIN:
+            return {"normal": ALONG_PINS}
+        case Way.ABOUT_ALONG:
+            return {"normal": across, "axis": ALONG_PINS}
+        case Way.ABOUT_ACROSS:
+            return {"normal": along, "axis": ALONG_PINS}
+        case Way.ABOUT_PIN:
+            return {"normal": across, "axis": along}
+    return {"normal": across}
 
 
 def _springs(case: Case, pose: Pose, points: Mapping[tuple[str, str], int]) -> Iterator[FrameSpring]:

@@ -194,6 +194,16 @@ class Joint(CaseModel):
         return not (self.slides or self.bears_moment)
 
     @property
+    def fixed(self) -> bool:
+        """Whether its links do not move against each other: it is bonded or clamped."""
+        return self.bears_moment and not self.slides
+
+    @property
+    def as_posed(self) -> bool:
+        """Whether its links are fixed at the angle that they have in the pose, since none is stated."""
+        return self.bears_moment and not self.fixes_angle
+
+    @property
     def carrier(self) -> str | None:
         """The link that carries its slot or guide; None where it does not slide."""
         return self.links[0] if self.slides else None
@@ -221,7 +231,7 @@ class Joint(CaseModel):
         bool
             False where nothing states it: the pin may run there. A bonded joint is tight in both links.
         """
-        return self.bonded or link in self.tight_in
+        return self.fixed or link in self.tight_in
 
     @property
     def bears_moment(self) -> bool:
@@ -343,7 +353,7 @@ class Linkage:
         Norton, Design of Machinery, 5th ed., chapter 2. It counts, and can be wrong for special
         dimensions (parallelograms): there the rank of the Jacobian decides.
         """
-        unstated = sum(joint.bears_moment and not joint.fixes_angle for joint in self.joints.values())
+        unstated = sum(joint.as_posed for joint in self.joints.values())
         return 3 * len(self.moving) - self.borne + unstated
 
     @cached_property

@@ -121,7 +121,7 @@ def _check_drive(case: CoreCase) -> None:
                 f'"{unit}"; state that'
             )
     mobility = case.linkage.mobility
-    if case.drive is not None and case.joints[case.drive.joint].bonded:
+    if case.drive is not None and case.joints[case.drive.joint].fixed:
         held_as = "clamped" if case.joints[case.drive.joint].clamped else "bonded"
         raise CaseError(
             f"drive.joint: joint '{case.drive.joint}' is {held_as}, so it bears the moment that a drive would; drive "
@@ -129,7 +129,7 @@ def _check_drive(case: CoreCase) -> None:
         )
     let_go = case.pose.equilibrium
     drives = 1 if case.drive or let_go else 0
-    held = sum(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
+    held = sum(joint.as_posed for joint in case.linkage.joints.values())
     clamped = any(joint.clamped for joint in case.joints.values())
     if mobility <= drives + held and (held or clamped):
         return  # the pose tells whether clamps fit together, and statics whether these bonds hold the linkage

@@ -87,7 +87,7 @@ def check_friction(case: CoreCase) -> None:
             raise CaseError(
                 f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"
             )
-        if case.linkage.joints[name].bonded:
+        if case.linkage.joints[name].fixed:
             raise CaseError(f"{entry}, but a bonded joint does not turn; leave friction out, or do not bond it")
         if case.pose.equilibrium:
             raise CaseError(
@@ -182,7 +182,7 @@ def check_clearances(case: CoreCase) -> None:
             raise CaseError(
                 f"{entry}: a slider has no pin with play, and play of its guide is not modelled; leave it out"
             )
-        if case.linkage.joints[name].bonded:
+        if case.linkage.joints[name].fixed:
             raise CaseError(f"{entry}: a bonded joint has no play; leave it out, or let the joint turn")
         if _redundant(case):
             raise CaseError(
@@ -226,7 +226,7 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
     Caveat
     """
     for kind, clamped in (("bonds", False), ("clamps", True)):
-        held = [name for name, joint in case.linkage.joints.items() if joint.bonded and joint.clamped == clamped]
+        held = [name for name, joint in case.linkage.joints.items() if joint.fixed and joint.clamped == clamped]
         if held:
             yield Caveat(topic=Topic.BONDS, what=reason(kind, joints=held), why=reason("not_judged_what_holds"))
     if short := guides_without_length(case):

@@ -114,7 +114,7 @@ def check_equilibrium(case: CoreCase) -> None:
             "pose.coordinate with an angle or travel to start from"
         )
     for name, joint in case.linkage.joints.items():
-        if joint.bonded and not joint.fixes_angle:
+        if joint.as_posed:
             raise CaseError(
                 f"pose.equilibrium: joint '{name}' is bonded, so the linkage keeps the stated pose; remove one of the "
                 "two, or state the angle of the bond"

@@ -110,7 +110,7 @@ def stand(case: Case, load_case: str, masses: Mapping[str, PartMass]) -> Standin
         return _let_go(_Way(case, case.load_cases[load_case], masses), load_case)
     found = Standing(case=case, pose=pose, springs=spring_states(case, pose.placement), stops=_values(case, pose))
     reached = [n for n, gap in stop_gaps(case, pose.placement).items() if gap <= touching(case, case.stops[n])]
-    keeps = any(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
+    keeps = any(joint.as_posed for joint in case.linkage.joints.values())
     if not reached or pose.coordinate is None or keeps:
         return found
     way = _Way(case, case.load_cases[load_case], masses)

@@ -100,7 +100,7 @@ def pins_left_out(result: CheckResult) -> Section:
 def _transfer(case: Case) -> Iterator[tuple[str, str]]:
     joints = case.linkage.joints.items()
     held = [name for name, joint in joints if joint.clamped and joint.clamp_length is not None]
-    turned = [name for name, joint in joints if joint.bonded and name not in held]
+    turned = [name for name, joint in joints if joint.fixed and name not in held]
     drive = case.pinned_drive
     if drive is not None and drive.effort(case.linkage) is DriveEffort.TORQUE:
         turned = [drive.joint, *turned]

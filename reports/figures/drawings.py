@@ -226,7 +226,7 @@ class _Drawing:
                 found += self._clamps(name)
             elif ground in joint.links and held_at is None:
                 found.append(self._support(joint.links, at))
-            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.bonded else "#ffffff", INK, 1.0)
+            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.fixed else "#ffffff", INK, 1.0)
             found.append(at[None])
         return found
 
