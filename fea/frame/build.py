@@ -12,7 +12,7 @@ from alula.fea.beam.flanks import Flanks, flanks_of
 from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.condensed import CondensedLink, LinkFlexibility
 from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam
-from alula.fea.frame.model import Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
+from alula.fea.frame.model import DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from alula.fea.frame.spring import FrameSpring
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import patch_span
@@ -32,10 +32,7 @@ Real = NDArray[np.float64]
 STIFF_IN_TWIST = 1e6
 """How many times its own twist stiffness the pin of the drive's joint, or of a bonded one, has between layers: the
 torque goes from the one link to the other beside the pin."""
-DOFS: Mapping[Way, Dof] = {
-    **dict(zip(MOVES, ("ux", "uy", "uz"), strict=True)),
-    **dict(zip(TURNS, ("rx", "ry", "rz"), strict=True)),
-}
+DOF_OF: Mapping[Way, Dof] = dict(zip(Way, DOFS, strict=True))
 """What the two links of a joint share in each way that is tied."""
 TIED_TURNS = (frozenset(TURNS), frozenset((Way.ABOUT_ALONG, Way.ABOUT_ACROSS)))
 """All turns, or those but about the pin: of a node that is tied in others large displacements know no equations."""
@@ -105,14 +102,14 @@ def build_frame(
         if held is not None and name == held.joint:
             ways |= joint.kind.driven
         tied = _tied(ways)
-        dofs = frozenset(DOFS[way] for way in tied)
+        dofs = frozenset(DOF_OF[way] for way in tied)
         first, second = contacts[name]
         if first is not None and second is not None:
             places[second] = places[first]
             ties += [Tie(nodes=(first, second), dofs=dofs)] if dofs else []
         else:
             supports += [Support(node=node, dofs=dofs) for node in (first, second) if node is not None and dofs]
-        guides += [Guide(carrier=first, pin=second, **_guiding(pose, name, way)) for way in Way if way in ways - tied]
+        guides += [_guide(pose, name, way, contacts[name]) for way in Way if way in ways - tied]
     return LinkageFrame(
         pose=pose,
         held=held,
@@ -146,20 +143,13 @@ def _tied(ways: Ways) -> Ways:
     return (moves if Way.ALONG in ways else frozenset()) | (turns if turns in TIED_TURNS else frozenset())
 
 
-def _guiding(pose: Pose, name: str, way: Way) -> dict[str, Real]:
-    """Return normal, and axis of a turn, of the guide that holds a joint in a way; both turn with its links."""
+def _guide(pose: Pose, name: str, way: Way, nodes: tuple[int | None, int | None]) -> Guide:
+    """Return what holds a joint in a way by itself: a plane for its pin, or one for an axis that turns with it."""
     planar = pose.placement.along(name)
     along, across = vector(planar), vector(1j * planar)
-    match way:
-        case Way.PIN:
-            return {"normal": ALONG_PINS}
-        case Way.ABOUT_ALONG:
-            return {"normal": across, "axis": ALONG_PINS}
-        case Way.ABOUT_ACROSS:
-            return {"normal": along, "axis": ALONG_PINS}
-        case Way.ABOUT_PIN:
-            return {"normal": across, "axis": along}
-    return {"normal": across}
+    normal = {Way.PIN: ALONG_PINS, Way.ABOUT_ACROSS: along}.get(way, across)
+    axis = {Way.ABOUT_ALONG: ALONG_PINS, Way.ABOUT_ACROSS: ALONG_PINS, Way.ABOUT_PIN: along}.get(way)
+    return Guide(carrier=nodes[0], pin=nodes[1], normal=normal, axis=axis)
 
 
 def _springs(case: Case, pose: Pose, points: Mapping[tuple[str, str], int]) -> Iterator[FrameSpring]:

@@ -23,10 +23,8 @@ from numpy.typing import NDArray
 from alula.fea.common.reason import Reason
 from alula.fea.frame.model import FrameModel
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
-from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction, travelled
 from alula.loads.statics.statics import Drive, Reactions, assemble, unknowns_of
 from alula.loads.statics.system import System
@@ -127,30 +125,23 @@ class LinkageFrame:
         """
         shape = np.zeros((len(self.model.nodes), 3)) if displacements is None else displacements
         on_link = _joint_by_joint(self, joint_wrenches, shape)
-        torque, push, joints = 0.0, 0.0, {}
-        effort = None if self.held is None else self.held.effort(self.pose.linkage)
-        for name, joint in self.pose.linkage.joints.items():
-            wrench = on_link[name].copy()
-            if self.held is not None and name == self.held.joint and effort is DriveEffort.TORQUE:
-                torque = float(wrench[5]) * (1.0 if joint.links[1] == self.held.link else -1.0)
-                wrench[5] = 0.0
-            joints[name] = JointReaction(
-                joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=self._arm(name, shape)
+        value = unknowns_of(self.pose.placement, self.held, on_link)
+        if self.held is not None and "T" in value:
+            on_link[self.held.joint][5] = 0.0
+        joints = {
+            name: JointReaction(
+                joint=name, on=joint.links[1], by=joint.links[0], wrench=on_link[name], arm=self._arm(name, shape)
             )
-        system = self._equilibrium
-        value = unknowns_of(self.pose.placement, {name: joint.wrench for name, joint in joints.items()})
-        if self.held is not None and effort is DriveEffort.FORCE:
-            along = vector(self.pose.placement.along(self.held.joint))
-            push = self.held.sign(self.pose.linkage) * float(along @ joints[self.held.joint].force)
-        value |= {"T": torque, "P": push}
+            for name, joint in self.pose.linkage.joints.items()
+        }
         return Reactions(
             pose=self.pose,
             drive=self.held,
-            system=system,
-            unknowns=np.array([value[column] for column in system.columns]),
+            system=self._equilibrium,
+            unknowns=np.array(list(value.values())),
             joints=joints,
-            drive_torque=torque,
-            drive_force=push,
+            drive_torque=float(value.get("T", 0.0)),
+            drive_force=float(value.get("P", 0.0)),
             residual=residual,
         )
 

@@ -187,10 +187,7 @@ def friction_under(
     tuple of FrictionLoad
     """
     system = assemble(place, drive, ())
-    values = np.zeros((*place.shape, len(system.columns)))
-    for column, value in unknowns_of(place, joints).items():
-        if column in system.columns:
-            values[..., system.columns.index(column)] = value
+    values = np.stack(list(unknowns_of(place, drive, joints).values()), axis=-1)
     return friction_loads(place, _wrenches(_contacts(place, system, sense, presses), values / system.column_scale))
 
 
