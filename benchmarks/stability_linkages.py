@@ -7,8 +7,9 @@ from contextlib import contextmanager
 import numpy as np
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.continuation import DeadPointError
-from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.motion import solve_motion
 from alula.geometry.linkage.pose import solve_pose
 from alula.geometry.mechanisms.fourbar import FourBar

@@ -1,6 +1,6 @@
 """Kinds of joints in one record each, as a contributor would add them."""
 
-from alula.geometry.linkage.joint_kinds import ALL_WAYS, MOVES, JointKind, Surface, Way
+from alula.geometry.joints.joint_kinds import ALL_WAYS, MOVES, JointKind, Surface, Way
 
 COLLAR = JointKind(name="collar", bears=ALL_WAYS - {Way.ALONG, Way.ABOUT_ALONG}, rubs=Surface.GUIDE)
 """A sleeve on a round rod: a slider that turns about its guide."""

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.joints.joint import Joint
+from alula.geometry.linkage.linkage import Link, Linkage
 
 
 def link(*, ground: bool = False, **points: tuple[float, float]) -> Link:

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAYERS = {
     "geometry": (
         *("base", "materials", "imported", "bodies", "parts"),
-        *("linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
+        *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
     "loads": ("text", "records", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
     "fea": (

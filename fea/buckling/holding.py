@@ -8,7 +8,7 @@ from alula.fea.beam.cut_beam import cells
 from alula.fea.beam.flanks import flanks_of
 from alula.geometry.bodies.body import Body, hand_section, mouth
 from alula.geometry.bodies.cut_section import CutSection
-from alula.geometry.linkage.joint_kinds import Way
+from alula.geometry.joints.joint_kinds import Way
 from alula.loads.case.case import Case
 
 Plane = tuple[float, Sequence[Stretch]]

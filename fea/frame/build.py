@@ -17,7 +17,7 @@ from alula.fea.frame.spring import FrameSpring
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import patch_span
 from alula.geometry.bodies.section import ring
-from alula.geometry.linkage.joint_kinds import ALL_WAYS, MOVES, TURNS, Way, Ways
+from alula.geometry.joints.joint_kinds import ALL_WAYS, MOVES, TURNS, Way, Ways
 from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.parts.part import Section

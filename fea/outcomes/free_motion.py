@@ -119,14 +119,10 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
         Links with the play in their hole [mm]. Of those in one tuple any may have all of it, where nothing states in
         which link the pin is tight; slot and hole, in different ones, have theirs beside each other.
     """
-    record = case.joints[joint]
-    loose = tuple(link for link in record.links if not record.is_tight_in(link))
-    found = [tuple((link, record.clearance) for link in loose)]
-    if record.slotted is not None:
-        slot = case.links[record.slotted].slots.get(case.linkage.joint_points(joint)[0])
-        own = 0.0 if slot is None else slot.clearance
-        found = [((record.links[1], record.clearance),), ((record.slotted, own),)]
-    return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
+    found = case.linkage.pin_holes(joint)
+    stated = tuple((hole.link, hole.high if hole.stated else 0.0) for hole in found.holes)
+    groups = [(hole,) for hole in stated] if found.shared is None else [stated]
+    return tuple(kept for each in groups if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
 
 
 def known_hole(case: Case, joint: str, link: str) -> tuple[float, float] | None:

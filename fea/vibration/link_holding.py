@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.reason import Reason, reason
-from alula.geometry.linkage.joint_kinds import MOVES, TURNS
+from alula.geometry.joints.joint_kinds import MOVES, TURNS
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 

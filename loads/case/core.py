@@ -11,8 +11,9 @@ from alula.geometry.base.model import Name, Text
 from alula.geometry.base.units import NOT_NEGATIVE, Length
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.bodies.features import FlatFace
+from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.coordinate import Coordinate, Measure
-from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.pose import Pose, solve_pose
 from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd

@@ -5,7 +5,10 @@ import math
 from collections.abc import Iterator
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.joint_kinds import Surface
+from alula.geometry.joints.fits import RUNNING
+from alula.geometry.joints.hole_rules import check_holes
+from alula.geometry.joints.holes import Known, largest_clearance
+from alula.geometry.joints.joint_kinds import Surface
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
@@ -149,17 +152,10 @@ def clearances(case: CoreCase) -> dict[str, float]:
         Joint -> diametral play [mm]; empty where the linkage has more constraints than equilibrium has equations, or
         is let go: play of slots is not followed there.
     """
-    if _redundant(case) or case.pose.equilibrium:
+    if not _follows_play(case):
         return {}
-    found = {}
-    for name, joint in case.joints.items():
-        play = joint.clearance
-        if joint.slotted is not None:
-            slot = case.links[joint.slotted].slots.get(case.linkage.joint_points(name)[0])
-            play += 0.0 if slot is None else slot.clearance
-        if play > 0.0:
-            found[name] = play
-    return found
+    found = {name: case.linkage.pin_holes(name).play for name in case.joints}
+    return {name: play for name, play in found.items() if play > 0.0}
 
 
 def check_clearances(case: CoreCase) -> None:
@@ -175,13 +171,17 @@ def check_clearances(case: CoreCase) -> None:
         For the first rule that is broken.
     """
     for name, joint in case.joints.items():
-        if joint.clearance == 0.0:
+        check_holes(name, joint)
+        widest = largest_clearance(joint)
+        if widest == 0.0:
             continue
-        entry = f"joints.{name}.clearance"
+        entry = f"joints.{name}.{'fit' if joint.clearance is None else 'clearance'}"
         if not joint.kind.has_pin:
             raise CaseError(
                 f"{entry}: a slider has no pin with play, and play of its guide is not modelled; leave it out"
             )
+        if joint.clearance is None and (case.linkage.joints[name].fixed or not _follows_play(case)):
+            continue  # the pin sits as stated, but has no play that is followed; ``joint_caveats`` tells it
         if case.linkage.joints[name].fixed:
             raise CaseError(f"{entry}: a bonded joint has no play; leave it out, or let the joint turn")
         if _redundant(case):
@@ -194,8 +194,8 @@ def check_clearances(case: CoreCase) -> None:
                 f"{entry}: play of a linkage that is let go is not modelled; leave it out, or state pose and drive"
             )
         size, what = _bound(case, name)
-        if joint.clearance >= size:
-            raise CaseError(f"{entry}: it is {joint.clearance:g} mm, but must stay below {what}, {size:g} mm")
+        if widest >= size:
+            raise CaseError(f"{entry}: it is {widest:g} mm, but must stay below {what}, {size:g} mm; make it smaller")
 
 
 def _bound(case: CoreCase, name: str) -> tuple[float, str]:
@@ -209,13 +209,18 @@ def _bound(case: CoreCase, name: str) -> tuple[float, str]:
     return min((d for d in apart if d > 0.0), default=math.inf), "the shortest distance between points of its links"
 
 
+def _follows_play(case: CoreCase) -> bool:
+    """Whether play in the plane is modelled: not where it decides which links bear load, or where a pose balances."""
+    return not _redundant(case) and not case.pose.equilibrium
+
+
 def _redundant(case: CoreCase) -> bool:
     """Whether equilibrium has fewer equations than unknowns."""
     return case.linkage.borne + bool(case.drive) > 3 * len(case.linkage.moving)
 
 
 def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
-    """Yield what is taken of the joints without a check: bonds, guides without length, play that is large.
+    """Yield what is taken of the joints without a check: bonds, guides without length, running fits, large play.
 
     Parameters
     ----------
@@ -244,6 +249,21 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             topic=Topic.FRICTION,
             what=reason("joints_without_friction"),
             why=reason("none_states_friction", joint=first),
+        )
+    holes = {name: case.linkage.pin_holes(name).holes for name in case.joints}
+    if running := [name for name, both in holes.items() if any(hole.known is Known.RUNNING for hole in both)]:
+        yield Caveat(
+            heading=Heading.ASSUMED,
+            topic=Topic.PLAY,
+            what=reason("running_pins", joints=running),
+            why=reason("running_is_assumed", fit=RUNNING),
+        )
+    loose = [name for name in case.joints if case.linkage.pin_holes(name).play > 0.0]
+    if left := [name for name in loose if case.joints[name].fit is not None and not _follows_play(case)]:
+        yield Caveat(
+            topic=Topic.PLAY,
+            what=reason("play_in_the_plane", joints=left),
+            why=reason("let_go" if case.pose.equilibrium else "redundant"),
         )
     for name, play in clearances(case).items():
         diameter = case.joints[name].pin_diameter or math.inf

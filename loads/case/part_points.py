@@ -17,7 +17,7 @@ from pydantic_core import PydanticCustomError
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.base.units import parse
 from alula.geometry.bodies.features import Slot
-from alula.geometry.linkage.linkage import Joint
+from alula.geometry.joints.joint import Joint
 from alula.geometry.parts.mesh_part import MeshPart
 from alula.geometry.parts.step import FilePart, StepPart
 from alula.geometry.placement.fit import Fit, Wanted

@@ -30,8 +30,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.geometry.linkage.joint_kinds import Surface
-from alula.geometry.linkage.linkage import Joint
+from alula.geometry.joints.joint import Joint
+from alula.geometry.joints.joint_kinds import Surface
 from alula.geometry.linkage.placement import Complex, Placement
 from alula.loads.records.applied import FrictionLoad, Load, shifted
 from alula.loads.statics.joint_reaction import travelled

@@ -53,7 +53,8 @@ def known_keys(model: type[BaseModel], path: Sequence[object]) -> tuple[str, ...
 def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     """Say whether the user names the tables or lists at a path himself, such as ``links`` or ``links.X.points``.
 
-    Free names of plain values (``pose.near``) refer to what is named elsewhere, and are held against that.
+    Free names of plain values (``pose.near``), and those marked so, refer to what is named elsewhere, and are held
+    against that.
 
     Parameters
     ----------
@@ -68,7 +69,8 @@ def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
         True where he does.
     """
     root = file_schema(model)
-    free = [node["additionalProperties"] for node in _at(model, path) if node.get("additionalProperties")]
+    nodes = [node for node in _at(model, path) if "x-names" not in node]
+    free = [node["additionalProperties"] for node in nodes if node.get("additionalProperties")]
     return any(node.get("type") in ("object", "array") for child in free for node in _options(child, root))
 
 

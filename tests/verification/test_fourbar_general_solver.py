@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.joints.joint import Joint
+from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.pose import solve_pose
 from alula.geometry.mechanisms.fourbar import FourBar
 from alula.geometry.mechanisms.ornithopter import OrnithopterRules

@@ -18,7 +18,7 @@ from alula.fea.vibration.linkage_modes import SUBDIVISIONS, divide, frame_modes
 from alula.fea.vibration.mass_matrix import mass_matrix
 from alula.fea.vibration.modes import frequency
 from alula.fea.vibration.running_holes import running_holes, with_hinges
-from alula.geometry.linkage.linkage import Joint
+from alula.geometry.joints.joint import Joint
 from alula.loads.case.case import Case
 from alula.loads.states.masses import part_masses
 from alula.reports.sentences import told as in_words

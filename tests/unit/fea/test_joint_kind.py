@@ -11,7 +11,7 @@ from planar_linkages import joint, link
 import alula
 from alula.fea.frame.joint_forces import joint_forces
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.joint_kinds import ALL_WAYS, JOINT_KINDS, JointKind, Surface, Way
+from alula.geometry.joints.joint_kinds import ALL_WAYS, JOINT_KINDS, JointKind, Surface, Way
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.pose import solve_pose
 from alula.loads.case.case import Case

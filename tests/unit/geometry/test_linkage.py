@@ -5,7 +5,8 @@ from planar_linkages import four_bar, joint, link, quick_return, scotch_yoke, si
 from pydantic import ValidationError
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.linkage import Joint, Link, Linkage
+from alula.geometry.joints.joint import Joint
+from alula.geometry.linkage.linkage import Link, Linkage
 
 
 def test_mobility_of_known_linkages() -> None:
