@@ -90,7 +90,7 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
 
 def _lever(reaction: JointReaction, linkage: Linkage) -> Real:
     """Vector (3,) to the pin at a joint's second link from where it stands in the mid-plane of the first [mm]."""
-    return reaction.arm if linkage.joints[reaction.joint].type == "revolute" else reaction.arm * [0.0, 0.0, 1.0]
+    return reaction.arm * [0.0, 0.0, 1.0] if linkage.joints[reaction.joint].slides else reaction.arm
 
 
 def wrenches_on_ground(reactions: Reactions, loads: Sequence[Load] = ()) -> dict[str, Real]:

@@ -84,7 +84,7 @@ def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], loa
         )
     factors, pressed = {}, [pressing(case, joint, wrench) for wrench in wrenches]
     # A pin in a slot shares its hole in the second link with others: that slot's force is not all that bears there.
-    for link in record.links[:1] if record.type == "pin-in-slot" else record.links:
+    for link in (record.slotted,) if record.slotted else record.links:
         if link in case.checked_links:
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable

@@ -116,7 +116,7 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
         [N mm]; of a bonded joint from 0, since nothing states what its faces take.
     """
     drive = case.pinned_drive
-    if case.linkage.joints[joint].bonded:
+    if case.linkage.joints[joint].fixed:
         return Band(value=abs(moment), low=0.0, high=abs(moment), sources=TWIST)
     if drive is None or drive.joint != joint or not _turns(case, drive):
         return Band.exact(0.0)
@@ -142,7 +142,7 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
     drive = case.pinned_drive
     if drive is None or case.pose.equilibrium or not _turns(case, drive):
         return
-    if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].bonded:
+    if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].fixed:
         why = reason("torque_by_flat_faces")
         yield Caveat(topic=Topic.SHAFT, what=reason("drive_shaft", joint=drive.joint), why=why)
 

@@ -184,7 +184,7 @@ class PointDisplacement:
     def _free_to_tilt(self) -> tuple[str, ...]:
         """Joints between layers that do not say in which links their pins are tight, which would narrow a band."""
         every = self.case.linkage.joints.items()
-        turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
+        turning = [name for name, joint in every if joint.pivots]
         return tuple(x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in)
 
     @cached_property

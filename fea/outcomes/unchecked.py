@@ -78,7 +78,7 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
     left = [link for link in case.checked_links if link not in stressed]
     if left:
         yield Caveat(topic=Topic.STRESS, what=reason("stress_of", links=left), why=reason("no_check"))
-    pins = [name for name, joint in case.joints.items() if joint.type != "slider" and not joint.clamped]
+    pins = [name for name, joint in case.joints.items() if joint.kind.has_pin and not joint.clamped]
     loose = [name for name in pins if name not in pinned]
     if loose:
         which = reason("pins") if loose == pins else reason("pins_of", joints=loose)

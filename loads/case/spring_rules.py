@@ -57,7 +57,7 @@ def _check_attachment(case: CoreCase, entry: str, place: Attachment) -> None:
 
 def _turning(case: CoreCase) -> list[str]:
     """Return the joints whose links turn against each other, and do not slide."""
-    return [name for name, joint in case.linkage.joints.items() if joint.type == "revolute" and not joint.bonded]
+    return [name for name, joint in case.linkage.joints.items() if joint.pivots]
 
 
 def check_stops(case: CoreCase) -> None:
@@ -74,9 +74,9 @@ def check_stops(case: CoreCase) -> None:
     """
     ranges: dict[str, dict[float, float]] = {}
     for name, stop in case.stops.items():
-        sliders = [joint for joint, record in case.joints.items() if record.type == "slider"]
+        sliders = [joint for joint, record in case.joints.items() if record.kind.guided]
         require(f"stops.{name}.joint", stop.joint, [*_turning(case), *sliders], "is no joint that turns, and no slider")
-        slides = case.joints[stop.joint].type == "slider"
+        slides = case.joints[stop.joint].kind.guided
         entry = f"stops.{name}.{'at_least' if stop.at_least is not None else 'at_most'}"
         if slides != (stop.limit.measure is Measure.TRAVEL):
             kind = 'a slider, so it needs a travel: "5 mm"' if slides else 'revolute, so it needs an angle: "30 deg"'
@@ -114,7 +114,7 @@ def check_equilibrium(case: CoreCase) -> None:
             "pose.coordinate with an angle or travel to start from"
         )
     for name, joint in case.linkage.joints.items():
-        if joint.bonded and not joint.fixes_angle:
+        if joint.as_posed:
             raise CaseError(
                 f"pose.equilibrium: joint '{name}' is bonded, so the linkage keeps the stated pose; remove one of the "
                 "two, or state the angle of the bond"

@@ -84,7 +84,7 @@ def refuse_turning_bonds(place: Placement) -> None:
     most = float(np.max(rates)) / linkage.longest
     for name, joint in linkage.joints.items():
         first, second = (place.spin(link) for link in joint.links)
-        if joint.bonded and np.any(np.abs(second - first) > _SAME_SPEED * most):
+        if joint.fixed and np.any(np.abs(second - first) > _SAME_SPEED * most):
             raise CaseError(
                 f"joints.{name}.bonded: links '{joint.links[0]}' and '{joint.links[1]}' are bonded there, but they "
                 "would turn against each other as the linkage moves; leave out the motion or speed, leave bonded out, "

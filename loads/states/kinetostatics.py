@@ -204,8 +204,7 @@ def is_determinate(linkage: Linkage) -> bool:
     -------
     bool
     """
-    unknowns = sum(1 if joint.type == "pin-in-slot" else 2 + joint.bonded for joint in linkage.joints.values()) + 1
-    return unknowns == 3 * len(linkage.moving)
+    return linkage.borne + 1 == 3 * len(linkage.moving)
 
 
 def _counterpart(linkage: Linkage, drive: Drive) -> str:

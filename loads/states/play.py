@@ -481,7 +481,7 @@ def held_rows(place: Placement, drive: Drive | None) -> Real:
         Factors of the unknowns, a travel's over the longest link.
     """
     closure, linkage = place.closure, place.linkage
-    rows = [_turning(place, *j.links) for j in linkage.joints.values() if j.bonded and not j.fixes_angle]
+    rows = [_turning(place, *j.links) for j in linkage.joints.values() if j.as_posed]
     if drive is not None and (held := drive.coordinate(linkage)).slides:
         row = np.zeros(closure.unknowns)
         row[held.column(closure)] = 1.0 / linkage.longest

@@ -110,7 +110,7 @@ def stand(case: Case, load_case: str, masses: Mapping[str, PartMass]) -> Standin
         return _let_go(_Way(case, case.load_cases[load_case], masses), load_case)
     found = Standing(case=case, pose=pose, springs=spring_states(case, pose.placement), stops=_values(case, pose))
     reached = [n for n, gap in stop_gaps(case, pose.placement).items() if gap <= touching(case, case.stops[n])]
-    keeps = any(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
+    keeps = any(joint.as_posed for joint in case.linkage.joints.values())
     if not reached or pose.coordinate is None or keeps:
         return found
     way = _Way(case, case.load_cases[load_case], masses)
@@ -356,7 +356,7 @@ def _holder(case: Case, pose: Pose) -> Drive:
     places = [
         Drive(link=link, joint=name)
         for name, joint in case.joints.items()
-        if joint.type != "pin-in-slot" and ground in joint.links
+        if (joint.kind.guided or not joint.slides) and ground in joint.links
         for link in joint.links
         if link != ground
     ]
@@ -419,7 +419,7 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
             why=reason("stiffness_for_frequencies"),
         )
     elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
-        usual = "20 N/mm" if case.joints[case.drive.joint].type == "slider" else "2 N*m/rad"
+        usual = "20 N/mm" if case.joints[case.drive.joint].kind.guided else "2 N*m/rad"
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.DRIVE,

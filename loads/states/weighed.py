@@ -121,7 +121,7 @@ def unweighed(case: Case) -> tuple[Reason, ...]:
 def _pins_left(case: Case) -> Iterator[Reason]:
     """Yield the pins of a layered case that ``pin_masses`` leaves out."""
     known, ground = pin_masses(case), case.linkage.ground
-    own = [[name for name in group if case.joints[name].type != "slider"] for group in on_one_axis(case)]
+    own = [[name for name in group if case.joints[name].kind.has_pin] for group in on_one_axis(case)]
     left = [group for group in own if not set(group) & set(known)]
     reasons = {True: reason("no_diameter"), False: reason("in_ground_without_part", ground=ground)}
     for unknown, why in reasons.items():

@@ -23,16 +23,19 @@ Qi and Sun (1993), A nonsmooth version of Newton's method, Mathematical Programm
 Allgower and Georg, Introduction to Numerical Continuation Methods, chapter 2.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.geometry.joints.joint import Joint
+from alula.geometry.joints.joint_kinds import Surface
 from alula.geometry.linkage.placement import Complex, Placement
 from alula.loads.records.applied import FrictionLoad, Load, shifted
 from alula.loads.statics.joint_reaction import travelled
-from alula.loads.statics.statics import Drive, along_joint, assemble, joint_column
+from alula.loads.statics.statics import Drive, assemble, joint_column, unknowns_of
 from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
@@ -184,14 +187,7 @@ def friction_under(
     tuple of FrictionLoad
     """
     system = assemble(place, drive, ())
-    values = np.zeros((*place.shape, len(system.columns)))
-    for name, wrench in joints.items():
-        force = wrench[..., 0] + 1j * wrench[..., 1]
-        across = (np.conj(1j * along_joint(place, name)) * force).real
-        own = {f"R{name}x": force.real, f"R{name}y": force.imag, f"N{name}": across, f"M:{name}": wrench[..., 5]}
-        for column, value in own.items():
-            if column in system.columns:
-                values[..., system.columns.index(column)] = value
+    values = np.stack(list(unknowns_of(place, drive, joints).values()), axis=-1)
     return friction_loads(place, _wrenches(_contacts(place, system, sense, presses), values / system.column_scale))
 
 
@@ -248,67 +244,94 @@ def _wrenches(contacts: Sequence[_Contact], scaled: Real) -> dict[str, Real]:
     return found
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Rubbing:
+    """A joint that rubs, for the laws of surfaces."""
+
+    name: str
+    place: Placement
+    system: System
+
+    @property
+    def joint(self) -> Joint:
+        return self.place.linkage.joints[self.name]
+
+    @property
+    def radius(self) -> float:
+        """Of its pin [mm]."""
+        return (self.joint.pin_diameter or 0.0) / 2.0
+
+    @cached_property
+    def turn(self) -> Real:
+        """Speed (n,) of its second link's angle to the first."""
+        first, second = self.joint.links
+        return np.asarray(self.place.spin(second) - self.place.spin(first))
+
+    @cached_property
+    def slid(self) -> Real:
+        """Speed (n,) of its second link's point along its slot or guide [mm]."""
+        assert self.place.qdot is not None
+        column = len(self.place.linkage.moving) + self.place.closure.slots.index(self.name)
+        return np.asarray(self.place.qdot[..., column])
+
+    def form(self, unknown: str, factor: float = 1.0) -> Real:
+        """Return a multiple of one of its unknowns, as a row for the scaled ones."""
+        row, column = np.zeros(len(self.system.columns)), self.system.columns.index(unknown)
+        row[column] = factor * self.system.column_scale[column]
+        return row
+
+
+_Law = Iterator[tuple[Complex, float, list[Real], Real]]
+"""What each contact of a joint has: its unit of friction, force (n,) and moment; what presses it; its speed (n,)."""
+
+
+def _in_bore(own: _Rubbing) -> _Law:
+    forms = [own.form(f"R{own.name}{axis}") for axis in "xy"]
+    yield np.zeros(own.place.shape, dtype=complex), own.radius, forms, own.place.linkage.longest * own.turn
+
+
+def _on_flanks(own: _Rubbing) -> _Law:
+    for side in (1.0, -1.0):  # on the flank below the pin, which a positive force lifts, and on that above it
+        forms = [own.form(f"N{own.name}", side), np.zeros(len(own.system.columns))]
+        arm = side * own.radius
+        yield own.place.along(own.name), arm, forms, own.slid + arm * own.turn
+
+
+def _on_guide(own: _Rubbing) -> _Law:
+    forms, length = [own.form(f"N{own.name}", sign) for sign in (1.0, -1.0)], own.joint.guide_length
+    if length is not None:
+        forms += [own.form(f"M:{own.name}", sign * 2.0 / length) for sign in (1.0, -1.0)]
+    yield own.place.along(own.name), 0.0, forms, own.slid
+
+
+LAWS: Mapping[Surface, Callable[[_Rubbing], _Law]] = {
+    Surface.BORE: _in_bore,
+    Surface.FLANKS: _on_flanks,
+    Surface.GUIDE: _on_guide,
+}
+
+
 def _contacts(place: Placement, system: System, sense: float, presses: Presses) -> list[_Contact]:
     """Return every contact that rubs, with the signed coefficient (n,) that opposes the motion."""
     linkage, found = place.linkage, []
     speeds = [np.abs(place.velocity(n)) ** 2 + (linkage.longest * place.spin(n)) ** 2 for n in linkage.moving]
     least = STANDS_STILL * np.sqrt(np.sum(speeds, axis=0))
-    column = {name: i for i, name in enumerate(system.columns)}
-
-    def form(name: str, factor: float = 1.0) -> Real:
-        row = np.zeros(len(column))
-        row[column[name]] = factor * system.column_scale[column[name]]
-        return row
-
     for name, joint in linkage.joints.items():
         if joint.friction == 0.0:
             continue
-        coefficient = joint.friction * presses.get(name, 1.0)
-        turn = place.spin(joint.links[1]) - place.spin(joint.links[0])
-        radius = (joint.pin_diameter or 0.0) / 2.0
-        along = along_joint(place, name)
-
-        def contact(
-            force: Complex,
-            moment: float,
-            forms: list[Real],
-            speed: Real,
-            *,
-            of: str = name,
-            by: float | Real = coefficient,
-        ) -> _Contact:
+        coefficient, surface = joint.friction * presses.get(name, 1.0), joint.kind.rubs
+        for force, moment, forms, speed in LAWS[surface](_Rubbing(name=name, place=place, system=system)):
             way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
-            return _Contact(
-                joint=of,
+            contact = _Contact(
+                joint=name,
                 force=force,
                 moment=np.full(place.shape, moment),
                 forms=np.array(forms),
-                round=linkage.joints[of].type == "revolute",
-                against=sense * by * way,
+                round=surface is Surface.BORE,
+                against=sense * coefficient * way,
             )
-
-        if joint.type == "revolute":
-            forms = [form(f"R{name}x"), form(f"R{name}y")]
-            found.append(contact(0.0 * along, radius, forms, linkage.longest * turn))
-            continue
-        slides = _sliding(place, name)
-        normal = f"N{name}"
-        if joint.type == "slider":
-            forms = [form(normal), form(normal, -1.0)]
-            if joint.guide_length is not None:
-                forms += [form(f"M:{name}", sign * 2.0 / joint.guide_length) for sign in (1.0, -1.0)]
-            found.append(contact(along, 0.0, forms, slides))
-            continue
-        for side in (1.0, -1.0):  # on the flank below the pin, which a positive force lifts, and on that above it
-            forms = [form(normal, side), np.zeros(len(column))]
-            found.append(contact(along, side * radius, forms, slides + side * radius * turn))
+            found.append(contact)
     return found
-
-
-def _sliding(place: Placement, name: str) -> Real:
-    """Speed (n,) of the pin along its slot or of a slider along its guide [mm]."""
-    assert place.qdot is not None
-    return np.asarray(place.qdot[..., len(place.linkage.moving) + place.closure.slots.index(name)])
 
 
 def _balance(

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.geometry.linkage.coordinate import Measure
+from alula.geometry.linkage.placement import vector
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import LineLoad, PointLoad, in_axes
 from alula.loads.records.springs import LineSpring
@@ -219,13 +220,13 @@ class _Drawing:
             found.append(self._support((ground,), self.points[ground, held_at]))
         for name, joint in self.linkage.joints.items():
             at = self._joint(name)
-            if joint.type != "revolute":
+            if joint.slides:
                 found.append(self._guide(name, at))
             elif joint.clamped:
                 found += self._clamps(name)
             elif ground in joint.links and held_at is None:
                 found.append(self._support(joint.links, at))
-            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.bonded else "#ffffff", INK, 1.0)
+            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.fixed else "#ffffff", INK, 1.0)
             found.append(at[None])
         return found
 
@@ -271,7 +272,7 @@ class _Drawing:
         for name, stop in case.stops.items():
             first, second = case.joints[stop.joint].links
             if stop.limit.measure is Measure.TRAVEL:
-                way = place.direction(first) * np.exp(1j * case.joints[stop.joint].direction)
+                way = place.along(stop.joint)
                 zero = place.position(first, self.linkage.joint_points(stop.joint)[0])
                 middle, behind = zero + stop.limit.value * way, -stop.sense * way
             else:
@@ -320,9 +321,7 @@ class _Drawing:
 
     def _guide(self, name: str, at: Real) -> Real:
         """Draw the two sides of the slot or guide that a pin or slider runs in; returns their points."""
-        joint = self.linkage.joints[name]
-        along_angle = self.pose.angles[joint.links[0]] + joint.direction
-        way = np.array([math.cos(along_angle), math.sin(along_angle)])
+        way = vector(self.pose.placement.along(name))[:2]
         side = 0.016 * self.size * np.array([-way[1], way[0]])
         reach = 0.09 * self.size * way
         edges = [along(at - reach + s, at + reach + s) for s in (-side, side)]

@@ -266,7 +266,7 @@ def _pins(case: Case, ranks: Mapping[str, Sequence[int]], size: float) -> list[d
     """Return the pins: cylinders from the lowest face to the highest of the links that each joins."""
     found = []
     for names in on_one_axis(case):
-        own = [name for name in names if case.joints[name].type != "slider"]
+        own = [name for name in names if case.joints[name].kind.has_pin]
         if not own:
             continue
         links = list(dict.fromkeys(link for name in own for link in case.joints[name].links))
