@@ -12,9 +12,9 @@ import time
 import numpy as np
 
 from alula.geometry.linkage.motion import solve_motion
+from alula.loads.acting.weight import inertia_loads
 from alula.loads.case.case_file import read_case
 from alula.loads.records.applied import PartMass, PointLoad
-from alula.loads.states.actions import inertia_loads
 from alula.loads.states.kinetostatics import energies, solve_kinetostatics
 
 POSES = 100_000

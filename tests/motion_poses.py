@@ -8,8 +8,8 @@ from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scot
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.loads.acting.weight import inertia_loads
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
-from alula.loads.states.actions import inertia_loads
 from alula.loads.states.kinetostatics import Kinetostatics, energies, solve_kinetostatics, torque_by_virtual_work
 from alula.loads.statics.statics import Drive
 
