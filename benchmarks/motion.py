@@ -36,7 +36,7 @@ def main() -> None:
         moved = time.perf_counter()
         place = motion.placement
         acting = [load, *inertia_loads(place, masses, np.zeros(3))]
-        found = solve_kinetostatics(motion, case.pinned_drive, acting, energies(place, [load], masses))
+        found = solve_kinetostatics(motion, case.pinned_drive, acting, energies(place, [], [load], masses))
         end, cpu = time.perf_counter(), time.process_time() - cpu
         for key, seconds in zip(best, (moved - start, end - moved, end - start, cpu), strict=True):
             best[key] = min(best[key], seconds)

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.geometry.linkage.placement import Complex, Placement
+from alula.geometry.linkage.placement import Complex, Placement, vector
 from alula.loads.acting.acting import End
 
 Real = NDArray[np.float64]
@@ -102,10 +102,8 @@ class Length:
         """
         found = np.zeros((len(at), 3, len(at), 3))
         for i, (a, b) in enumerate(itertools.pairwise(at)):
-            normal = 1j * (b - a) / abs(b - a)
-            across = np.array([[x * y for x in (normal.real, normal.imag)] for y in (normal.real, normal.imag)]) / abs(
-                b - a
-            )
+            normal = vector(1j * (b - a) / abs(b - a))[:2]
+            across = np.outer(normal, normal) / abs(b - a)
             found[i : i + 2, :2, i : i + 2, :2] += np.einsum("ij,ab->iajb", [[1.0, -1.0], [-1.0, 1.0]], across)
         return found.reshape(3 * len(at), -1)
 

@@ -61,9 +61,22 @@ class Weight(Acting):
         return (PointLoad(link=self.link, point=self.carried.at, wrench=shifted(wrench, arm), arm=arm),)
 
     def energy(self, place: Placement) -> Real | None:
-        """As ``Acting.energy``: the potential energy above the global origin; None where there is inertia."""
-        if place.qddot is not None:
-            return None
+        """As ``Acting.energy``: the potential; None where there is inertia."""
+        return self.potential(place) if place.qddot is None else None
+
+    def potential(self, place: Placement) -> Real:
+        """Return the potential energy of the weight above the global origin.
+
+        Parameters
+        ----------
+        place : Placement
+            Where the links stand.
+
+        Returns
+        -------
+        array (...)
+            [N mm]
+        """
         return np.asarray(-self.mass.mass * (vector(self._centroid(place)) @ self.gravity))
 
     def tangent(self, place: Placement) -> Real | None:
