@@ -170,6 +170,19 @@ def test_a_frame_softens_and_shares_what_acts_between_its_nodes(name, factor):
     assert spring.resists(moved, turns, factor)[0] == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.parametrize("factor", [1.0, 0.4])
+def test_a_cord_in_a_frame_comes_taut_where_it_would_without_loads(factor):
+    """Slack by 1 mm, it pulls by what is more, whatever the share of the loads; softer, with less."""
+    case, slack = EVERY["Sprung slack"]
+    length = float(slack.along.of(case.stated_pose.placement))
+    one = replace(slack, law=replace(slack.law, size=length + 1.0))
+    spring = FrameSpring.of(one, case.stated_pose, {}).softened(2.0)
+    way = one.along.gradient(spring.places)
+    moved = np.array([[0.0, 0.0], 4.0 * way[1, :2]])
+    assert spring.resists(0.2 * moved, np.zeros(2), factor)[0] == pytest.approx(0.0, abs=0.0)
+    assert spring.resists(moved, np.zeros(2), factor)[0] == pytest.approx(0.2 * 3.0 * way, rel=1e-9, abs=1e-12)
+
+
 def test_air_on_wings_follows_from_how_they_move():
     """It has loads with rates alone, and so neither energy nor tangent; inertia beside weight has none either."""
     case = read_case("flapping-wing-chosen")
