@@ -107,10 +107,13 @@ def lasting(case: CoreCase) -> tuple[Sprung, ...]:
     Returns
     -------
     tuple of Sprung
-        Springs first, as the case states them.
+        Springs first, as the case states them; a case without any needs no pose.
     """
-    stated = case.stated_pose.placement
-    return tuple(one.acting(name, stated) for table in (case.springs, case.tendons) for name, one in table.items())
+    return tuple(
+        one.acting(name, case.stated_pose.placement)
+        for table in (case.springs, case.tendons)
+        for name, one in table.items()
+    )
 
 
 def bounds(case: CoreCase) -> dict[str, Bound]:
@@ -124,9 +127,10 @@ def bounds(case: CoreCase) -> dict[str, Bound]:
     -------
     dict of str to Bound
     """
-    stated = case.stated_pose.placement
     return {
-        name: stop.acting(name, stated, [other for other in case.stops.values() if other.joint == stop.joint])
+        name: stop.acting(
+            name, case.stated_pose.placement, [other for other in case.stops.values() if other.joint == stop.joint]
+        )
         for name, stop in case.stops.items()
     }
 
