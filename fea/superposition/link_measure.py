@@ -87,7 +87,13 @@ class LinkMeasure:
 
     @classmethod
     def of_units(
-        cls, link: ElasticLink, space: DisplacementSpace, records: Sequence[LinkLoads], *, threads: int | None = None
+        cls,
+        link: ElasticLink,
+        space: DisplacementSpace,
+        records: Sequence[LinkLoads],
+        *,
+        as_first: bool = False,
+        threads: int | None = None,
     ) -> "LinkMeasure":
         """Solve for many states, by unit loads.
 
@@ -98,6 +104,8 @@ class LinkMeasure:
             Of the link's mesh.
         records : sequence of LinkLoads
             Each of some states.
+        as_first : bool, optional
+            True where torques may enter as they may in the first state of each record, which others are compared with.
         threads : int, optional
 
         Returns
@@ -115,7 +123,7 @@ class LinkMeasure:
         for number, loads in enumerate(records):
             scale = loads.size(size)
             for law in LAWS:
-                for transfer in units.transfers(loads):
+                for transfer in units.transfers(loads.chosen(slice(0, 1)) if as_first else loads):
                     own = slice(first, first := first + loads.poses)
                     variants.append(LoadVariant(record=number, law=law, transfer=transfer, loads=own))
                     columns.append(units.coefficients(loads, law, transfer))

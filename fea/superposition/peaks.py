@@ -96,7 +96,7 @@ class ModeMeasures:
         return self.bounds(nodes, combination)
 
     def largest(self, nodes: Nodes, combination: Real) -> Peaks:
-        """Return the largest of some nodes, under any number of loads.
+        """Return the largest of some nodes under a few loads.
 
         Parameters
         ----------
@@ -107,12 +107,26 @@ class ModeMeasures:
         -------
         Peaks
         """
-        value, node = np.empty(combination.shape[1]), np.empty(combination.shape[1], dtype=np.int64)
-        for loads in _blocks(np.arange(len(value)), self.parts.shape[1] * len(nodes)):
-            found = self.at(nodes, combination[:, loads])
-            best = np.argmax(found, axis=0)
-            value[loads], node[loads] = np.take_along_axis(found, best[None], axis=0)[0], nodes[best]
-        return Peaks(value=value, node=node)
+        found = self.at(nodes, combination)
+        best = np.argmax(found, axis=0)
+        return Peaks(value=np.take_along_axis(found, best[None], axis=0)[0], node=nodes[best])
+
+    def most(self, combination: Real) -> Real:
+        """Return the largest number of all nodes, which are few, under any number of loads.
+
+        Parameters
+        ----------
+        combination : ndarray, shape (m, n)
+            Of the modes under n loads.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        nodes, count = np.arange(len(self.parts)), combination.shape[1]
+        step = max(1, 2 * _BLOCK // (self.parts.shape[1] * len(nodes)))
+        blocks = [combination[:, first : first + step] for first in range(0, count, step)]
+        return np.concatenate([self.at(nodes, block).max(axis=0) for block in blocks])
 
     def near(self, combination: Real, share: float) -> Self:
         """Return the numbers of the nodes alone that come near to the peak under one of the loads.

@@ -185,8 +185,7 @@ class LinkResponse:
                 pilots = self.measure.solved.combination[:, variant.loads]
                 self._hot[key] = [side.near(pilots, NEAR) for side in self.measure.measures(which)]
             here = self.combination(loads, variant.law, variant.transfer)
-            peaks = [side.largest(np.arange(len(side.parts)), here).value for side in self._hot[key]]
-            found[variant] = np.max(peaks, axis=0)
+            found[variant] = np.max([side.most(here) for side in self._hot[key]], axis=0)
         return found
 
     def _variants(self, load_case: str) -> list[LoadVariant]:
@@ -264,5 +263,5 @@ def link_response(
     LinkResponse
     """
     link = ElasticLink.of(body, material, layers)
-    measure = LinkMeasure.of_units(link, solution.space, pilots, threads=threads)
+    measure = LinkMeasure.of_units(link, solution.space, pilots, as_first=True, threads=threads)
     return LinkResponse(measure=measure, stated=stated, pilots={loads.name: loads for loads in pilots})
