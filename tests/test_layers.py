@@ -17,7 +17,7 @@ LAYERS = {
         *("base", "materials", "imported", "bodies", "parts"),
         *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
-    "loads": ("text", "records", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
+    "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
         *("refine", "superposition", "vibration", "outcomes", "whole", "links", "doubts"),

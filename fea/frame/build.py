@@ -1,7 +1,7 @@
 """Builds the frame of a linkage: nodes, beams, ties, guides and loads of all its links."""
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,8 +24,7 @@ from alula.geometry.parts.part import Section
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
 from alula.loads.records.conditions import at_temperature
-from alula.loads.records.springs import Tendon, TurnSpring
-from alula.loads.states.springs import spring_states
+from alula.loads.states.actions import lasting
 from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
@@ -127,7 +126,7 @@ def build_frame(
             loads=tuple(builder.node_loads),
             names=tuple(builder.names),
             condensed=tuple(builder.condensed),
-            springs=tuple(_springs(case, pose, builder.points)),
+            springs=tuple(FrameSpring.of(one, pose, builder.points) for one in lasting(case)),
         ),
         points=builder.points,
         pins=builder.pins,
@@ -154,30 +153,6 @@ def _guide(pose: Pose, name: str, way: Way, nodes: tuple[int | None, int | None]
     normal = {Way.PIN: ALONG_PINS, Way.ABOUT_ACROSS: along}.get(way, across)
     axis = {Way.ABOUT_ALONG: ALONG_PINS, Way.ABOUT_ACROSS: ALONG_PINS, Way.ABOUT_PIN: along}.get(way)
     return Guide(carrier=nodes[0], pin=nodes[1], normal=normal, axis=axis)
-
-
-def _springs(case: Case, pose: Pose, points: Mapping[tuple[str, str], int]) -> Iterator[FrameSpring]:
-    """Yield the springs and tendons of a case as they stand in a pose, on the nodes of links' points."""
-    for state in spring_states(case, pose.placement):
-        pull, pulls = float(state.effort), state.kind == "tendon"
-        record = case.tendons[state.name] if pulls else case.springs[state.name]
-        if isinstance(record, TurnSpring):
-            joint = record.joint
-            ends = tuple(zip(case.joints[joint].links, case.linkage.joint_points(joint), strict=True))
-        else:
-            route = record.through if isinstance(record, Tendon) else record.between
-            ends = tuple((one.link, one.at) for one in route)
-        if isinstance(record, Tendon) and record.free_length is not None and record.stiffness is not None:
-            pull = record.stiffness * (float(state.size) - record.free_length)
-        yield FrameSpring(
-            ends=ends,
-            nodes=tuple(points.get(end) for end in ends),
-            places=np.array([pose.position(*end) for end in ends]),
-            stiffness=record.stiffness or 0.0,
-            effort=pull,
-            pulls=pulls,
-            turns=state.turns,
-        )
 
 
 class _Builder:

@@ -148,8 +148,7 @@ class _Envelope:
                 space = refined.solution.space
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
-            layers = layers_of(case, link)
-            shared, layered = {}, replace(task, layers=layers)
+            shared, layered = {}, replace(task, layers=motion.measure.link.layers)
             for load_case in dict.fromkeys(history.name for history in self.loaded[link]):
                 if (load_case, link) in self.ways:
                     couples = [self.ways[load_case, link]]
@@ -167,9 +166,9 @@ class _Envelope:
             found = motion.envelope(repetitions=repetitions, refined=refined, scatter=own)
             every = {x: built_in_any_direction(case, motion, one, own[x]) for x, one in found.load_cases.items()}
             found = replace(found, notes=(*of_pair(case, link), *found.notes), load_cases=every)
-            if layers is None or not found.worst.known:
+            if layered.layers is None or not found.worst.known:
                 return found
-            return replace(found, layers=layer_envelopes(motion, layers, scatter("layers"), repetitions))
+            return replace(found, layers=layer_envelopes(motion, scatter("layers"), repetitions))
 
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""
@@ -189,6 +188,7 @@ class _Envelope:
             evaluated=self.evaluated,
             stated=case.torque_transfer,
             returns=self.moved.motion.returns,
+            layers=layers_of(case, link),
         )
 
     def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool = False) -> list[CheckOutcome]:

@@ -160,7 +160,8 @@ def stiffness_parts(
     bent = path.assemble(pressed, loaded, 1.0)[1]
     if path.model.springs:
         # Their stiffness is in K already; what their forces make of it is left.
-        elastic = path.springs.tangent(start.displacements, path.chain.axes(start.rotations), 0.0)
+        axes = path.chain.axes(start.rotations)
+        elastic = path.springs.tangent(start.displacements, start.rotations, axes, 0.0)
         bent[: path.chain.count, : path.chain.count] -= elastic
     axes = path.chain.axes(start.rotations)
     for load in path.model.loads:

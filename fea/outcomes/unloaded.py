@@ -16,11 +16,11 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
 from alula.fea.outcomes.limits import least_safety_factor
+from alula.loads.acting.acting import loads_of
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from alula.loads.records.check_spec import SafetyFactorCheck
-from alula.loads.states.actions import stated_loads
-from alula.loads.states.springs import spring_loads
+from alula.loads.states.actions import lasting, stated_loads
 
 Real = NDArray[np.float64]
 
@@ -203,5 +203,5 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    springs = spring_loads(case, case.stated_pose.placement)
+    springs = loads_of(lasting(case), case.stated_pose.placement)
     return load_size((*stated_loads(case, case.load_cases[title]), *springs), case.linkage.longest)

@@ -18,11 +18,10 @@ from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.case.toleranced import Variable
-from alula.loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
+from alula.loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad, at_poses
 from alula.loads.records.load_case import LoadCase
-from alula.loads.states.actions import acting_loads
+from alula.loads.states.actions import acting_on
 from alula.loads.states.rubbing import WAYS, is_of
-from alula.loads.states.springs import spring_loads
 from alula.loads.statics.friction import Presses, solve_friction
 from alula.loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
 
@@ -212,7 +211,8 @@ class Sampler:
             way, presses = WAYS[self.case.load_cases[name].direction], self.presses.get(name, {})
             friction = solve_friction(moving, drive, loads, way, presses=presses)
             locked |= friction.locked
-            found[name] = (*loads, *friction.loads), assemble(here, drive, (*loads, *friction.loads))
+            acting = (*loads, *friction.loads(moving))
+            found[name] = acting, assemble(here, drive, acting)
         return found, locked
 
     def _loads(self, name: str, load_case: LoadCase, place: SampledPlacement, deviations: Real) -> tuple[Load, ...]:
@@ -220,8 +220,12 @@ class Sampler:
             assert self.pose.coordinate is not None
             first, second = DrivenClosure(place.closure, self.pose.coordinate).coefficients(place.q)
             place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
-        found = list(acting_loads(self.case, load_case, place, self.masses))
-        stated = len(found) - len(spring_loads(self.case, place))  # springs belong to no load case
+        acting = acting_on(self.case, load_case, self.masses, inert=place.qddot is not None)
+        found: list[Load] = []
+        stated = 0
+        for one in acting:
+            found += (at_poses(load, place.shape) for load in one.loads(place))
+            stated = stated if one.lasting else len(found)
         for variable, column in zip(self.variables, deviations.T, strict=True):
             if variable.kind in ("load", "force") and is_of(name, str(variable.target[0])):
                 number = int(variable.target[1])

@@ -18,6 +18,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.motion.buckling_history import axial_compression
 from alula.fea.outcomes.limits import layers_of
 from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.tolerance.link_response import LinkResponse, PeakShares, link_response
 from alula.fea.tolerance.states import SampledForces, Sampler, States
 from alula.geometry.base.errors import CannotRunError
@@ -30,11 +31,8 @@ Real = NDArray[np.float64]
 
 _STEP = 1e-4
 """Share of the compression by which it is changed for derivatives."""
-STRESS = {
-    Quantity.SAFETY_FACTOR: "stress",
-    Quantity.SUSTAINED_STRESS: "stress",
-    Quantity.DEFLECTION: "displacement",
-}
+PEAKS: dict[Quantity, PeakQuantity] = {Quantity.LAYERS: "layers", Quantity.DEFLECTION: "displacement"}
+"""What links are checked by, besides the stress that their strength is set against."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -219,20 +217,19 @@ class Told:
             return self._point(outcome)
         if outcome.quantity is Quantity.BUCKLING_FACTOR:
             return self._column(outcome.load_case, name)
-        layered = outcome.quantity is Quantity.LAYERS
-        shares = self._shares(name, "layers" if layered else STRESS[outcome.quantity], outcome.load_case)
+        material, own = case.material_of(name), PEAKS.get(outcome.quantity)
+        shares = self._shares(name, own or STRESS[material.brittle], outcome.load_case)
         if shares is None:
             return None
-        material = case.material_of(name)
         if outcome.quantity is Quantity.DEFLECTION:
             return _times(shares, 1.0 / self._factor(name, "youngs_modulus"))
         if outcome.quantity is Quantity.SUSTAINED_STRESS:
             return shares
-        entry = "strength_across_layers" if layered else _strength(material)
+        entry = "strength_across_layers" if own == "layers" else _strength(material)
         inverse = PeakShares(value=1.0 / shares.value, low=1.0 / shares.high, high=1.0 / shares.low)
         return _times(inverse, self._factor(name, entry))
 
-    def _shares(self, link: str, which: str, load_case: str) -> PeakShares | None:
+    def _shares(self, link: str, which: PeakQuantity, load_case: str) -> PeakShares | None:
         response = self.check.responses.get(link)
         if response is None or load_case not in response.pilots:
             return None
@@ -302,7 +299,9 @@ class Told:
             link
             for link, response in self.check.responses.items()
             for load_case in response.pilots
-            if response.body.part.is_beam and (load_case, link) not in told and self._compression(link, load_case).any()
+            if response.measure.link.body.part.is_beam
+            and (load_case, link) not in told
+            and self._compression(link, load_case).any()
         )
 
     def _point(self, outcome: CheckOutcome) -> PeakShares | None:

@@ -19,6 +19,8 @@ from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
 from alula.geometry.placement.fit import Wanted
 from alula.geometry.placement.placed_body import faces_of, placed_body
+from alula.loads.acting.springs import Spring, Tendon
+from alula.loads.acting.stop import Stop
 from alula.loads.case.eyes import with_eye
 from alula.loads.case.heights import heights
 from alula.loads.case.places import check_point
@@ -37,7 +39,6 @@ from alula.loads.records.flapping import Wing
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
-from alula.loads.records.springs import Spring, Stop, Tendon
 from alula.loads.records.tolerances import TolerancesTable
 from alula.loads.statics.statics import Drive
 

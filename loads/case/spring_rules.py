@@ -5,8 +5,8 @@ import math
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.coordinate import Measure
+from alula.loads.acting.sprung import Attachment
 from alula.loads.case.core import CoreCase
-from alula.loads.records.springs import Attachment, LineSpring
 from alula.loads.text.explain import require
 
 
@@ -22,19 +22,17 @@ def check_springs(case: CoreCase) -> None:
     CaseError
         For the first point, or joint, that is not there or cannot take their force.
     """
-    for name, spring in case.springs.items():
-        if isinstance(spring, LineSpring):
-            for i, place in enumerate(spring.between):
-                _check_attachment(case, f"springs.{name}.between.{i}", place)
-        else:
-            require(f"springs.{name}.joint", spring.joint, _turning(case), "is no revolute joint that turns")
+    for table, records in (("springs", case.springs), ("tendons", case.tendons)):
+        for name, one in records.items():
+            for where, place in one.fastened.items():
+                _check_attachment(case, f"{table}.{name}.{where}", place)
+            if one.hinge is not None:
+                require(f"{table}.{name}.joint", one.hinge, _turning(case), "is no revolute joint that turns")
     for name, tendon in case.tendons.items():
-        for i, place in enumerate(tendon.through):
-            _check_attachment(case, f"tendons.{name}.through.{i}", place)
-        for one, other in itertools.pairwise(tendon.through):
-            if one == other:
+        for first, other in itertools.pairwise(tendon.through):
+            if first == other:
                 raise CaseError(
-                    f"tendons.{name}.through: point '{one.at}' of link '{one.link}' stands there twice in a row; "
+                    f"tendons.{name}.through: point '{first.at}' of link '{first.link}' stands there twice in a row; "
                     "remove one of the two"
                 )
 

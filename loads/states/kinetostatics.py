@@ -15,7 +15,9 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.placement import Placement
-from alula.loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
+from alula.loads.acting.acting import loads_of
+from alula.loads.acting.weight import Weight
+from alula.loads.records.applied import Load, PartMass, at_poses, chosen
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.momentum import centroid_motion
 from alula.loads.statics.statics import (
@@ -299,15 +301,18 @@ def work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:
     return total
 
 
-def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartMass]) -> Power:
+def energies(
+    place: Placement, weights: Sequence[Weight], applied: Sequence[Load], masses: Mapping[str, PartMass]
+) -> Power:
     """Return the energies of moving masses and the power of the loads on them.
 
     Parameters
     ----------
     place : Placement
         The n poses with their rates.
-    loads : sequence of Load
-        Body forces among them are weights; the others are applied.
+    weights : sequence of Weight
+    applied : sequence of Load
+        All others.
     masses : mapping of str to PartMass
         Of the links with inertia.
 
@@ -315,22 +320,16 @@ def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartM
     -------
     Power
     """
-    kinetic, kinetic_rate, potential, potential_rate = (np.zeros(place.shape) for _ in range(4))
+    kinetic, kinetic_rate = np.zeros(place.shape), np.zeros(place.shape)
     for link, own in masses.items():
         spin, rate = place.spin(link), place.spin_rate(link)
         _, velocity, acceleration = centroid_motion(place, link, own)
         kinetic += 0.5 * own.mass * np.abs(velocity) ** 2 + 0.5 * own.inertia * spin**2
         kinetic_rate += own.mass * (np.conj(velocity) * acceleration).real + own.inertia * spin * rate
-    for load in loads:
-        if isinstance(load, BodyForce):
-            pull = load.mass.mass * in_axes(load, "global", place).specific_force
-            at, velocity, _ = centroid_motion(place, load.link, load.mass)
-            potential -= pull[..., 0] * at.real + pull[..., 1] * at.imag
-            potential_rate -= pull[..., 0] * velocity.real + pull[..., 1] * velocity.imag
     return Power(
         kinetic=kinetic,
         kinetic_rate=kinetic_rate,
-        potential=potential,
-        potential_rate=potential_rate,
-        applied=work([load for load in loads if not isinstance(load, BodyForce)], place, place),
+        potential=sum((one.potential(place) for one in weights), np.zeros(place.shape)),
+        potential_rate=-work(loads_of(weights, place.at_rest), place, place),
+        applied=work(applied, place, place),
     )

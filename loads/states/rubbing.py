@@ -132,7 +132,7 @@ def pose_friction(
             f"bound; with less than {_percent(found.lock[0])} of joints.*.friction it would move. Change the friction, "
             "the pose or the drive, or state the direction of the load case if it never moves that way"
         )
-    return tuple(chosen(load, 0) for load in found.loads)
+    return tuple(chosen(load, 0) for load in found.loads(place))
 
 
 def friction_at(
@@ -168,8 +168,8 @@ def friction_at(
     moved = replace(place, q=poses, qdot=driven.coefficients(poses)[0], qddot=None)
     acting = [at_poses(load, moved.shape) for load in loads]
     found = solve_friction(moved, drive, acting, sense, presses=presses)
-    loads = found.loads if place.shape else tuple(chosen(load, 0) for load in found.loads)
-    return loads, np.reshape(found.locked, place.shape)
+    rubbed: tuple[Load, ...] = found.loads(moved)
+    return rubbed if place.shape else tuple(chosen(load, 0) for load in rubbed), np.reshape(found.locked, place.shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

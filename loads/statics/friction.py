@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from alula.geometry.joints.joint import Joint
 from alula.geometry.joints.joint_kinds import Surface
 from alula.geometry.linkage.placement import Complex, Placement
+from alula.loads.acting.acting import Acting
 from alula.loads.records.applied import FrictionLoad, Load, shifted
 from alula.loads.statics.joint_reaction import travelled
 from alula.loads.statics.statics import Drive, assemble, joint_column, unknowns_of
@@ -56,8 +57,12 @@ _ITERATIONS = 12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Friction:
+class Friction(Acting):
     """Friction at all joints at n poses, for one direction of the motion.
+
+    It acts, but follows from the joint forces, which all else that acts brings about: it is found after that, for the
+    poses at which it was solved. It is none at rest and turns with the sense of the motion, so that it has neither
+    energy nor tangent, and where the linkage stands does not depend on it.
 
     Attributes
     ----------
@@ -85,10 +90,9 @@ class Friction:
         """True (n,) where no drive moves the linkage."""
         return np.asarray(np.isfinite(self.lock))
 
-    @property
-    def loads(self) -> tuple[FrictionLoad, ...]:
-        """Friction as loads on the links."""
-        return friction_loads(self.place, self.wrenches)
+    def loads(self, place: Placement) -> tuple[FrictionLoad, ...]:
+        """As ``Acting.loads``: at the poses for which it was solved alone."""
+        return friction_loads(place, self.wrenches)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -38,7 +38,7 @@ from alula.fea.outcomes.bearing import bearing_outcome
 from alula.fea.outcomes.pins import stress_at, stress_of
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.stress import principal, stress_field, von_mises
-from alula.fea.superposition.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
+from alula.fea.superposition.peaks import deviator, largest, of_stress, signed_bounds
 from alula.fea.superposition.unit_solutions import nodal_stress
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.coordinate import Coordinate
@@ -226,10 +226,11 @@ def test_peaks_are_those_of_all_nodes_under_all_loads(loads, smooth):
         combination = rng.normal(size=(7, loads)) * rng.uniform(0.01, 10.0, size=loads)
     whole = np.einsum("nim,mp->pni", stress, combination)
     for brittle, values in ((False, von_mises(whole)), (True, principal(whole)[..., 0])):
-        found = largest_stress(ModeMeasures.of(stress), combination, brittle=brittle)
+        modes = of_stress(stress, brittle=brittle)
+        found = largest(modes, combination)
         assert found.value == pytest.approx(values.max(axis=1), rel=1e-10)
         assert found.node.tolist() == values.argmax(axis=1).tolist()
-        low, high = signed_bounds(ModeMeasures.of(stress), combination, brittle=brittle)
+        low, high = signed_bounds(modes, combination)
         signed = signed_stress(whole, brittle=brittle)
         assert (low <= signed.min(axis=0) + 1e-12).all()
         assert (high >= signed.max(axis=0) - 1e-12).all()
@@ -245,7 +246,7 @@ def test_the_deviators_length_is_the_von_mises_stress():
 def test_stress_of_a_compressed_link_may_have_no_tension():
     stress = np.zeros((4, 6, 1))
     stress[:, :3, 0] = -np.arange(1.0, 5.0)[:, None]
-    peaks = largest_stress(ModeMeasures.of(stress), np.array([[1.0, 2.0]]), brittle=True)
+    peaks = largest(of_stress(stress, brittle=True), np.array([[1.0, 2.0]]))
     assert peaks.value.tolist() == [-1.0, -2.0]
     assert peaks.node.tolist() == [0, 0]
 
@@ -498,7 +499,7 @@ def test_an_envelope_holds_every_way_in_which_pins_press_and_torque_enters(order
     motion = SimpleNamespace(
         stated="eye-faces",
         material=SimpleNamespace(allowable=60.0),
-        solved=SimpleNamespace(space=SimpleNamespace(nodes=np.eye(3))),
+        measure=SimpleNamespace(solved=SimpleNamespace(space=SimpleNamespace(nodes=np.eye(3)))),
     )
     motion._governing = lambda variants: LinkMotion._governing(motion, variants)
     found = LinkMotion._by_meshes(motion, "push", [every[i] for i in order], MeshFactors())
