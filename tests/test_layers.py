@@ -19,7 +19,7 @@ LAYERS = {
     ),
     "loads": ("text", "records", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
     "fea": (
-        *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
+        *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
         *("refine", "superposition", "vibration", "outcomes", "whole", "links", "doubts"),
         *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),

@@ -33,6 +33,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked
 from alula.fea.beam.column_factor import AxialForce, column_factors
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.holding import Plane, columns, holding, of_cuts
@@ -265,8 +266,22 @@ def column_outcome(
     load = reason(
         "compressed_column", compression=found.compression, where=where, factor=band.value, pins=found.outermost
     )
-    outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, load)
+    outcome = asked_of(Subject.link(link)).outcome(load_case, band, load)
     return outcome.because(reason("buckling_judged", found=load, judgement=judgement(outcome, moved)))
+
+
+def asked_of(subject: Subject) -> Asked:
+    """Return what nobody has to ask for: whether a link, or the linkage, buckles under its load.
+
+    Parameters
+    ----------
+    subject : Subject
+
+    Returns
+    -------
+    Asked
+    """
+    return Asked(name=NAME, subject=subject, quantity=Quantity.BUCKLING_FACTOR, limit=1.0)
 
 
 def factor_band(

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.at_temperature import as_known
 from alula.fea.buckling.linkage import unless_it_gives_way
 from alula.fea.check.run import effort_of
-from alula.fea.common.at_temperature import as_known
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import asked, asks
 from alula.fea.buckling.linkage import by_linear_theory
 from alula.fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
 from alula.fea.common.alternatives import Alternatives
@@ -190,9 +191,8 @@ def asked_over_motion(moved: CaseMotion) -> dict[str, LinkageOverMotion]:
     dict of str to LinkageOverMotion
         By load case.
     """
-    asked = any(isinstance(check, LimitLoadCheck) for check in moved.case.checks.values())
     balanced = np.all([np.isfinite(torque) for torque in moved.torque.values()], axis=0)
-    return over_motion(moved, balanced) if asked and balanced.any() else {}
+    return over_motion(moved, balanced) if asks(moved.case, LimitLoadCheck) and balanced.any() else {}
 
 
 def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion]) -> Iterator[CheckOutcome]:
@@ -208,9 +208,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
     ------
     CheckOutcome
     """
-    for name, check in moved.case.checks.items():
-        if not isinstance(check, LimitLoadCheck):
-            continue
+    for one in asked(moved.case, LimitLoadCheck):
         for load_case, over in found.items():
             pose = None
             if over.limit_pose >= 0:
@@ -218,7 +216,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
                 pose = reason("pose_of_motion", coordinate=motion.coordinate.name, value=float(at), unit=motion.unit)
             counts = {"looked_at": len(over.poses), "poses": len(moved.motion.angles)}
             where = reason("least_of_poses", **counts, pose=pose)
-            yield limit_load_outcome(name, check, load_case, over.limit_load, where)
+            yield limit_load_outcome(one, load_case, over.limit_load, where)
 
 
 def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[int]:

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import asked
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
-from alula.fea.outcomes.limits import least_safety_factor
+from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from alula.loads.records.check_spec import SafetyFactorCheck
@@ -181,12 +181,7 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
     ------
     CheckOutcome
     """
-    for name, check in case.all_checks.items():
-        if not isinstance(check, SafetyFactorCheck):
-            continue
-        for link in check.links or case.checked_links:
-            limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
-            yield CheckOutcome.of(name, Subject.link(link), title, Quantity.SAFETY_FACTOR, Band.unknown(), limit)
+    yield from (one.outcome(title, Band.unknown()) for one in asked(case, SafetyFactorCheck))
 
 
 def stated_size(case: Case, title: str) -> float:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from alula.fea.asked.asked import asks, checks_of
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
 from alula.fea.vibration.over_motion import CaseFrequencies
@@ -67,18 +68,14 @@ def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False,
     """
     pose = pose or case.solve_pose()
     apart = clearance(case, pose)
-    measures = apart is not None or _asks(case, SizeCheck)
+    measures = apart is not None or asks(case, SizeCheck)
     return WholeNumbers(
         case=case,
         clearance=apart,
-        mass=weighed(case, pose) if needs_masses(case) or _asks(case, MassCheck) else None,
+        mass=weighed(case, pose) if needs_masses(case) or asks(case, MassCheck) else None,
         size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
         frequencies=asked_frequencies(case, solids=solids, threads=threads),
     )
-
-
-def _asks(case: Case, kind: type[MassCheck] | type[SizeCheck]) -> bool:
-    return any(isinstance(check, kind) for check in case.checks.values())
 
 
 def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
@@ -112,10 +109,9 @@ def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:
     """
     case = found.case
     outcomes: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in case.load_cases}
-    for name, check in case.checks.items():
-        if isinstance(check, MotorCheck):
-            for load_case, own in motor_outcomes(case, name, check).items():
-                outcomes[load_case] += own
+    for name, check in checks_of(case, MotorCheck):
+        for load_case, own in motor_outcomes(case, name, check).items():
+            outcomes[load_case] += own
     for outcome in unloaded_outcomes(found):
         outcomes[outcome.load_case].append(outcome)
     return {load_case: tuple(own) for load_case, own in outcomes.items()}

@@ -16,13 +16,14 @@ from materials import with_material
 from result_paths import compare
 from told import tables_of
 
+from alula.fea.asked.asked import Asked, asked
 from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import check_beam
 from alula.fea.buckling.buckling import buckling_outcomes
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.common.verdict import LINKAGE, Quantity, Subject, Verdict
 from alula.fea.elements.space import displacement_space
 from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.motion import envelope
@@ -354,7 +355,8 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
             stress = stress_at(case, joint, reactions.joints[joint]).equivalent
             least["shear", f"pin {joint}"].append(stress.inverse(case.pin_material(joint).allowable))
             wrench = reactions.joints[joint].wrench
-            outcome = bearing_outcome(case, "push", "eyes", case.checks["eyes"], joint, [wrench])
+            [eye] = asked(case, BearingCheck, subject=Subject.pin(joint))
+            outcome = bearing_outcome(case, "push", eye, [wrench])
             least["eyes", outcome.link].append(outcome.value)
     for key, bands in least.items():
         pose = int(np.argmin([band.value for band in bands]))
@@ -394,7 +396,7 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
     monkeypatch.setattr(outcomes_over_motion, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
     monkeypatch.setattr(outcomes_over_motion, "joint_growth", lambda *_: None)
-    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[5]))
+    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[3]))
     monkeypatch.setattr(
         outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(reason="", because=lambda _: None)
     )
@@ -403,8 +405,9 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
     motion = SimpleNamespace(coordinate=Coordinate("crank"), angles=np.zeros(4))
     check = BearingCheck.model_validate({"type": "bearing"})
+    eyes_asked = Asked(name="eyes", subject=Subject.pin("B"), quantity=Quantity.SAFETY_FACTOR, limit=3.33, check=check)
     moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
-    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3, {}))
+    list(outcomes_over_motion._joint(moved, eyes_asked, np.arange(4) < 3, {}))
     [[wrench]] = told
     assert wrench[0] == 2.0
 

@@ -12,9 +12,9 @@ the lesser factor counts.
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from alula.fea.asked.asked import Asked
 from alula.fea.beam.theory import BeamCheck
-from alula.fea.buckling.buckling import NAME as BUCKLING
-from alula.fea.buckling.buckling import beyond_strength
+from alula.fea.buckling.buckling import asked_of, beyond_strength
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
@@ -106,7 +106,7 @@ def by_linear_theory(
         high=factor / slack.low,
         sources=(*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail=reason("linear_theory_too_high"))),
     )
-    found = CheckOutcome.of(BUCKLING, LINKAGE, load_case, Quantity.BUCKLING_FACTOR, band, 1.0, how)
+    found = asked_of(LINKAGE).outcome(load_case, band, how)
     if found.verdict is Verdict.FAIL:
         return found.because(reason("so_linkage_gives_way", how=how))
     if found.verdict is Verdict.UNDECIDED:
@@ -153,7 +153,8 @@ def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
 def _followed(load_case: str, moved: LargeDisplacement, beyond: Reason | None) -> CheckOutcome:
     """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
     share = moved.held_share
-    found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, share, 1.0, share.without)
+    one = Asked(name=NAME, subject=LINKAGE, quantity=Quantity.LOAD_SHARE, limit=1.0)
+    found = one.outcome(load_case, share, share.without)
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
     return found.because(
         together(
