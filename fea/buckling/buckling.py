@@ -1,6 +1,6 @@
 """Buckling of links in compression, each by itself.
 
-Plates, discs and parts from files buckle as solids (``alula.fea.outcomes.solid_buckling``), held alike. Any other link
+Plates, discs and parts from files buckle as solids (``alula.fea.judging.solid_buckling``), held alike. Any other link
 is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks take the
 section's place (``alula.fea.beam.flanks``). How its joints hold it is known but in part, so that its factor is a band:
 
@@ -17,7 +17,7 @@ low    a third of the value, since nothing is relied on below 3 (see below), tim
        outermost pins, and free elsewhere.
 
 That joints stay where they are is taken for granted: sway of the whole linkage is the subject of
-``alula.fea.buckling.linkage``.
+``alula.fea.judging.linkage``.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected

@@ -12,10 +12,7 @@ from alula.fea.asked.asked import asked, asked_of
 from alula.fea.asked.at_temperature import as_known
 from alula.fea.beam.theory import CantileverCheck, uniform_cantilever
 from alula.fea.buckling.buckling import buckling_outcomes
-from alula.fea.buckling.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.check.known_stiffness import as_stiff_as_may_be, with_known_stiffness
-from alula.fea.check.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
-from alula.fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from alula.fea.check.point_solids import decide_point
 from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.clock import Clock
@@ -34,17 +31,20 @@ from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings,
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from alula.fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
+from alula.fea.judging.bearing import bearing_outcome
+from alula.fea.judging.judge import outcomes
+from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
+from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
+from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
+from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
-from alula.fea.outcomes.bearing import bearing_outcome
-from alula.fea.outcomes.judge import outcomes
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
-from alula.fea.outcomes.solid_buckling import solid_buckling_outcomes
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from alula.fea.refine.beyond_meshes import OpenRanges

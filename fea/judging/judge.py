@@ -3,18 +3,18 @@
 from collections.abc import Mapping
 
 from alula.fea.asked.asked import Asked, asked
-from alula.fea.buckling.linkage import linkage_outcomes
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.frame.joint_forces import JointForces
+from alula.fea.judging.layers import layer_outcomes, unless_built_otherwise, with_meshes
+from alula.fea.judging.linkage import linkage_outcomes
+from alula.fea.judging.solid_buckling import solid_buckling
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
-from alula.fea.outcomes.layers import layer_outcomes, unless_built_otherwise, with_meshes
 from alula.fea.outcomes.pins import PinStress, pin_outcome
 from alula.fea.outcomes.point_displacement import point_outcome
 from alula.fea.outcomes.result import LinkResult, SolidResult
-from alula.fea.outcomes.solid_buckling import solid_buckling
 from alula.fea.refine.discretisation import Discretisation
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
@@ -37,7 +37,7 @@ def outcomes(
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of links, pins and points, and of the linkage's equilibrium, of a load case.
 
-    Bearing is in ``alula.fea.outcomes.bearing``, limit load in ``alula.fea.check.linkage_numbers``, buckling of links
+    Bearing is in ``alula.fea.judging.bearing``, limit load in ``alula.fea.judging.linkage_numbers``, buckling of links
     in ``alula.fea.buckling.buckling``, and what is checked of the linkage as a whole in ``alula.fea.whole``.
 
     Parameters

@@ -5,7 +5,7 @@ Sway of the whole linkage is the lowest factor on all loads at which its linear 
 snaps through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on the
 deformed shape (``alula.fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
 only outcome: the share of the load that is held, which is the limit-load factor up to 1, with its band. A link that is
-no beam is a strip in the frame, and may buckle by itself before it does (``alula.fea.outcomes.solid_buckling``): then
+no beam is a strip in the frame, and may buckle by itself before it does (``alula.fea.judging.solid_buckling``): then
 the lesser factor counts.
 """
 
@@ -19,7 +19,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from alula.fea.nonlinear.stability import SNAP, growth
 
@@ -141,7 +141,7 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
     if outcome.subject == LINKAGE:
         return outcome.quantity is Quantity.LAYER_GAP
-    return outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
+    return outcome.quantity.origin == "loads"
 
 
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:

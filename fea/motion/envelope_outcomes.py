@@ -15,28 +15,24 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.other_case import widened
+from alula.fea.judging.bearing import bearing_outcome, pressing
+from alula.fea.judging.judge import link_outcome
+from alula.fea.judging.layers import CHECK as LAYERS
+from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
+from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.loosened import MotionGrowth, column_growth, joint_growth
-from alula.fea.outcomes.bearing import bearing_outcome, pressing
-from alula.fea.outcomes.judge import link_outcome
-from alula.fea.outcomes.layers import CHECK as LAYERS
-from alula.fea.outcomes.layers import asked_of_layers, layers_judged, no_strength, without_shear
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
-from alula.fea.outcomes.solid_buckling import undecided_buckling
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.records.check_spec import (
     BearingCheck,
-    ClearanceCheck,
-    FrequencyCheck,
     LimitLoadCheck,
-    MassCheck,
     PinCheck,
     SafetyFactorCheck,
-    SizeCheck,
 )
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.joint_reaction import JointReaction
@@ -44,11 +40,8 @@ from alula.loads.statics.joint_reaction import JointReaction
 BEYOND_CARD = reason("repetitions_beyond_card")
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (
-    *(SafetyFactorCheck, PinCheck, BearingCheck),
-    *(LimitLoadCheck, ClearanceCheck, FrequencyCheck, MassCheck, SizeCheck),
-)
-"""Checks of the case that are decided over the motion."""
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck)
+"""Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
 def envelope_outcomes(

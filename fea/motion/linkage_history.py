@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.asked.asked import asked, asks
-from alula.fea.buckling.linkage import by_linear_theory
-from alula.fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
 from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import air_source, distinct, friction_source
-from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.common.source import air_source, friction_source
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.play_doubt import shaken
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.displacement_band import compliance_range
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.linear import solve_frame
+from alula.fea.judging.linkage import by_linear_theory
+from alula.fea.judging.linkage_numbers import limit_load_outcome, linkage_numbers
 from alula.fea.motion.layered import forces_at
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
 from alula.fea.nonlinear.stability import dead_point_factor, linkage_factor
@@ -72,7 +72,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
     They are the pose next to a dead point of the driven link and that of the largest drive torque. The rule is that of
-    single poses (``alula.fea.buckling.linkage``).
+    single poses (``alula.fea.judging.linkage``).
 
     Parameters
     ----------
@@ -278,15 +278,13 @@ def causes_over(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_])
 
 def _over(poses: list[int], at: list[tuple[Band, Band, Reason | str]]) -> LinkageOverMotion:
     limits, moves, places = zip(*at, strict=True)
-    least = Band.unknown(next((b.without for b in limits if b.unknowable), ""))
-    most, where, least_at, most_at = Band.unknown(next((b.without for b in moves if b.unknowable), "")), "", -1, -1
-    if not any(band.unknowable for band in limits):
-        ends = {end: min(getattr(band, end) for band in limits) for end in ("value", "low", "high")}
-        least = Band(**ends, sources=distinct(*(band.sources for band in limits)))
+    least, most = Quantity.LIMIT_LOAD.sense.worst(limits), Quantity.DISPLACEMENT.sense.worst(moves)
+    where, least_at, most_at = "", -1, -1
+    if not least.unknowable:
         least_at = poses[min(range(len(poses)), key=lambda k: (limits[k].value, limits[k].low))]
-    if not any(band.unknowable for band in moves):
+    if not most.unknowable:
         k = max(range(len(poses)), key=lambda k: moves[k].value)
-        most, where, most_at = Band.largest(moves), places[k], poses[k]
+        where, most_at = places[k], poses[k]
     return LinkageOverMotion(
         poses=tuple(poses),
         limit_load=least,

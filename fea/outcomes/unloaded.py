@@ -15,7 +15,7 @@ from alula.fea.asked.asked import asked
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity
+from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from alula.loads.records.check_spec import SafetyFactorCheck
@@ -162,7 +162,7 @@ def undecided(
     for outcome in outcomes:
         borne = outcome.subject.kind == "pin" and outcome.subject.name in bearing
         moved = outcome.quantity is Quantity.DRIVE_POWER and bearing
-        if borne or moved or outcome.quantity in UNLOADED_QUANTITIES:
+        if borne or moved or outcome.quantity.unloaded:
             yield outcome
         else:
             yield outcome.left_open(nothing_acts(title, size))

@@ -1,6 +1,6 @@
 """Every number and check of the linkage as a whole, in one place."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from alula.fea.asked.asked import asks, checks_of
@@ -11,9 +11,10 @@ from alula.fea.whole.clearance import clearance_outcomes
 from alula.fea.whole.mass import mass_outcomes
 from alula.fea.whole.motor import motor_outcomes
 from alula.fea.whole.size import size_outcomes
+from alula.geometry.base.model import CaseModel
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import MassCheck, MotorCheck, SizeCheck
+from alula.loads.records.check_spec import ClearanceCheck, FrequencyCheck, MassCheck, MotorCheck, SizeCheck
 from alula.loads.states.actions import needs_masses
 from alula.loads.states.clearance import Clearance, clearance
 from alula.loads.states.extent import Extent, extent
@@ -42,6 +43,15 @@ class WholeNumbers:
     mass: Weighed | None = None
     size: Extent | None = None
     frequencies: CaseFrequencies | None = None
+
+
+KINDS: dict[type[CaseModel], Callable[[WholeNumbers], Iterable[CheckOutcome]]] = {
+    ClearanceCheck: lambda found: clearance_outcomes(found.case, found.clearance),
+    MassCheck: lambda found: mass_outcomes(found.case, found.mass),
+    SizeCheck: lambda found: size_outcomes(found.case, found.size),
+    FrequencyCheck: lambda found: frequency_outcomes(found.frequencies),
+}
+"""Kind of check -> its outcomes; of those that do not come from loads, in a pose and over a motion alike."""
 
 
 def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False, threads: int = 2) -> WholeNumbers:
@@ -89,10 +99,8 @@ def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
     ------
     CheckOutcome
     """
-    yield from clearance_outcomes(found.case, found.clearance)
-    yield from mass_outcomes(found.case, found.mass)
-    yield from size_outcomes(found.case, found.size)
-    yield from frequency_outcomes(found.frequencies)
+    for outcomes in KINDS.values():
+        yield from outcomes(found)
 
 
 def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:

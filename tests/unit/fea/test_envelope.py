@@ -26,6 +26,7 @@ from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Subject, Verdict
 from alula.fea.elements.space import displacement_space
 from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.motion import envelope
 from alula.fea.motion import envelope_outcomes as outcomes_over_motion
 from alula.fea.motion.envelope import envelope_case, evaluated_poses
@@ -35,7 +36,6 @@ from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
 from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.mesh_factors import MeshFactors
-from alula.fea.outcomes.bearing import bearing_outcome
 from alula.fea.outcomes.pins import stress_at, stress_of
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.stress import principal, stress_field, von_mises
