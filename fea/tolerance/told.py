@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import place_of
 from alula.fea.buckling.buckling import link_factors
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.verdict import CheckOutcome, Quantity
@@ -24,7 +25,7 @@ from alula.fea.tolerance.states import SampledForces, Sampler, States
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.materials.material import Material
 from alula.loads.records.applied import PointLoad, at_poses
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck
+from alula.loads.records.check_spec import BearingCheck
 from alula.loads.statics.statics import assemble, joint_reactions
 
 Real = NDArray[np.float64]
@@ -306,9 +307,7 @@ class Told:
 
     def _point(self, outcome: CheckOutcome) -> PeakShares | None:
         case = self.check.result.case
-        asked = case.checks[outcome.name]
-        assert isinstance(asked, DisplacementCheck)
-        link, point = case.displaced_point(outcome.name, asked)
+        link, point = place_of(case, outcome.name)
         check = self.check.reference or self.check
         nominal = Told(check=check, states=check.nominal, deviations=check.deviation)._moved(
             outcome.load_case, link, point

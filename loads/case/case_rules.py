@@ -29,7 +29,6 @@ from alula.loads.records.check_spec import (
     MotorCheck,
     PinCheck,
     SafetyFactorCheck,
-    SizeCheck,
     SustainedCheck,
 )
 from alula.loads.records.conditions import Conditions
@@ -254,7 +253,7 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
-    elif not isinstance(check, SizeCheck):
+    elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
                 f"checks.{name}: a check of sustained load needs the duration of the load; "

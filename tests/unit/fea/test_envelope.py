@@ -16,15 +16,17 @@ from materials import with_material
 from result_paths import compare
 from told import tables_of
 
+from alula.fea.asked.asked import Asked, asked
 from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import check_beam
 from alula.fea.buckling.buckling import buckling_outcomes
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.common.verdict import LINKAGE, Quantity, Subject, Verdict
 from alula.fea.elements.space import displacement_space
 from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.motion import envelope
 from alula.fea.motion import envelope_outcomes as outcomes_over_motion
 from alula.fea.motion.envelope import envelope_case, evaluated_poses
@@ -34,7 +36,6 @@ from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
 from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.mesh_factors import MeshFactors
-from alula.fea.outcomes.bearing import bearing_outcome
 from alula.fea.outcomes.pins import stress_at, stress_of
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.stress import principal, stress_field, von_mises
@@ -355,7 +356,8 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
             stress = stress_at(case, joint, reactions.joints[joint]).equivalent
             least["shear", f"pin {joint}"].append(stress.inverse(case.pin_material(joint).allowable))
             wrench = reactions.joints[joint].wrench
-            outcome = bearing_outcome(case, "push", "eyes", case.checks["eyes"], joint, [wrench])
+            [eye] = asked(case, BearingCheck, subject=Subject.pin(joint))
+            outcome = bearing_outcome(case, "push", eye, [wrench])
             least["eyes", outcome.link].append(outcome.value)
     for key, bands in least.items():
         pose = int(np.argmin([band.value for band in bands]))
@@ -395,7 +397,7 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
     monkeypatch.setattr(outcomes_over_motion, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
     monkeypatch.setattr(outcomes_over_motion, "joint_growth", lambda *_: None)
-    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[5]))
+    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[3]))
     monkeypatch.setattr(
         outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(reason="", because=lambda _: None)
     )
@@ -404,8 +406,9 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
     motion = SimpleNamespace(coordinate=Coordinate("crank"), angles=np.zeros(4))
     check = BearingCheck.model_validate({"type": "bearing"})
+    eyes_asked = Asked(name="eyes", subject=Subject.pin("B"), quantity=Quantity.SAFETY_FACTOR, limit=3.33, check=check)
     moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
-    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3, {}))
+    list(outcomes_over_motion._joint(moved, eyes_asked, np.arange(4) < 3, {}))
     [[wrench]] = told
     assert wrench[0] == 2.0
 

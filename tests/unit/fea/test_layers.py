@@ -11,10 +11,10 @@ from scipy.spatial.transform import Rotation
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.verdict import Verdict
+from alula.fea.judging.layers import layer_outcomes
 from alula.fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
 from alula.fea.motion.envelope_result import LayerEnvelope
 from alula.fea.outcomes.layer_stress import LayerStress
-from alula.fea.outcomes.layers import layer_outcomes
 from alula.fea.outcomes.limits import layer_limit, layer_limits, layers_of
 from alula.fea.solid.layers import Layers, best_directions, build_directions, on_plane
 from alula.fea.solid.stress import von_mises
