@@ -217,20 +217,17 @@ class _Builder:
         if rise == 0.0:
             return first, second
         root, link = (second, joint.links[1]) if joint.slides else (first, joint.links[0])
-        eyes, far, up = (
-            [(one, linkage.point_of(name, one)) for one in joint.links],
-            0.0,
-            -rise if joint.slides else rise,
-        )
-        own, other = reversed(eyes) if joint.slides else eyes
-        for shorter, (start, end) in self.pin_eyes.items() if joint.pivots else ():
+        eyes = [(one, linkage.point_of(name, one)) for one in joint.links]
+        eye, opposite = reversed(eyes) if joint.slides else eyes
+        far, up = 0.0, -rise if joint.slides else rise
+        for shorter, (start, until) in self.pin_eyes.items() if joint.pivots else ():
             reach = linkage.rise(shorter)
-            if start == own and far < reach / up < 1.0 and linkage.joints[shorter].pivots:
-                root, own, far = self.pin_ends[shorter], end, reach / up
+            if start == eye and far < reach / up < 1.0 and linkage.joints[shorter].pivots:
+                root, eye, far = self.pin_ends[shorter], until, reach / up
         if root is None:
             root = self._node(link, *self.case.links[link].points[linkage.point_of(name, link)], name)
             self.supports.append(Support(node=root))
-        self.pin_eyes[name] = own, other
+        self.pin_eyes[name] = eye, opposite
         self.places.append(self.places[root] + np.array([0.0, 0.0, (1.0 - far) * up]))
         self.names.append(f"the pin at {name}")
         self.pin_ends[name] = end = len(self.places) - 1
