@@ -21,12 +21,12 @@ from alula.fea.outcomes.limits import layers_of
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.tolerance.link_response import LinkResponse, PeakShares, link_response
-from alula.fea.tolerance.states import SampledForces, Sampler, States
+from alula.fea.tolerance.states import Sampler, States
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.materials.material import Material
 from alula.loads.records.applied import PointLoad, at_poses
 from alula.loads.records.check_spec import BearingCheck
-from alula.loads.statics.statics import assemble, joint_reactions
+from alula.loads.statics.statics import balance
 
 Real = NDArray[np.float64]
 
@@ -322,19 +322,9 @@ class Told:
         place, found = forces.place, []
         for unit in np.eye(6)[:2]:
             load = at_poses(PointLoad(link=link, point=point, wrench=unit), place.shape)
-            system = assemble(place, case.pinned_drive, (load,))
-            unknowns, residual = system.solved()
-            value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
-            virtual = SampledForces(
-                drive=case.pinned_drive,
-                joints=joint_reactions(place, case.pinned_drive, value),
-                drive_torque=value.get("T", np.zeros(len(unknowns))),
-                drive_force=value.get("P", np.zeros(len(unknowns))),
-                residual=residual,
-                place=place,
-            )
+            virtual = balance(place, case.pinned_drive, (load,))
             states = replace(self.states, forces={load_case: virtual}, loads={load_case: (load,)})
-            total = np.zeros(len(unknowns))
+            total = np.zeros(place.shape)
             for name, response in self.check.responses.items():
                 if load_case in response.pilots:
                     own = self.check.sampler.link_loads(states, self.deviations, load_case, name)

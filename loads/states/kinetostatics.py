@@ -3,7 +3,6 @@
 Inertia is among the loads, after D'Alembert (Norton, Design of Machinery, 5th ed., chapter 11).
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,23 +16,12 @@ from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.placement import Placement
 from alula.loads.acting.acting import loads_of
 from alula.loads.acting.weight import Weight
-from alula.loads.records.applied import Load, PartMass, at_poses, chosen
+from alula.loads.records.applied import Load, PartMass
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.momentum import centroid_motion
-from alula.loads.statics.statics import (
-    NEARLY_SINGULAR,
-    Drive,
-    Equilibrium,
-    assemble,
-    check_drive,
-    joint_reactions,
-)
-from alula.loads.statics.system import require_determinate
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, Equilibrium, balance, check_drive
 
 Real = NDArray[np.float64]
-
-_BLOCK = 1024
-"""Poses solved at once, so that the matrices stay in the processor's cache."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,8 +49,7 @@ class Power:
 class Kinetostatics(Equilibrium):
     """Joint forces, drive torque and power at the n poses of a motion under one set of loads.
 
-    Forces and torque grow without bound at a dead point. They are NaN where the leverage is below ``NEARLY_SINGULAR``
-    of ``alula.loads.statics.statics``.
+    Forces and torque grow without bound at a dead point, and are NaN there (``balance``).
 
     Attributes
     ----------
@@ -135,35 +122,24 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
         Where equilibrium alone does not give the joint forces, or where the driven link does not turn during the
         whole motion.
     """
-    linkage, place = motion.linkage, motion.placement
-    check_drive(linkage, drive)
+    check_drive(motion.linkage, drive)
     if drive is None:
         raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
     moving = leverage(motion, drive)
-    solvable = np.flatnonzero(moving >= NEARLY_SINGULAR)
-    if not solvable.size:
+    if not np.any(moving >= NEARLY_SINGULAR):
         raise CaseError(
             f"drive.link: '{drive.link}' does not move at joint '{drive.joint}' during this motion, "
             "so nothing there can drive it; drive a link that moves"
         )
-    acting = [at_poses(load, place.shape) for load in loads]
-    value: dict[str, Real] = {}
-    residual = np.full(place.shape, np.nan)
-    for poses in np.array_split(solvable, math.ceil(len(solvable) / _BLOCK)):
-        system = assemble(place.chosen(poses), drive, [chosen(load, poses) for load in acting])
-        require_determinate(linkage, system)
-        unknowns, residual[poses] = system.solved()
-        for name, found in zip(system.columns, unknowns.T, strict=True):
-            value.setdefault(name, np.full(place.shape, np.nan))[poses] = found
-    still = np.where(moving >= NEARLY_SINGULAR, 0.0, np.nan)
+    found = balance(motion.placement, drive, loads)
     return Kinetostatics(
         motion=motion,
         drive=drive,
-        joints=joint_reactions(place, drive, value),
-        drive_torque=value.get("T", still),
-        drive_force=value.get("P", still),
+        joints=found.joints,
+        drive_torque=found.drive_torque,
+        drive_force=found.drive_force,
         leverage=moving,
-        residual=residual,
+        residual=found.residual,
         power=power,
     )
 

@@ -36,7 +36,7 @@ from alula.geometry.linkage.placement import Complex, Placement
 from alula.loads.acting.acting import Acting
 from alula.loads.records.applied import FrictionLoad, Load, shifted
 from alula.loads.statics.joint_reaction import travelled
-from alula.loads.statics.statics import Drive, assemble, joint_column, unknowns_of
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_column, unknowns_of
 from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
@@ -70,11 +70,11 @@ class Friction(Acting):
         The poses, with the derivatives by the coordinate for rates.
     wrenches : mapping of str to array (n, 6)
         Joint with friction -> what its first link exerts on its second by friction, about the second's point, global
-        axes [N, N mm]; NaN where the linkage is locked.
+        axes [N, N mm]; NaN where the linkage is locked, and zero at dead points of the drive.
     lock : array (n,)
         Share of all coefficients at which the linkage locks itself, at most the one asked for; infinite elsewhere.
     unknowns : array (n, columns)
-        Of ``assemble``, with friction [N, N mm].
+        Of ``assemble``, with friction [N, N mm]; NaN where it is locked, and at dead points.
     residual : array (n,)
         Largest of the scaled equations, as a share of the load.
     """
@@ -136,7 +136,7 @@ def solve_friction(
     Parameters
     ----------
     place : Placement
-        The n poses, with the derivatives of the unknowns by the coordinate for rates. No dead points of the drive.
+        The n poses, with the derivatives of the unknowns by the coordinate for rates.
     drive : Drive or None
     loads : sequence of Load
         All else that acts on the links, at these poses.
@@ -152,19 +152,22 @@ def solve_friction(
     Friction
     """
     system = assemble(place, drive, loads)
+    sound = system.regular(NEARLY_SINGULAR)
+    matrix = np.where(sound[..., None, None], system.scaled, np.eye(len(system.columns)))
+    right = np.where(sound[..., None], system.rhs / system.row_scale, 0.0)  # no load has no friction
     contacts = _contacts(place, system, sense, presses)
     rubbed = [
         contact.against[:, None] * joint_column(place, contact.joint, contact.force, contact.moment) / system.row_scale
         for contact in contacts
     ]
-    scaled, lock = _followed(system.scaled, system.rhs / system.row_scale, contacts, rubbed, most)
-    left = _balance(system.scaled, contacts, rubbed, most, scaled)[0] - system.rhs / system.row_scale
-    load = np.maximum(np.abs(system.rhs / system.row_scale).max(axis=1), 1e-300)
+    scaled, lock = _followed(matrix, right, contacts, rubbed, most)
+    left = _balance(matrix, contacts, rubbed, most, scaled)[0] - right
+    load = np.maximum(np.abs(right).max(axis=1, initial=0.0), 1e-300)
     return Friction(
         place=place,
         wrenches=_wrenches(contacts, most * scaled),
         lock=lock,
-        unknowns=scaled * system.column_scale,
+        unknowns=np.where(sound[..., None], scaled * system.column_scale, np.nan),
         residual=np.abs(left).max(axis=1) / load,
     )
 

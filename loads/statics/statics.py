@@ -1,4 +1,4 @@
-"""Equilibrium of pinned links: three equations per moving link, assembled for one pose or for n of them.
+"""Equilibrium of pinned links: three equations per moving link, assembled and solved for one state or for n of them.
 
 Each link is cut free. With r the arm from the origin of the link's frame to a joint,
 
@@ -8,6 +8,9 @@ over joint forces, applied loads and the drive torque (Norton, Design of Machine
 among the loads, after D'Alembert). The unknown of a revolute joint is the force that the joint's first link exerts on
 its second, and where the joint is bonded a moment. A pin in a slot carries a normal force, and a slider a normal force
 and a moment. Friction is among the loads (``friction``).
+
+A state is a pose of a linkage with what acts on it: poses of a motion, samples, or a linkage at offsets of its pins.
+``balance`` solves n of them at once, and a state without solution leaves the others their numbers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -202,6 +205,32 @@ class Equilibrium:
         return -self.drive_torque if link in linkage.joints[self.drive.joint].links else 0.0
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Balance(Equilibrium):
+    """Equilibrium of n states; NaN where there is none.
+
+    Attributes
+    ----------
+    place : Placement
+    system : System
+        The equations.
+    sound : bool array (...)
+        Which states have a solution: those that are not at, or next to, a dead point of the drive.
+    unknowns : array (..., columns)
+        The solution [R] [N, N mm].
+    """
+
+    place: Placement
+    system: System
+    sound: NDArray[np.bool_]
+    unknowns: Real
+
+    @property
+    def placement(self) -> Placement:
+        """Where the links stand."""
+        return self.place
+
+
 @dataclass(frozen=True, kw_only=True)
 class Reactions(Equilibrium):
     """Joint reactions and drive torque of one pose, with the equations that they solve.
@@ -362,6 +391,45 @@ def check_drive(linkage: Linkage, drive: Drive | None) -> None:
         )
 
 
+def balance(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Balance:
+    """Solve the equilibrium of one state or of n for the joint reactions and the drive.
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    drive : Drive, optional
+    loads : sequence of Load
+        All that acts on the links, inertia and friction included: the same in all states, or n of each.
+
+    Returns
+    -------
+    Balance
+
+    Raises
+    ------
+    CaseError
+        Where equilibrium alone does not give the joint forces.
+    """
+    system = assemble(place, drive, loads)
+    require_determinate(place.linkage, system)
+    sound = system.regular(NEARLY_SINGULAR)
+    unknowns, residual = system.solved(sound)
+    value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
+    none = np.where(sound, 0.0, np.nan)
+    return Balance(
+        place=place,
+        drive=drive,
+        system=system,
+        sound=sound,
+        unknowns=unknowns,
+        joints=joint_reactions(place, drive, value),
+        drive_torque=value.get("T", none),
+        drive_force=value.get("P", none),
+        residual=residual,
+    )
+
+
 def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:
     """Solve the equilibrium of all links at one pose for the joint reactions and the drive torque.
 
@@ -383,20 +451,18 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
         dead point of the driven link.
     """
     check_drive(pose.linkage, drive)
-    system = assemble(pose.placement, drive, loads)
-    require_determinate(pose.linkage, system)
-    refuse_dead_point(system, drive)
-    unknowns, residual = system.solved()
-    value = dict(zip(system.columns, unknowns.tolist(), strict=True))
+    found = balance(pose.placement, drive, loads)
+    if not found.sound:
+        refuse_dead_point(found.system, drive)
     return Reactions(
         pose=pose,
         drive=drive,
-        system=system,
-        unknowns=unknowns,
-        joints=joint_reactions(pose.placement, drive, value),
-        drive_torque=value.get("T", 0.0),
-        drive_force=value.get("P", 0.0),
-        residual=float(residual),
+        system=found.system,
+        unknowns=found.unknowns,
+        joints=found.joints,
+        drive_torque=float(found.drive_torque),
+        drive_force=float(found.drive_force),
+        residual=float(found.residual),
     )
 
 
