@@ -116,14 +116,15 @@ def test_friction_of_states_at_once_is_that_one_by_one_and_takes_its_power(linka
     motion = moved(linkage)
     loads = random_loads(linkage, RANGE.shape, seed)
     every = solve_friction(motion.virtual, DRIVE, loads, way)
-    acting = (*loads, *every.loads(motion.virtual))
+    rubbed = every.loads(motion.virtual)
+    acting = (*loads, *rubbed)
     found = balance(motion.placement, DRIVE, acting)
     free = ~every.locked
     size = np.abs(every.unknowns[free]).max(initial=0.0)
     power = -work(acting, motion.placement, motion.virtual) / relative_motion(motion, DRIVE)
     assert found.unknowns[free] == pytest.approx(every.unknowns[free], abs=1e-9 * size)
     assert found.drive_torque[free] == pytest.approx(power[free], abs=1e-9 * size)
-    assert np.all(way * work(every.loads(motion.virtual), motion.placement, motion.virtual)[free] <= 1e-12 * size)  # it only takes
+    assert np.all(way * work(rubbed, motion.placement, motion.virtual)[free] <= 1e-12 * size)  # it only takes
     for i in range(len(RANGE)):
         one = solve_friction(motion.virtual.chosen([i]), DRIVE, of_one(loads, slice(i, i + 1)), way)
         assert one.lock == pytest.approx(every.lock[i : i + 1], rel=1e-6)
