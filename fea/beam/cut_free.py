@@ -13,6 +13,8 @@ from alula.fea.beam.cut_beam import changes
 from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import extent, hand_section, mouth
+from alula.geometry.bodies.seat import Seat
+from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.parts.part import Body, Pin, PlainEnd
 from alula.loads.records.applied import (
@@ -97,7 +99,12 @@ def link_loads(
         name=name,
         link=link,
         pins=tuple(
-            _pin_load(place, link, pin, wrenches.get(pin.name, nothing), rubbed.get(pin.name, nothing), axes is None)
+            replace(
+                _pin_load(
+                    place, link, pin, wrenches.get(pin.name, nothing), rubbed.get(pin.name, nothing), axes is None
+                ),
+                seat=seat(place.linkage, link, body, pin),
+            )
             for pin in body.pins
         ),
         couples=(
@@ -153,6 +160,43 @@ def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, rubbed: Real,
         wrench=taken,
         slotted=True,
         friction=by_friction[..., 0],
+    )
+
+
+def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
+    """Return how a pin sits in a link's hole.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        With the moduli of links and pins.
+    link : str
+    body : Body
+        The link's.
+    pin : Pin
+        Its hole.
+
+    Returns
+    -------
+    Seat or None
+        None for a slot, for a hole of several walls, and where the joint has no pin or several joints meet.
+    """
+    joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name]
+    if pin.slot or not joints or link not in linkage.moduli:
+        return None
+    joint, ring = linkage.joints[joints[0]], body.ring(pin)
+    if joint.type == "slider" or joint.clamped or ring.gaps or joints[0] not in linkage.pin_moduli:
+        return None
+    height = linkage.heights.get(link, 0.0)
+    others = {other for name in joints for other in linkage.joints[name].links if other != link}
+    above = {(up > height) - (up < height) for up in (linkage.heights.get(other, 0.0) for other in others)} - {0}
+    return Seat(
+        young=linkage.moduli[link],
+        pin_young=linkage.pin_moduli[joints[0]],
+        diameter=pin.diameter,
+        length=ring.thickness,
+        eye=ring.diameter,
+        side=sum(above) if above else None,
     )
 
 

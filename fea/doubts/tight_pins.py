@@ -14,7 +14,6 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.force_doubt import sharing_doubt
 from alula.fea.frame.joint_forces import JointForces
-from alula.geometry.linkage.linkage import Linkage
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 
@@ -105,7 +104,7 @@ class SharedCouples:
         def stated(tight: tuple[tuple[str, tuple[str, ...]], ...]) -> JointForces:
             said = dict(tight)
             joints = {n: j.model_copy(update={"tight_in": said.get(n, j.tight_in)}) for n, j in linkage.joints.items()}
-            pose = replace(frame.pose, linkage=Linkage(linkage.links, joints, linkage.heights))
+            pose = replace(frame.pose, linkage=replace(linkage, joints=joints))
             return replace(self.forces, frame=replace(frame, pose=pose))
 
         return stated

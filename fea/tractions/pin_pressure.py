@@ -169,7 +169,7 @@ class PinPressure(SurfaceLoad):
         order = np.arange(self.order + 1)[:, None]
 
         def series(push: Real, slope: Real) -> Real:
-            along = push + self._heights[:, None, None] * slope
+            along = self.wall.along(push, slope, self._heights[:, None])
             size, turned = np.hypot(along[..., 0], along[..., 1]), np.arctan2(along[..., 1], along[..., 0])
             rows = [
                 one * np.vstack([a * np.cos(order * way), (a * np.sin(order * way))[1:]])

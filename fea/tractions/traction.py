@@ -96,7 +96,7 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     unit = law.peak(force=1.0, diameter=pin.diameter, thickness=1.0)
 
     def pressure(push: Density, slope: Density) -> Density:
-        along = push[0] + wall.height[..., None] * slope[0]
+        along = wall.along(push[0], slope[0], wall.height)
         turned = law.shape(wall.angle - np.arctan2(along[..., 1], along[..., 0]))
         return np.asarray(-(unit * np.hypot(along[..., 0], along[..., 1]) * turned)[..., None] * bore.normals)
 

@@ -43,8 +43,8 @@ def test_far_from_fitting_it_is_hertz():
     reduced, modulus = (d / 2) ** 2 / (c / 2), E / 2
     a = np.sqrt(4.0 * F / t * reduced / (np.pi * modulus))
     alpha = half_angle(E * c * t / F)
-    assert alpha == pytest.approx(a / (d / 2), rel=2e-3)
-    assert pressure(0.0, alpha) * F / (d * t) == pytest.approx(2.0 * F / t / (np.pi * a), rel=3e-3)
+    assert alpha == pytest.approx(a / (d / 2), rel=4e-3)
+    assert pressure(0.0, alpha) * F / (d * t) == pytest.approx(2.0 * F / t / (np.pi * a), rel=4e-3)
 
 
 def test_conformal_pin():
