@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import extent, hand_section, mouth
 from alula.geometry.bodies.seat import Seat
+from alula.geometry.joints.holes import Known
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.parts.part import Body, Pin, PlainEnd
@@ -103,7 +105,7 @@ def link_loads(
                 _pin_load(
                     place, link, pin, wrenches.get(pin.name, nothing), rubbed.get(pin.name, nothing), axes is None
                 ),
-                seat=seat(place.linkage, link, body, pin),
+                seat=seat(place.linkage, link, body, pin) if axes is None else None,
             )
             for pin in body.pins
         ),
@@ -184,9 +186,10 @@ def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
     joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name]
     if pin.slot or not joints or link not in linkage.moduli:
         return None
-    joint, ring = linkage.joints[joints[0]], body.ring(pin)
-    if joint.type == "slider" or joint.clamped or ring.gaps or joints[0] not in linkage.pin_moduli:
+    joint, ring, own = linkage.joints[joints[0]], body.ring(pin), linkage.pin_holes(joints[0])[link]
+    if joint.clamped or own.known is Known.NO_PIN or ring.gaps or joints[0] not in linkage.pin_moduli:
         return None
+    loose = own.stated and own.known is not Known.PRESSED and len(joints) == 1 and math.isfinite(own.high)
     height = linkage.heights.get(link, 0.0)
     others = {other for name in joints for other in linkage.joints[name].links if other != link}
     above = {(up > height) - (up < height) for up in (linkage.heights.get(other, 0.0) for other in others)} - {0}
@@ -196,8 +199,18 @@ def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
         diameter=pin.diameter,
         length=ring.thickness,
         eye=ring.diameter,
+        away=_away(body, pin),
         side=sum(above) if above else None,
+        clearance=(own.low, own.high) if loose else None,
     )
+
+
+def _away(body: Body, pin: Pin) -> Literal[-1, 0, 1]:
+    """Return the direction along x in which a pin pulls an eye off its shank; 0 of an eye that does not end a link."""
+    first, last = extent(body)
+    if not body.part.is_beam or pin.foot is not None or first == last:
+        return 0
+    return 1 if pin.x == last else -1 if pin.x == first else 0
 
 
 def slot_place(place: Placement, link: str, pin: Pin) -> Real:

@@ -18,6 +18,8 @@ class Seat:
         Of the hole, and of its wall along the pin [mm].
     eye : float
         Outer diameter of the flat ring about the hole [mm]; 0 where there is none.
+    away : int
+        Where the eye ends the link: direction along x in which a pin pulls it off its shank, 1 or -1; 0 elsewhere.
     side : {-1, 0, 1} or None
         Rim at which the pin is loaded: the lower one, both, or the upper one; None where no layers tell it.
     clearance : tuple of 2 float or None
@@ -29,5 +31,6 @@ class Seat:
     diameter: float
     length: float
     eye: float
+    away: Literal[-1, 0, 1] = 0
     side: Side | None = None
     clearance: tuple[float, float] | None = None
