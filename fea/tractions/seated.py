@@ -1,10 +1,10 @@
 """Under what angle a pin presses whose clearance is known: that of contact, in place of two spans.
 
 Where a case states the clearance of a hole, both laws of pressure (``WIDE`` and ``NARROW``) become those of contact, at
-the ends of what contact may be: the wide one at the least clearance and under the largest force per length, ``SPREAD``
-wider than the calibrated law says, the narrow one at the other ends. So a check solves two pressures as ever, and its
-band is as much narrower as the stress under both is alike. It holds for eyes that end a bar or tube, within what was
-tried: ``THINNEST`` and ``ASKEW``. Elsewhere, and where nothing is stated, pressures are over 180 and 90 degrees.
+the ends of what contact may be: the wide one at the least clearance and under the largest force per length, ``WIDER``
+than the calibrated law says, the narrow one at the other ends, ``NARROWER``. So a check solves two pressures as ever,
+and its band is as much narrower as the stress under both is alike. It holds for eyes that end a bar or tube, within
+what was tried: ``THINNEST`` and ``ASKEW``. Elsewhere, and where nothing is stated, spans of 180 and 90 degrees hold.
 """
 
 import math
@@ -19,12 +19,13 @@ from alula.loads.records.contact import eye_half_angle, pressure
 
 Real = NDArray[np.float64]
 
-SPREAD = math.radians(12.0)
-"""By which the half angle of contact may be off; the law scatters by 3.6 degrees about contact solutions."""
+WIDER, NARROWER = math.radians(25.0), math.radians(12.0)
+"""By which the half angle of contact may be larger or smaller than the law says; where a pin pulls at an angle, contact
+ends at two angles."""
 NARROWEST = math.radians(36.0)
 """Half angle below which the pressure is taken no narrower. There the narrow law and contact load the sides of an eye
 alike; what a loose pin presses beyond that is local, and told by the check of bearing."""
-THINNEST, ASKEW = 2.2, math.radians(45.0)
+THINNEST, ASKEW = 2.4, math.radians(20.0)
 """Least outer diameter of an eye over its bore, and largest angle of the force to the link, for which it was tried."""
 
 
@@ -95,13 +96,13 @@ def half_angles(seat: Seat | None, law: PressureLaw, push: Real) -> Real:
     force, couple = np.hypot(push[:, 0], push[:, 1]), np.hypot(push[:, 3], push[:, 4])
     pulled = seat.away * push[:, 0] > math.cos(ASKEW) * force
     wide = law.span == WIDE.span
-    clearance, side = (seat.clearance[0], 1.0) if wide else (seat.clearance[1], -1.0)
+    clearance, side, spread = (seat.clearance[0], 1.0, WIDER) if wide else (seat.clearance[1], -1.0, -NARROWER)
     largest = np.maximum(force + side * 6.0 * couple / seat.length, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         tightness = np.nan_to_num(seat.young * clearance * seat.length / largest, nan=0.0, posinf=LOOSE)
     stiffer = 2.0 * seat.pin_young / (seat.young + seat.pin_young)
     found = eye_half_angle(np.minimum(tightness, LOOSE), stiffer=stiffer, ratio=seat.eye / seat.diameter)
-    return np.where(pulled, np.maximum(found + side * SPREAD, NARROWEST), none)
+    return np.where(pulled, np.maximum(found + spread, NARROWEST), none)
 
 
 LOOSE = 1e6
