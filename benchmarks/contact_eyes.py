@@ -1,8 +1,8 @@
 """Bands of the stress in eyes under the law of contact, against contact solutions of eyes drawn at random.
 
-Eyes of ``THINNEST`` to 4.2 bores with shanks of 0.55 to 1 diameters, pulled at up to ``ASKEW``; rigid pins, steel in aluminium
-or plastic, and pins of the eye's material; E c t/F of 0.03 to 200. A band goes from the least stress under both laws
-to the largest over 1 - ``CONTACT_SHORTFALL``.
+Eyes of ``THINNEST`` to 4.2 bores with shanks of 0.55 to 1 diameters, pulled at up to ``ASKEW``; rigid pins, steel in
+aluminium or plastic, and pins of the eye's material; E c t/F of 0.03 to 200. A band goes from the least stress under
+both laws to the largest over 1 - ``CONTACT_SHORTFALL``.
 
     python -m benchmarks.contact_eyes SEED COUNT
 """
