@@ -14,7 +14,7 @@ from alula.fea.beam.cut_beam import changes
 from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import extent, hand_section, mouth
-from alula.geometry.bodies.seat import Seat
+from alula.geometry.bodies.seat import Seat, Side
 from alula.geometry.joints.holes import Known
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Placement
@@ -192,7 +192,9 @@ def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
     loose = own.stated and own.known is not Known.PRESSED and len(joints) == 1 and math.isfinite(own.high)
     height = linkage.heights.get(link, 0.0)
     others = {other for name in joints for other in linkage.joints[name].links if other != link}
-    above = {(up > height) - (up < height) for up in (linkage.heights.get(other, 0.0) for other in others)} - {0}
+    rises = [linkage.heights.get(other, 0.0) - height for other in others]
+    above, below = any(rise > 0.0 for rise in rises), any(rise < 0.0 for rise in rises)
+    side: Side | None = (0 if below else 1) if above else (-1 if below else None)
     return Seat(
         young=linkage.moduli[link],
         pin_young=linkage.pin_moduli[joints[0]],
@@ -200,7 +202,7 @@ def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
         length=ring.thickness,
         eye=ring.diameter,
         away=_away(body, pin),
-        side=sum(above) if above else None,
+        side=side,
         clearance=(own.low, own.high) if loose else None,
     )
 

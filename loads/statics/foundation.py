@@ -87,7 +87,7 @@ class Foundation:
         conditions = np.vstack(
             [*(row / self.softness**2 for row in free), _WEIGHTS @ terms, (_WEIGHTS * _NODES) @ terms]
         )
-        return np.linalg.solve(conditions, np.eye(4)[:, 2:])
+        return np.asarray(np.linalg.solve(conditions, np.eye(4)[:, 2:]), dtype=np.float64)
 
     def _terms(self, z: ArrayLike) -> list[Real]:
         """The four terms (..., 4) and their first three derivatives at z/L."""
