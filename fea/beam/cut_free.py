@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,9 @@ from alula.fea.beam.cut_beam import changes
 from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import extent, hand_section, mouth
+from alula.geometry.bodies.seat import Seat, Side
+from alula.geometry.joints.holes import Known
+from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.parts.part import Body, Pin, PlainEnd
 from alula.loads.records.applied import (
@@ -97,7 +101,12 @@ def link_loads(
         name=name,
         link=link,
         pins=tuple(
-            _pin_load(place, link, pin, wrenches.get(pin.name, nothing), rubbed.get(pin.name, nothing), axes is None)
+            replace(
+                _pin_load(
+                    place, link, pin, wrenches.get(pin.name, nothing), rubbed.get(pin.name, nothing), axes is None
+                ),
+                seat=seat(place.linkage, link, body, pin) if axes is None else None,
+            )
             for pin in body.pins
         ),
         couples=(
@@ -154,6 +163,56 @@ def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, rubbed: Real,
         slotted=True,
         friction=by_friction[..., 0],
     )
+
+
+def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
+    """Return how a pin sits in a link's hole.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        With the moduli of links and pins.
+    link : str
+    body : Body
+        The link's.
+    pin : Pin
+        Its hole.
+
+    Returns
+    -------
+    Seat or None
+        None for a slot, for a hole of several walls, and where the joint has no pin or several joints meet.
+    """
+    joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name]
+    if pin.slot or not joints or link not in linkage.moduli:
+        return None
+    joint, ring, own = linkage.joints[joints[0]], body.ring(pin), linkage.pin_holes(joints[0])[link]
+    if joint.clamped or own.known is Known.NO_PIN or ring.gaps or joints[0] not in linkage.pin_moduli:
+        return None
+    loose = own.stated and own.known is not Known.PRESSED and len(joints) == 1 and math.isfinite(own.high)
+    height = linkage.heights.get(link, 0.0)
+    others = {other for name in joints for other in linkage.joints[name].links if other != link}
+    rises = [linkage.heights.get(other, 0.0) - height for other in others]
+    above, below = any(rise > 0.0 for rise in rises), any(rise < 0.0 for rise in rises)
+    side: Side | None = (0 if below else 1) if above else (-1 if below else None)
+    return Seat(
+        young=linkage.moduli[link],
+        pin_young=linkage.pin_moduli[joints[0]],
+        diameter=pin.diameter,
+        length=ring.thickness,
+        eye=ring.diameter,
+        away=_away(body, pin),
+        side=side,
+        clearance=(own.low, own.high) if loose else None,
+    )
+
+
+def _away(body: Body, pin: Pin) -> Literal[-1, 0, 1]:
+    """Return the direction along x in which a pin pulls an eye off its shank; 0 of an eye that does not end a link."""
+    first, last = extent(body)
+    if not body.part.is_beam or pin.foot is not None or first == last:
+        return 0
+    return 1 if pin.x == last else -1 if pin.x == first else 0
 
 
 def slot_place(place: Placement, link: str, pin: Pin) -> Real:

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.geometry.bodies.seat import Seat
 from alula.loads.records.applied import BodyForce, LineLoad, chosen, shifted
 
 Real = NDArray[np.float64]
@@ -35,6 +36,8 @@ class PinLoad:
         True for a pin in a slot along x, which carries neither a force along x nor a moment about z but by friction.
     friction : float or array (...)
         The part of the wrench that friction exerts: of Mz, which is shear in the bore [N mm]; in a slot, of Fx [N].
+    seat : Seat, optional
+        How the pin sits in its hole; None where nothing tells it.
     """
 
     VECTORS: ClassVar[tuple[str, ...]] = ("centre", "wrench")
@@ -45,6 +48,7 @@ class PinLoad:
     wrench: Real
     slotted: bool = False
     friction: Any = 0.0
+    seat: Seat | None = None
 
     @property
     def torque(self) -> Any:

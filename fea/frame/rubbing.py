@@ -12,15 +12,18 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.beam.cut_free import seat
 from alula.fea.frame.joint_forces import JointForces, joint_forces
 from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.features import Ring
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
-from alula.loads.case.forks import eyes
+from alula.loads.case.forks import apart, eyes
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, chosen, shifted
 from alula.loads.states.kinetostatics import is_determinate
 from alula.loads.states.rubbing import WAYS, at_one_pose, pose_friction
+from alula.loads.statics.foundation import Foundation
 from alula.loads.statics.friction import NOTHING_MORE, Presses, friction_under, friction_wrenches
 from alula.loads.statics.pressing import pressing
 
@@ -74,8 +77,7 @@ def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
         first = shifted(second, np.array([0.0, 0.0, case.linkage.rise(name)]))
         size = np.hypot(second[:, 0], second[:, 1])
         ratios = [
-            pressing(wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 3] + 1j * wrench[:, 4], ring)
-            / np.where(size > least, size, np.inf)
+            _pressing(wrench, ring, _foundation(case, name, link)) / np.where(size > least, size, np.inf)
             for link, ring, wrench in zip(joint.links, rings, (first, second), strict=True)
             if len(joint.tight_in) != 1 or link not in joint.tight_in
         ]
@@ -83,6 +85,19 @@ def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
         if np.any(ratio > 1.0):
             found[name] = ratio
     return found
+
+
+def _pressing(wrench: Real, ring: Ring, foundation: Foundation | None) -> Real:
+    """Return what presses on a bore (n,) under wrenches (n, 6) of its pin [N]."""
+    return pressing(wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 3] + 1j * wrench[:, 4], ring, foundation)
+
+
+def _foundation(case: Case, joint: str, link: str) -> Foundation | None:
+    """Return that of a pin that bends in its hole in a link; None for a stiff one, and in a pair of plates."""
+    if case.links[link].part is None or apart(case, link) is not None:
+        return None
+    body = case.body(link)
+    return Foundation.of(seat(case.linkage, link, body, body.pin(case.linkage.point_of(joint, link))))
 
 
 def largest(every: Iterable[Presses]) -> dict[str, Real]:

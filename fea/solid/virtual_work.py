@@ -180,6 +180,6 @@ class _Surfaces:
             if not pin.slotted and size > NO_FORCE * self._largest:
                 along = np.array([*pin.wrench[:2] / size, 0.0, 0.0, 0.0, 0.0])
                 bore = self._bores[pin.name]
-                pressed = work(bore, pin_traction(bore, replace(pin, wrench=along), law), field)
+                pressed = work(bore, pin_traction(bore, replace(pin, wrench=along, seat=None), law), field)
                 found[pin.name] = (pressed - float(along @ mean[pin.name])) * along
         return found

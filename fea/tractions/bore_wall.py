@@ -13,6 +13,7 @@ from alula.fea.elements.quadrature import SurfaceQuadrature
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.features import OFF_PLANE
 from alula.loads.records.applied import shifted
+from alula.loads.statics.foundation import Foundation
 
 Density = NDArray[np.float64]
 Delivered = Callable[[Density, Density], Density]
@@ -44,6 +45,8 @@ class BoreWall:
     with the wall's length L and its second moment I about its middle. So it stands on one side of the hole while a
     moment in the plane of the force is at most F L/6, and beyond that on both. q is corrected until the meshed
     hole, whose facets turn and shorten the resultant, and whose wall may be longer on one side, has the wrench.
+    A pin that bends in the hole (``alula.loads.statics.foundation``) presses otherwise along it, with the same
+    resultants.
     In a hole whose middle lies off the link's plane of forces, heights count from its middle, and the force's moment
     about that middle is added to the pin's.
 
@@ -103,6 +106,33 @@ class BoreWall:
         """Heights (k, q) of the points above the middle [mm]."""
         return np.asarray(self.bore.x[..., 2] - self.middle[2])
 
+    @cached_property
+    def foundation(self) -> Foundation | None:
+        """Of a pin that bends in the hole; None for a stiff one."""
+        return Foundation.of(self.pin.seat)
+
+    def along(self, push: Density, slope: Density, height: Density) -> Density:
+        """Return the resultant per length at heights.
+
+        Parameters
+        ----------
+        push, slope : ndarray, shape (..., 2)
+            Of a stiff pin, at the middle [N/mm], and its slope [N/mm²].
+        height : ndarray, broadcasts with (...)
+            Above the middle [mm].
+
+        Returns
+        -------
+        ndarray, shape (..., 2)
+            [N/mm]
+        """
+        z = np.asarray(height)[..., None]
+        if self.foundation is None:
+            return np.asarray(push + z * slope)
+        length = self.foundation.length
+        even, turning = self.foundation.shapes(z)
+        return np.asarray(length * even * push + length**3 / 12.0 * turning * slope)
+
     def pushes(self, wrench: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return what the pressure has to deliver about the middle, of wrenches of the pin.
 
@@ -131,6 +161,8 @@ class BoreWall:
         ndarray of bool, shape (n,)
         """
         size = _gap(target, self.pin.diameter)
+        if self.foundation is not None:
+            return size > 0.0
         return np.asarray(np.hypot(target[:, 3], target[:, 4]) > _NOTHING * size * self.pin.diameter)
 
     def per_length(self, wrench: NDArray[np.float64], delivered: Delivered) -> tuple[Density, Density]:
@@ -141,13 +173,13 @@ class BoreWall:
         wrench : ndarray, shape (n, 6)
             Of the pin [N, N mm].
         delivered : callable
-            From the resultant per length at the middle (n, 2) [N/mm] and its slope (n, 2) [N/mm²] to the wrenches
+            From the resultant per length at the middle (n, 2) [N/mm] and its slope (n, 2) [N/mm²], to the wrenches
             (n, 6) about the middle that the pressure has on the mesh.
 
         Returns
         -------
         tuple of (ndarray, ndarray), shape (n, 2)
-            At the middle [N/mm], and its slope [N/mm²].
+            At the middle [N/mm], and its slope [N/mm²], as of a stiff pin (``along``).
 
         Raises
         ------
@@ -169,7 +201,7 @@ class BoreWall:
             if np.all((left <= _NOTHING * size) | (left >= last)):
                 break
             last = left
-        along = push + np.linspace(-0.5, 0.5, HEIGHTS)[:, None, None] * float(np.ptp(self.height)) * slope
+        along = self.along(push, slope, np.linspace(-0.5, 0.5, HEIGHTS)[:, None] * float(np.ptp(self.height)))
         strength = np.hypot(along[..., 0], along[..., 1])
         pressed = along[strength > _FAINT * strength.max(axis=0)]
         bare = first_opening(self.angle, np.arctan2(pressed[:, 1], pressed[:, 0]))

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.tractions.bore_wall import HEIGHTS, BoreWall
+from alula.fea.tractions.seated import contact_coefficients, half_angles
 from alula.fea.tractions.surface_load import SurfaceLoad, pins_over
 from alula.fea.tractions.surfaces import Surfaces
 from alula.fea.tractions.traction import Transfer, pin_traction, wrench_density
@@ -164,12 +165,14 @@ class PinPressure(SurfaceLoad):
         CannotRunError
             For a hole meshed too coarsely, or open where the pin pushes.
         """
-        a = fourier_coefficients(law, self.order)[:, None]
-        a *= law.peak(force=1.0, diameter=self.wall.pin.diameter, thickness=1.0)
+        diameter, angles = self.wall.pin.diameter, half_angles(self.wall.pin.seat, law, self.wall.pushes(wrench))
+        by_span = fourier_coefficients(law, self.order) * law.peak(force=1.0, diameter=diameter, thickness=1.0)
+        a, known = np.tile(by_span[:, None], len(wrench)), np.isfinite(angles)
+        a[:, known] = contact_coefficients(angles[known], self.order) / diameter
         order = np.arange(self.order + 1)[:, None]
 
         def series(push: Real, slope: Real) -> Real:
-            along = push + self._heights[:, None, None] * slope
+            along = self.wall.along(push, slope, self._heights[:, None])
             size, turned = np.hypot(along[..., 0], along[..., 1]), np.arctan2(along[..., 1], along[..., 0])
             rows = [
                 one * np.vstack([a * np.cos(order * way), (a * np.sin(order * way))[1:]])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from alula.fea.common.link_loads import ALONG, PinLoad
 from alula.fea.elements.quadrature import Quadrature, SurfaceQuadrature
 from alula.fea.tractions.bore_wall import BoreWall
+from alula.fea.tractions.seated import pressing_law
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.records.applied import BodyForce, LineLoad
 from alula.loads.records.bearing import PressureLaw
@@ -93,11 +94,12 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     target = wall.pushes(pin.wrench[None])
     if not target.any():
         return np.zeros_like(bore.x)
-    unit = law.peak(force=1.0, diameter=pin.diameter, thickness=1.0)
+    own = pressing_law(pin.seat, law, target[0])
+    unit = own.peak(force=1.0, diameter=pin.diameter, thickness=1.0)
 
     def pressure(push: Density, slope: Density) -> Density:
-        along = push[0] + wall.height[..., None] * slope[0]
-        turned = law.shape(wall.angle - np.arctan2(along[..., 1], along[..., 0]))
+        along = wall.along(push[0], slope[0], wall.height)
+        turned = own.shape(wall.angle - np.arctan2(along[..., 1], along[..., 0]))
         return np.asarray(-(unit * np.hypot(along[..., 0], along[..., 1]) * turned)[..., None] * bore.normals)
 
     density = pressure(

@@ -114,6 +114,10 @@ class Linkage:
         Joints by name.
     heights : mapping of str to float
         Link -> z of its mid-plane [mm]; a link that is left out lies at 0.
+    moduli : mapping of str to float
+        Link with a part -> Young's modulus of its material [MPa].
+    pin_moduli : mapping of str to float
+        Joint -> that of its pin [MPa].
 
     Raises
     ------
@@ -125,6 +129,8 @@ class Linkage:
     links: Mapping[str, Link]
     joints: Mapping[str, Joint]
     heights: Mapping[str, float] = field(default_factory=dict)
+    moduli: Mapping[str, float] = field(default_factory=dict)
+    pin_moduli: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that every name means something and that all links hang together."""

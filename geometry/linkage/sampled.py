@@ -189,9 +189,7 @@ def _moved(linkage: Linkage, at: tuple[str, str]) -> Linkage:
     record = linkage.links[link]
     x, y = record.points[point]
     points = {**record.points, point: (x + 1.0, y)}
-    return Linkage(
-        {**linkage.links, link: record.model_copy(update={"points": points})}, linkage.joints, linkage.heights
-    )
+    return replace(linkage, links={**linkage.links, link: record.model_copy(update={"points": points})})
 
 
 def assemble_samples(pose: Pose, shifts: Shifts, value: Real) -> tuple[SampledPlacement, NDArray[np.bool_], Real]:

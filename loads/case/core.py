@@ -151,7 +151,17 @@ class CoreCase(Revisable):
         joints, bond = self.joints, {"bonded": True}
         if self.joint_model == "bonded":
             joints = {n: j if j.slides else j.model_copy(update=bond) for n, j in joints.items()}
-        return Linkage(self.links, joints, self.heights)
+        moduli, pins = self._moduli
+        return Linkage(self.links, joints, self.heights, moduli, pins)
+
+    @property
+    def _moduli(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Young's moduli of links with parts, and of joints' pins [MPa]; of known materials."""
+        known = self.all_materials
+        parts = {name: self.parts[link.part] for name, link in self.links.items() if link.part in self.parts}
+        links = {name: known[part.material].youngs_modulus for name, part in parts.items() if part.material in known}
+        pins = {name: joint.pin_material for name, joint in self.joints.items() if joint.pin_material in known}
+        return links, {name: known[material].youngs_modulus for name, material in pins.items()}
 
     @cached_property
     def heights(self) -> dict[str, float]:

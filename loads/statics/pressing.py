@@ -5,22 +5,26 @@ walls, their middle m and their second moment I. F is the force, and D its first
 couple M about axes in the plane and the direction e of the pin. Friction about the pin is mu r times the integral of
 |q|. That is |F| where the couple is small and presses both rims on the same side, and more beyond: of a single wall
 with F along D, from |D| = |F| L/6 on, |F| (a/4 + 1/a) with a = 12 |D|/(|F| L).
+A pin that bends in its hole presses otherwise (``alula.loads.statics.foundation``).
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.bodies.features import Ring
+from alula.loads.statics.foundation import Foundation
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+PIECES = 16
+"""Of the wall, in the integral of a pin that bends."""
 FAR = 2.0
 """Distance of the least pressure from the middle of a wall, over half its length, beyond which the rule is exact."""
 
 
-def pressing(force: Complex, moment: Complex, ring: Ring) -> Real:
+def pressing(force: Complex, moment: Complex, ring: Ring, foundation: Foundation | None = None) -> Real:
     """Return what presses on the wall of a hole.
 
     Parameters
@@ -31,6 +35,8 @@ def pressing(force: Complex, moment: Complex, ring: Ring) -> Real:
         Mx + i My about where z is 0 [N mm].
     ring : Ring
         The hole.
+    foundation : Foundation, optional
+        Of a pin that bends in the hole; it is loaded from the same side in all of these.
 
     Returns
     -------
@@ -38,11 +44,23 @@ def pressing(force: Complex, moment: Complex, ring: Ring) -> Real:
         Integral of the size of the pressure's resultant per length [N], at least |force|.
     """
     first = -1j * moment - ring.middle * force
+    if foundation is not None:
+        return np.asarray(np.maximum(_size_of_bent(force, first, foundation), np.abs(force)))
     slope, total = first / ring.second, np.zeros(np.shape(first))
     for low, high in ring.walls:
         at_middle = force / ring.thickness + slope * (0.5 * (low + high) - ring.middle)
         total += _size_along(at_middle, slope, 0.5 * (high - low))
     return np.asarray(np.maximum(total, np.abs(force)))
+
+
+def _size_of_bent(force: Complex, first: Complex, foundation: Foundation) -> Real:
+    """Return the integral of |q| of a pin that bends, by Gauss's rule on pieces: where q turns over, |q| has a kink."""
+    edges = np.linspace(-0.5, 0.5, PIECES + 1) * foundation.length
+    half = 0.5 * (edges[1] - edges[0])
+    z = 0.5 * (edges[1:] + edges[:-1])[:, None] + half * _NODES
+    even, turning = foundation.shapes(z)
+    each = np.abs(np.asarray(force)[..., None, None] * even + np.asarray(first)[..., None, None] * turning)
+    return np.asarray(half * (each @ _WEIGHTS).sum(axis=-1))
 
 
 def _size_along(middle: Complex, slope: Complex, half: float) -> Real:

@@ -1,3 +1,4 @@
+import math
 import tomllib
 
 import numpy as np
@@ -97,3 +98,26 @@ def test_an_eye_bears_the_largest_force_of_all_ways_of_sharing(order):
 def test_joint_that_does_not_exist():
     with pytest.raises(CaseError, match=r"checks\.bearing\.joints: 'X'"):
         bearing('joints = ["X"]')
+
+
+def test_a_stated_clearance_tells_what_presses_in_the_middle_of_contact():
+    """4 N by a steel pin of 2 mm in an eye of 3 mm, by Hertz (Johnson, equation 4.45): p0² = P E*/(π R')."""
+    text = ARM.format(part=BAR, fillet=1.0, force=-2.0, minimum=3.0, thickness=3.0)
+    case = validate(tomllib.loads(f'{text}[checks.bearing]\ntype = "bearing"\njoints = ["B"]\n'))
+
+    def reason(clearance):
+        joint = case.joints["B"].model_copy(update={"clearance": clearance, "tight_in": ("strut",)})
+        loose = case.model_copy(update={"joints": {**case.joints, "B": joint}})
+        result = check_case(loose, fidelity="beam")
+        (found,) = (check for check in result.load_cases["tip"].checks if check.name == "bearing")
+        return found.reason
+
+    assert "presses" not in told(reason(None))
+    found = dict(reason(0.1).facts)
+    young, pin = case.material_of("arm").youngs_modulus, case.pin_material("B").youngs_modulus
+    effective = 1.0 / (1.0 / young + 1.0 / pin)
+    hertz = math.sqrt(4.0 / 3.0 * effective / (math.pi * 1.0**2 / 0.05))
+    assert found["high"] == pytest.approx(hertz, rel=0.02)
+    assert found["low"] == found["high"]
+    assert not found["yields"]
+    assert "presses" in told(reason(0.1))
