@@ -149,7 +149,7 @@ def on_rims(rims: RimFactors) -> Reason:
     -------
     Reason
     """
-    return reason("on_rims", value=rims.value or None, low=rims.low or None)
+    return reason("on_rims", value=rims.value or None, low=rims.low or None, leans=rims.leans)
 
 
 def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] = ()) -> list[CheckOutcome]:

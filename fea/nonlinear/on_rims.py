@@ -14,11 +14,13 @@ Methods in Applied Mechanics and Engineering 32, 1982). So a tie that rolls abou
 hangs on has exactly no stiffness.
 
 Where motions are left that nothing but T holds, the frame may be unstable under any load: then it leans until further
-rims touch.
+rims touch. With every pin in its discs it always has a stable state below the factor with tight pins, since the discs
+are bounded, and the frame is stable for every place in them. A lean that can be no more than ``SLIGHT`` counts as
+stopped: the factor is that of all other motions.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -49,6 +51,9 @@ FREE = 1e-10
 IDLE = 1e-7
 """Work of forces in a motion that strains nothing, over that of all of its parts, below which it is rounding, such as
 that of a tie that rolls about the line through the rims that it hangs on."""
+SLIGHT = 0.02
+"""Tilt of pins in their holes up to which a linkage that leans keeps its shape, but for what bands of displacement say:
+it changes lengths by half its square."""
 MANY = 120
 """Unknowns from which on one eigenvalue is sought."""
 
@@ -72,8 +77,13 @@ class Extended:
     pressed: Floats
     free: Floats
 
-    def factor(self) -> float:
+    def factor(self, *, stopped: bool = False) -> float:
         """Return the least factor on the load at which the frame becomes unstable.
+
+        Parameters
+        ----------
+        stopped : bool, optional
+            Whether the motions in which it leans are closed.
 
         Returns
         -------
@@ -87,10 +97,13 @@ class Extended:
         Z, _ = np.linalg.qr(self.free / unit[:, None])
         work, own = np.linalg.eigh(Z.T @ pressed @ Z)
         Z = Z @ own
-        idle = np.abs(work) < IDLE * (np.abs(Z) * (np.abs(pressed) @ np.abs(Z))).sum(axis=0)
-        if (work[~idle] < 0.0).any():
+        idle = np.abs(work) <= IDLE * (np.abs(Z) * (np.abs(pressed) @ np.abs(Z))).sum(axis=0)
+        leans = ~idle & (work < 0.0)
+        if leans.any() and not stopped:
             return 0.0
-        plain = plain + Z[:, idle] @ Z[:, idle].T
+        closed = Z[:, idle | leans]
+        left = np.eye(len(plain)) - closed @ closed.T
+        plain, pressed = plain + closed @ closed.T, left @ pressed @ left
         for start in STARTS:
             whole = plain + start * pressed
             try:
@@ -216,13 +229,16 @@ class RimFactors:
     Attributes
     ----------
     value : float
-        Of the stated clearances; 0 where it leans at once.
+        Of the stated clearances; 0 where it leans at once by more than ``SLIGHT``.
     low : float
         The least, of all that clearances may be.
+    leans : bool
+        Whether it leans by less in some state.
     """
 
     value: float
     low: float
+    leans: bool = False
 
     def within(self, tight: float) -> "RimFactors":
         """Return the same, but no larger than with tight pins.
@@ -235,7 +251,7 @@ class RimFactors:
         -------
         RimFactors
         """
-        return RimFactors(value=min(self.value, tight), low=min(self.low, tight))
+        return replace(self, value=min(self.value, tight), low=min(self.low, tight))
 
     def lowered(self, factor: float, tight: float) -> float:
         """Return a factor that holds with tight pins, lowered by what linear theory makes of pins in their holes.
@@ -287,11 +303,20 @@ def rim_factors(pins: PinStates) -> RimFactors:
     """
     tangents = pins.tangents
     coarse = divided(pins, COARSE_SUBDIVISIONS)
-    found = [coarse.extended(one).factor() for one in tangents]
+    found, leans = list[float](), False
+    for tangent in tangents:
+        known = coarse.extended(tangent)
+        found.append(known.factor())
+        if found[-1] == 0.0 and tangent.tilt <= SLIGHT:
+            found[-1], leans = known.factor(stopped=True), True
     least = int(np.argmin(found))
     value, low = found[0], found[least]
     if 0.0 < low < NEAR_BUCKLING:
         fine = divided(pins, SUBDIVISIONS)
-        value = fine.extended(tangents[0]).factor() if 0.0 < value < NEAR_BUCKLING else value
-        low = fine.extended(tangents[least]).factor() if least else value
-    return RimFactors(value=value, low=min(low, value))
+        value, low = (
+            fine.extended(tangents[k]).factor(stopped=tangents[k].tilt <= SLIGHT)
+            if 0.0 < found[k] < NEAR_BUCKLING
+            else found[k]
+            for k in (0, least)
+        )
+    return RimFactors(value=value, low=min(low, value), leans=leans)

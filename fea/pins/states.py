@@ -152,7 +152,8 @@ class PinStates:
         -------
         RimTangent
         """
-        return tangent_of(self.radii.of(shares[None])[0][0], v, self.rims.g - self.rims.K @ v)
+        lengths = np.array([hole.high - hole.low for hole in self.rims.holes])
+        return tangent_of(self.radii.of(shares[None])[0][0], v, self.rims.g - self.rims.K @ v, lengths)
 
     @property
     def tangents(self) -> tuple[RimTangent, ...]:

@@ -35,6 +35,8 @@ class RimTangent:
         How many rims touch.
     force : float
         The largest at a rim [N].
+    tilt : float
+        The largest of a pin in its hole that rims allow [rad].
     """
 
     v: Real
@@ -42,9 +44,10 @@ class RimTangent:
     stiffness: Real
     touching: int
     force: float
+    tilt: float
 
 
-def tangent_of(radii: Real, v: Real, forces: Real) -> RimTangent:
+def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real) -> RimTangent:
     """Return how pins may move on from a state.
 
     Parameters
@@ -55,6 +58,8 @@ def tangent_of(radii: Real, v: Real, forces: Real) -> RimTangent:
         Where pins stand [mm].
     forces : ndarray, shape (4 h,)
         At the rims [N].
+    lengths : ndarray, shape (h,)
+        Of the holes [mm].
 
     Returns
     -------
@@ -79,4 +84,5 @@ def tangent_of(radii: Real, v: Real, forces: Real) -> RimTangent:
         stiffness=np.array(stiffness),
         touching=touching,
         force=largest,
+        tilt=float((radii.reshape(-1, 2).sum(axis=1) / lengths).max(initial=0.0)),
     )

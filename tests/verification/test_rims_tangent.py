@@ -9,7 +9,7 @@ from tilting_pins import ALUMINIUM, PLA, TIGHT, checked, four_bar, loaded
 
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.case_statics import solve_case_statics
-from alula.fea.nonlinear.on_rims import divided
+from alula.fea.nonlinear.on_rims import Extended, divided
 from alula.fea.nonlinear.stability import COARSE_SUBDIVISIONS, buckling_factor
 from alula.fea.pins.programme import least_in_discs
 from alula.fea.pins.states import PinStates
@@ -38,7 +38,7 @@ def test_a_pin_seated_on_two_rims_is_closed_along_its_force_and_a_pendulum_acros
     """A stub under F = 3 N along (4, 5)/√41 through the middle of its hole: R = F/2 at both rims, R/r across."""
     along = np.array([4.0, 5.0]) / math.sqrt(41.0)
     radius, forces = 0.02, np.tile(1.5 * along, 2)
-    found = tangent_of(np.full(2, radius), np.tile(radius * along, 2), forces)
+    found = tangent_of(np.full(2, radius), np.tile(radius * along, 2), forces, np.array([4.0]))
     assert found.touching == 2
     assert found.force == pytest.approx(1.5)
     assert found.stiffness == pytest.approx([75.0, 75.0])
@@ -48,16 +48,17 @@ def test_a_pin_seated_on_two_rims_is_closed_along_its_force_and_a_pendulum_acros
 
 def test_a_rim_that_does_not_touch_is_free_and_a_pressed_hole_is_closed():
     forces, v = np.array([0.0, 2.0, 0.0, 0.0]), np.array([0.0, 0.01, 0.003, 0.0])
-    found = tangent_of(np.full(2, 0.01), v, forces)
+    found = tangent_of(np.full(2, 0.01), v, forces, np.array([4.0]))
     assert found.stiffness == pytest.approx([200.0, 0.0, 0.0])
+    assert found.tilt == pytest.approx(0.02 / 4.0)
     assert np.abs(found.ways).sum(axis=1) == pytest.approx([1.0, 0.0, 1.0, 1.0])
-    assert tangent_of(np.zeros(2), np.zeros(4), forces).ways.shape == (4, 0)
+    assert tangent_of(np.zeros(2), np.zeros(4), forces, np.array([4.0])).ways.shape == (4, 0)
 
 
 @pytest.mark.parametrize("clearance", [0.002, 0.01])
 @pytest.mark.parametrize("material", [ALUMINIUM, PLA])
 def test_the_tangent_says_how_pins_move_under_a_little_more_load(material, clearance):
-    """dv = N (Nᵀ K N + T)⁺ Nᵀ dg, against the state under other loads, found anew; but for motions that strain nothing."""
+    """dv = N (Nᵀ K N + T)⁺ Nᵀ dg but for what strains nothing, against the state under other loads, found anew."""
     pins = with_clearance(pins_of(loaded(material, ["0 N", "-20 N"], TIGHT)), clearance)
     K, g, radii = pins.rims.K, pins.rims.g, pins.radii.of(pins.radii.value[None])[0]
     more = K @ np.random.default_rng(5).uniform(-1.0, 1.0, len(g))
@@ -130,3 +131,16 @@ def test_a_tie_that_hangs_on_one_rim_at_either_end_rolls_without_stiffness():
     assert np.abs(work).min() < 1e-9 * np.abs(work).max()
     assert (work > -1e-9 * np.abs(work).max()).all()
     assert 10.0 < known.factor() < 27.0
+
+
+def test_a_lean_that_rims_stop_leaves_the_factor_of_all_else():
+    """Two motions apart: one that strains nothing and that the load drives, one of stiffness 12 that it drives by 2."""
+    known = Extended(
+        allowed=np.eye(2), plain=np.diag([0.0, 12.0]), pressed=np.diag([-1.0, -2.0]), free=np.array([[1.0], [0.0]])
+    )
+    assert known.factor() == 0.0
+    assert known.factor(stopped=True) == pytest.approx(6.0)
+    held = replace(known, pressed=np.diag([1.0, -2.0]))
+    assert held.factor() == pytest.approx(6.0)
+    idle = replace(known, pressed=np.diag([0.0, -2.0]))
+    assert idle.factor() == pytest.approx(6.0)
