@@ -149,7 +149,11 @@ def on_rims(rims: RimFactors) -> Reason:
     -------
     Reason
     """
-    return reason("on_rims", value=rims.value or None, low=rims.low or None, leans=rims.leans)
+    if rims.value == 0.0:
+        return reason("on_rims_leans")
+    if rims.low == 0.0:
+        return reason("on_rims_may_lean", value=rims.value)
+    return reason("on_rims", value=rims.value, low=rims.low)
 
 
 def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] = ()) -> list[CheckOutcome]:

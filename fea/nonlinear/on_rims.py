@@ -14,9 +14,10 @@ Methods in Applied Mechanics and Engineering 32, 1982). So a tie that rolls abou
 hangs on has exactly no stiffness.
 
 Where motions are left that nothing but T holds, the frame may be unstable under any load: then it leans until further
-rims touch. With every pin in its discs it always has a stable state below the factor with tight pins, since the discs
-are bounded, and the frame is stable for every place in them. A lean that can be no more than ``SLIGHT`` counts as
-stopped: the factor is that of all other motions.
+rims touch. Yet with every pin in its discs it has a stable state at every factor below that with tight pins, since the
+discs are bounded and the frame is stable for each place in them. So clearances that let pins tilt by no more than
+``SLIGHT`` cannot lose the linkage: the low end knows only wider ones, beside the value, of which a lean within
+``SLIGHT`` counts as stopped.
 """
 
 import math
@@ -231,14 +232,11 @@ class RimFactors:
     value : float
         Of the stated clearances; 0 where it leans at once by more than ``SLIGHT``.
     low : float
-        The least, of all that clearances may be.
-    leans : bool
-        Whether it leans by less in some state.
+        The least, of all that clearances may be, but for those that let pins tilt by no more than that.
     """
 
     value: float
     low: float
-    leans: bool = False
 
     def within(self, tight: float) -> "RimFactors":
         """Return the same, but no larger than with tight pins.
@@ -301,22 +299,15 @@ def rim_factors(pins: PinStates) -> RimFactors:
     -------
     RimFactors
     """
-    tangents = pins.tangents
+    first, *others = pins.tangents
+    stopped, wide = first.tilt <= SLIGHT, [first, *(one for one in others if one.tilt > SLIGHT)]
     coarse = divided(pins, COARSE_SUBDIVISIONS)
-    found, leans = list[float](), False
-    for tangent in tangents:
-        known = coarse.extended(tangent)
-        found.append(known.factor())
-        if found[-1] == 0.0 and tangent.tilt <= SLIGHT:
-            found[-1], leans = known.factor(stopped=True), True
+    found = [coarse.extended(one).factor(stopped=stopped and one is first) for one in wide]
     least = int(np.argmin(found))
-    value, low = found[0], found[least]
-    if 0.0 < low < NEAR_BUCKLING:
+    ends = found[0], found[least]
+    if 0.0 < ends[1] < NEAR_BUCKLING:
         fine = divided(pins, SUBDIVISIONS)
-        value, low = (
-            fine.extended(tangents[k]).factor(stopped=tangents[k].tilt <= SLIGHT)
-            if 0.0 < found[k] < NEAR_BUCKLING
-            else found[k]
-            for k in (0, least)
-        )
-    return RimFactors(value=value, low=min(low, value), leans=leans)
+        ends = fine.extended(first).factor(stopped=stopped), found[least]
+        if least > 0:
+            ends = ends[0], fine.extended(wide[least]).factor()
+    return RimFactors(value=ends[0], low=min(ends))

@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from tilting_pins import ALUMINIUM, PLA, TIGHT, checked, four_bar, loaded
 
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import LINKAGE, Quantity
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.nonlinear.corotational import SUBDIVISIONS
 from alula.fea.nonlinear.on_rims import Extended, divided
 from alula.fea.nonlinear.stability import COARSE_SUBDIVISIONS, buckling_factor
 from alula.fea.pins.programme import least_in_discs
@@ -19,6 +22,7 @@ from alula.fea.vibration.mass_matrix import mass_matrix
 from alula.loads.case.case import Case
 from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.masses import part_masses
+from alula.reports.sentences import told
 
 
 def pins_of(case: Case) -> PinStates:
@@ -144,3 +148,32 @@ def test_a_lean_that_rims_stop_leaves_the_factor_of_all_else():
     assert held.factor() == pytest.approx(6.0)
     idle = replace(known, pressed=np.diag([0.0, -2.0]))
     assert idle.factor() == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize(("material", "young", "load"), [(ALUMINIUM, 70000.0, "20 N"), (PLA, 2500.0, "1 N")])
+def test_a_link_by_itself_buckles_across_the_plane_as_a_bar_on_two_pins(material, young, load):
+    """π² E I/L² with I = 8 · 4³/12 mm⁴, for pins that run hold no angle: tight ones are the upper end alone."""
+    result = check_case(loaded(material, ["0 N", load]), fidelity="beam").load_cases["l"]
+    [found] = [one for one in result.checks if one.link == "coupler" and one.quantity is Quantity.BUCKLING_FACTOR]
+    compression = -result.links["coupler"].beam.forces.at(60.0, "before")[0]
+    euler = math.pi**2 * young * 8.0 * 4.0**3 / 12.0 / 120.0**2
+    assert found.value.value == pytest.approx(euler / compression, rel=0.02)
+    assert found.value.high > 3.5 * found.value.value
+
+
+@pytest.mark.parametrize("clearance", ["0.02 mm", "0.4 mm"])
+def test_the_linkage_is_told_with_pins_in_their_holes(clearance):
+    """Wide clearances let it lean or lower its factor, and no check passes by pins that nobody stated tight."""
+    data = four_bar(tight=TIGHT, checks={"s": {"type": "safety-factor", "minimum": 2.0}})
+    for joint, link in {"O2": "base", "A": "coupler", "B": "coupler", "O4": "base"}.items():
+        data["joints"][joint]["clearance"] = {link: clearance}
+    result = check_case(checked(data), fidelity="beam").load_cases["l"]
+    [found] = [one for one in result.checks if one.subject == LINKAGE and one.quantity is Quantity.BUCKLING_FACTOR]
+    pins = pins_of(checked(data))
+    tight = buckling_factor(pins.rims.frame.model)
+    factor = divided(pins, SUBDIVISIONS).extended(pins.tangents[0]).factor()
+    assert 0.0 < factor < 0.98 * tight
+    assert found.value.value == pytest.approx(factor, rel=1e-3)
+    assert found.value.low < factor
+    assert found.value.high >= tight
+    assert f"becomes unstable at {factor:.3g} times its load" in told(found.reason)
