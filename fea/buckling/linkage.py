@@ -90,7 +90,7 @@ def by_linear_theory(
     least: float,
     factor: float,
     slack: Scatter,
-    how: Reason,
+    how: Reason | str,
     remedy: Reason | None = None,
     rims: RimFactors | None = None,
 ) -> CheckOutcome:
@@ -108,7 +108,7 @@ def by_linear_theory(
         On all loads, at which the linear frame becomes unstable.
     slack : Scatter
         Of load over stiffness.
-    how : Reason
+    how : Reason or str
         What happens at ``least``.
     remedy : Reason, optional
         What tells more; by default following its deformed shape.

@@ -176,8 +176,8 @@ class RimPath:
         for end in (0, 1):
             local = state.end_forces[pins, end].reshape(-1, 2, 3, 1)
             forces, moments = (path.elements.axes[pins, None] @ local)[..., 0].swapaxes(0, 1)
-            turn, own = slice(6 * end + 3, 6 * end + 6), slice(6 * end, 6 * end + 3)
-            work[:, turn, own] = _turning(forces)
+            turn, shift = slice(6 * end + 3, 6 * end + 6), slice(6 * end, 6 * end + 3)
+            work[:, turn, shift] = _turning(forces)
             work[:, turn, turn] = _turning(moments) / 2.0
         own = ways.T @ self._own(k) @ ways
         own_pressed = ways.T @ self._own(k_g) @ ways + np.diag(tangent.stiffness)
