@@ -7,6 +7,9 @@ deformed shape (``alula.fea.nonlinear.large_displacement``), as it is below a fa
 only outcome: the share of the load that is held, which is the limit-load factor up to 1, with its band. A link that is
 no beam is a strip in the frame, and may buckle by itself before it does (``alula.fea.judging.solid_buckling``): then
 the lesser factor counts.
+
+Between layers the value has pins as they stand in their holes (``alula.fea.nonlinear.on_rims``), the low end as they
+may stand where they hold the linkage least, and the upper end tight ones.
 """
 
 import math
@@ -21,7 +24,8 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
-from alula.fea.nonlinear.stability import SNAP, growth
+from alula.fea.nonlinear.on_rims import RimFactors
+from alula.fea.nonlinear.stability import ON_RIMS, SNAP, growth
 
 NAME = "large displacement"
 NO_EQUILIBRIUM = reason("no_equilibrium")
@@ -60,14 +64,21 @@ def linkage_outcomes(
         yield found.left_open(_by_itself(weakest, own[0])) if soft else found
     elif value is not None and least is not None and own[0] < least:
         how = _by_itself(weakest, own[0])
-        found = by_linear_theory(load_case, own[0], max(own[0], min(value, own[1])), moved.scatter, how)
+        found = by_linear_theory(
+            load_case, own[0], max(own[0], min(value, own[1])), moved.scatter, how, rims=moved.rims
+        )
         yield found.because(together(found.reason, beyond_strength(beams)))
-    elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
+    elif value is not None and least is not None and not (math.isinf(value) and _held(moved)):
         how = reason("unstable_by_linear_theory", factor=value)
         if least < value:
             how = reason("dead_point_by_linear_theory", factor=least)
-        found = by_linear_theory(load_case, least, value, moved.slack, how)
+        found = by_linear_theory(load_case, least, value, moved.slack, how, rims=moved.rims)
         yield found.because(together(found.reason, beyond_strength(beams)))
+
+
+def _held(moved: LargeDisplacement) -> bool:
+    assert moved.factor is not None
+    return min(moved.factor, math.inf if moved.rims is None else moved.rims.low) >= LEAST_FACTOR
 
 
 def _by_itself(link: str, factor: float) -> Reason:
@@ -75,7 +86,13 @@ def _by_itself(link: str, factor: float) -> Reason:
 
 
 def by_linear_theory(
-    load_case: str, least: float, factor: float, slack: Scatter, how: Reason, remedy: Reason | None = None
+    load_case: str,
+    least: float,
+    factor: float,
+    slack: Scatter,
+    how: Reason | str,
+    remedy: Reason | None = None,
+    rims: RimFactors | None = None,
 ) -> CheckOutcome:
     """Return the outcome of the linkage by its linear frame.
 
@@ -91,30 +108,52 @@ def by_linear_theory(
         On all loads, at which the linear frame becomes unstable.
     slack : Scatter
         Of load over stiffness.
-    how : Reason
+    how : Reason or str
         What happens at ``least``.
     remedy : Reason, optional
         What tells more; by default following its deformed shape.
+    rims : RimFactors, optional
+        Factors with pins that stand in their holes; none where none may run.
 
     Returns
     -------
     CheckOutcome
     """
-    band = Band(
-        value=least,
-        low=least / SNAP / slack.high,
-        high=factor / slack.low,
-        sources=(*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail=reason("linear_theory_too_high"))),
-    )
+    sources = (*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail=reason("linear_theory_too_high")))
+    low, holds = least, least / SNAP / slack.high >= 1.0
+    if rims is not None and rims.low < least:
+        low, sources, how = rims.low, (*sources, ON_RIMS), together(how, on_rims(rims))
+        least = min(least, rims.value)
+    band = Band(value=least, low=low / SNAP / slack.high, high=factor / slack.low, sources=sources)
     found = asked_of(LINKAGE).outcome(load_case, band, how)
     if found.verdict is Verdict.FAIL:
         return found.because(reason("so_linkage_gives_way", how=how))
     if found.verdict is Verdict.UNDECIDED:
         remedy = remedy or reason("follow_deformed_shape")
-        return found.because(reason("may_snap_through", how=how, factor=least / SNAP, remedy=remedy))
+        if holds:
+            return found.because(together(how, reason("state_fits")))
+        return found.because(reason("may_snap_through", how=how, factor=low / SNAP, remedy=remedy))
     if least < LEAST_FACTOR:
         return found.because(reason("displacements_grow", how=how, times=growth(least)))
     return found
+
+
+def on_rims(rims: RimFactors) -> Reason:
+    """Tell at which factors a linkage becomes unstable with pins that stand in their holes.
+
+    Parameters
+    ----------
+    rims : RimFactors
+
+    Returns
+    -------
+    Reason
+    """
+    if rims.value == 0.0:
+        return reason("on_rims_leans")
+    if rims.low == 0.0:
+        return reason("on_rims_may_lean", value=rims.value)
+    return reason("on_rims", value=rims.value, low=rims.low)
 
 
 def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] = ()) -> list[CheckOutcome]:
@@ -155,13 +194,14 @@ def _followed(load_case: str, moved: LargeDisplacement, beyond: Reason | None) -
     share = moved.held_share
     one = Asked(name=NAME, subject=LINKAGE, quantity=Quantity.LOAD_SHARE, limit=1.0)
     found = one.outcome(load_case, share, share.without)
-    linear = moved.buckling is not None and math.isfinite(moved.buckling)
+    linear, rims = moved.buckling is not None and math.isfinite(moved.buckling), moved.rims
     return found.because(
         together(
             moved.reason,
             found.reason if found.verdict is Verdict.UNDECIDED else None,
             None if moved.softness is None else reason("softer_by_solids", times=moved.softness.value),
             reason("linear_buckling_factor", factor=moved.buckling) if linear else None,
+            on_rims(rims) if rims is not None and rims.low < (moved.buckling or 0.0) else None,
             beyond,
         )
     )

@@ -24,6 +24,7 @@ from alula.fea.judging.linkage import by_linear_theory
 from alula.fea.judging.linkage_numbers import limit_load_outcome, linkage_numbers
 from alula.fea.motion.layered import forces_at
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
+from alula.fea.nonlinear.on_rims import rim_factors
 from alula.fea.nonlinear.stability import dead_point_factor, linkage_factor
 from alula.fea.whole.air_range import air_range
 from alula.fea.whole.rubbed_motion import friction_range
@@ -108,7 +109,9 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         )
         how, remedy = reason("unstable_at_pose", pose=where, factor=least), reason("check_that_pose")
         slack = stated_scatter(case, load_case).times(eyes)
-        outcome = by_linear_theory(load_case, least, factor, slack, how, remedy)
+        pins = forces_at(moved, load_case, i).pins if case.layered else None
+        rims = None if pins is None else rim_factors(pins)
+        outcome = by_linear_theory(load_case, least, factor, slack, how, remedy, rims)
         if outcome.verdict is not Verdict.PASS:
             yield outcome
 

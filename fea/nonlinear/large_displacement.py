@@ -17,13 +17,16 @@ the owl wing with springs of its own beside every pin this meets the limit load 
 third of the linear buckling factor: a frame without them stands straight up to its buckling load. Solids of links that
 are known take the place of what plain beams do not know (``alula.fea.check.known_stiffness``). The share of the load
 that is held is the same number, up to 1.
+
+The path is that of pins which are tight between layers. Where they may run, its low end is times the linear buckling
+factor with pins as rims leave them over that with tight ones (``alula.fea.nonlinear.on_rims``), which is assumed.
 """
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,12 +45,16 @@ from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
 from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
 from alula.fea.nonlinear.softened import followed
-from alula.fea.nonlinear.stability import SNAP, dead_point_factor, linkage_factor
+from alula.fea.nonlinear.stability import ON_RIMS, SNAP, dead_point_factor, linkage_factor
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load, PointLoad
 from alula.loads.statics.statics import Reactions
+
+if TYPE_CHECKING:
+    from alula.fea.nonlinear.on_rims import RimFactors
+    from alula.fea.pins.states import PinStates
 
 Real = NDArray[np.float64]
 
@@ -114,6 +121,8 @@ class LargeDisplacement:
         Linear, of that frame.
     grown : LargeDisplacement or None
         Of a small one what holds on the deformed shape, where that was asked for and found.
+    pins : PinStates or None
+        How pins stand between layers; None where none may run.
     causes : tuple of Alternatives
         What may become of it instead: where play brings the linkage nearest to a dead point and furthest off, at other
         coefficients of air, with other friction.
@@ -139,7 +148,17 @@ class LargeDisplacement:
     frame: LinkageFrame | None = None
     solution: FrameSolution | None = None
     grown: "LargeDisplacement | None" = None
+    pins: "PinStates | None" = None
     causes: "tuple[Alternatives[LargeDisplacement], ...]" = ()
+
+    @property
+    def rims(self) -> "RimFactors | None":
+        """Factors at which the linear frame becomes unstable with its pins in their holes; None where none may run."""
+        if self.pins is None or self.buckling is None:
+            return None
+        from alula.fea.nonlinear.on_rims import rim_factors
+
+        return rim_factors(self.pins).within(self.buckling)
 
     @property
     def share(self) -> float:
@@ -247,6 +266,8 @@ class LargeDisplacement:
             if faults < low:
                 detail = reason("buckling_below", factor=LEAST_LINEAR)
                 low, sources = faults, (*sources, Source(kind=SourceKind.IMPERFECTION, detail=detail))
+        if self.rims is not None and self.rims.low < self.buckling:
+            low, sources = self.rims.lowered(low, self.buckling), (*sources, ON_RIMS)
         by_itself = self.alone / LEAST_LINEAR / self.scatter.high
         if self.alone < value or by_itself < low:
             value, low = min(value, self.alone), min(low, by_itself)
@@ -330,7 +351,7 @@ def examine(
     if off:
         found = left("off", as_said)
         known = replace(found, buckling=factor, dead_point=near, points=points, frame=frame, solution=solution)
-        return replace(known, scatter=scatter, eyes=eyes, blind=blind)
+        return replace(known, scatter=scatter, eyes=eyes, blind=blind, pins=forces.pins)
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",
@@ -346,6 +367,7 @@ def examine(
         links={},
         frame=frame,
         solution=solution,
+        pins=forces.pins,
         reason=reason("moves_little", linear=linear, where=where, share=linear / size, span=size, limit=LARGE),
     )
     told = max(LEAST_FACTOR, SNAP * eyes.high) * scatter.high

@@ -19,6 +19,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.reason import reason
+from alula.fea.common.source import Source, SourceKind
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import FrameModel
@@ -29,6 +31,8 @@ from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
 Floats = NDArray[np.float64]
+
+ON_RIMS = Source(kind=SourceKind.COUPLES, detail=reason("tight_or_on_rims"))
 
 COARSE_SUBDIVISIONS, NEAR_BUCKLING = 2, 30.0
 """Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``."""
@@ -89,16 +93,28 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     linear = solve_frame(divided)
     path = EquilibriumPath(divided)
     K, G = (path.free(part) for part in stiffness_parts(path, linear.end_forces, linear.guide_forces))
-    largest = _largest(-(G + G.T) / 2.0, (K + K.T) / 2.0)
+    largest = largest_eigenvalue(-(G + G.T) / 2.0, (K + K.T) / 2.0)
     return 1.0 / largest if largest > 1e-12 else np.inf
 
 
-def _largest(A: Floats, B: Floats) -> float:
-    """Return the largest λ of A x = λ B x; of many unknowns by Lanczos, which needs one factorisation of B."""
+def largest_eigenvalue(A: Floats, B: Floats, many: int = _MANY) -> float:
+    """Return the largest λ of A x = λ B x; of many unknowns by Lanczos, which needs one factorisation of B.
+
+    Parameters
+    ----------
+    A, B : ndarray, shape (n, n)
+        Symmetric; B positive definite.
+    many : int, optional
+        Unknowns from which on Lanczos is taken.
+
+    Returns
+    -------
+    float
+    """
     from scipy.linalg import cho_factor, cho_solve, eigh
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-    if len(A) > _MANY:
+    if len(A) > many:
         factor = cho_factor(B)
         inverse = LinearOperator(A.shape, matvec=lambda x: cho_solve(factor, x), dtype=float)
         try:

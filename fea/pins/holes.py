@@ -11,13 +11,14 @@ structural modification by the force method).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FactorisedFrame
 from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.frame.model import FrameModel
 from alula.fea.frame.system import natural_deformations
 from alula.loads.case.case import Case
 from alula.loads.case.forks import eye_of
@@ -60,6 +61,9 @@ class RimFrame:
     solved : FactorisedFrame
         Of its model.
     holes : tuple of Hole
+    ends : ndarray, shape (p, 12, 4 h)
+        How the variables shift and turn both ends of each pin's beam on its nodes, global axes, in the order of
+        ``frame.pin_beams``.
     opened : ndarray, shape (u, 4 h)
         Scaled unknowns of the frame by the variables.
     couples : ndarray, shape (c, r)
@@ -77,6 +81,7 @@ class RimFrame:
     frame: LinkageFrame
     solved: FactorisedFrame
     holes: tuple[Hole, ...]
+    ends: Real
     opened: Real
     couples: Real
     tight: Real
@@ -115,17 +120,16 @@ class RimFrame:
         # A pin of several joints is tight in a link where one of them says so.
         eyes = [eye for eye, each in names.items() if all(one in rims for one in each)]
         rows = np.array([6 * i + row for i in frame.pin_beams.values() for row in range(6)], dtype=np.int64)
-        first = {name: 6 * k for k, name in enumerate(frame.pin_beams)}
-        opening, holes = np.zeros((len(rows), 4 * len(eyes))), []
+        number = {name: k for k, name in enumerate(frame.pin_beams)}
+        ends, holes = np.zeros((len(number), 12, 4 * len(eyes))), []
         for k, eye in enumerate(eyes):
             low, high = rims[names[eye][0]]
-            stands = _stands(low, high)
-            for name, end in ((x, end) for x, ends in frame.pin_eyes.items() for end in (0, 1) if ends[end] == eye):
-                i = frame.pin_beams[name]
-                deformed = natural_deformations(solved.system.lengths[i]) @ solved.system.matrices[i]
-                own = deformed[:, 6 * end : 6 * end + 6] @ stands
-                opening[first[name] : first[name] + 6, 4 * k : 4 * k + 4] -= own
+            for name, end in ((x, end) for x, each in frame.pin_eyes.items() for end in (0, 1) if each[end] == eye):
+                ends[number[name], 6 * end : 6 * end + 6, 4 * k : 4 * k + 4] = _stands(low, high)
             holes.append(Hole(link=eye[0], joints=tuple(name for name, _ in names[eye]), low=low, high=high))
+        pins = list(frame.pin_beams.values())
+        deformed = natural_deformations(solved.system.lengths[pins]) @ solved.system.matrices[pins]
+        opening = -(deformed @ ends).reshape(len(rows), -1)
         opened = solved.opened(rows) @ opening
         tight, by_rims = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
         K = -opening.T @ by_rims
@@ -133,6 +137,7 @@ class RimFrame:
             frame=frame,
             solved=solved,
             holes=tuple(holes),
+            ends=ends,
             opened=opened,
             couples=_couples(frame),
             tight=tight,
@@ -140,6 +145,25 @@ class RimFrame:
             K=(K + K.T) / 2.0,
             g=opening.T @ tight,
         )
+
+    def divided(self, model: FrameModel, parents: NDArray[np.int64]) -> "RimFrame":
+        """Return the same of the frame with divided beams.
+
+        Parameters
+        ----------
+        model : FrameModel
+            With pins that are not divided.
+        parents : ndarray of int, shape (m,)
+            Element of the frame that each one is part of.
+
+        Returns
+        -------
+        RimFrame
+            Its variables are the same; its frame tells nothing of the links' beams.
+        """
+        pins = {name: int(np.flatnonzero(parents == i)[0]) for name, i in self.frame.pin_beams.items()}
+        rims = {(name, hole.link): (hole.low, hole.high) for hole in self.holes for name in hole.joints}
+        return RimFrame.of(replace(self.frame, model=model, pin_beams=pins, beams={}), rims)
 
 
 def _couples(frame: LinkageFrame) -> Real:

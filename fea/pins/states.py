@@ -17,6 +17,7 @@ from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.pins.clearances import Radii, clearances_of, pin_size, radii_of
 from alula.fea.pins.holes import RimFrame, rims_of
 from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
+from alula.fea.pins.tangent import RimTangent, tangent_of
 from alula.geometry.joints.fits import RUNNING, fit
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
@@ -125,10 +126,40 @@ class PinStates:
         return np.asarray(self.rims.couples @ self.rims.by_rims)
 
     @cached_property
+    def _told(self) -> tuple[Real, Real]:
+        """Shares, and where pins stand by them, where some couple is largest or least."""
+        shares = self.extremes()
+        found = self.solved(shares).v
+        telling = _telling(self.couples(found))
+        return shares[telling], found[telling]
+
+    @property
     def states(self) -> Real:
         """(n, 4 h) where pins stand where some couple is largest or least."""
-        found = self.solved(self.extremes()).v
-        return np.asarray(found[_telling(self.couples(found))])
+        return self._told[1]
+
+    def tangent(self, shares: Real, v: Real) -> RimTangent:
+        """Return how pins may move on from where they stand.
+
+        Parameters
+        ----------
+        shares : ndarray, shape (k,)
+            Of what is open.
+        v : ndarray, shape (4 h,)
+            Where pins stand by them.
+
+        Returns
+        -------
+        RimTangent
+        """
+        lengths = np.array([hole.high - hole.low for hole in self.rims.holes])
+        return tangent_of(self.radii.of(shares[None])[0][0], v, self.rims.g - self.rims.K @ v, lengths)
+
+    @property
+    def tangents(self) -> tuple[RimTangent, ...]:
+        """Those of the values first, then of ``states``."""
+        told = zip(*self._told, strict=True)
+        return (self.tangent(self.radii.value, self.value), *(self.tangent(shares, v) for shares, v in told))
 
     @cached_property
     def ends(self) -> tuple[Reactions, ...]:
@@ -204,6 +235,24 @@ def _telling(couples: Real) -> NDArray[np.int64]:
 
 def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
     """Return how the pins of a frame may stand in their holes.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        With pins that are tight in both links.
+
+    Returns
+    -------
+    PinStates or None
+        None where no pin between layers may run, and where joint forces do not depend on how pins stand.
+    """
+    found = standing_pins(case, frame)
+    return None if found is None or found.rims.borne_alone else found
+
+
+def standing_pins(case: Case, frame: LinkageFrame) -> PinStates | None:
+    """Return how the pins of a frame may stand in their holes, also where that changes no force.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from alula.fea.vibration.harmonics import HIGHEST, Meeting, meetings
 from alula.fea.vibration.link_modes import LinkModes, link_modes
-from alula.fea.vibration.linkage_modes import LinkageModes
+from alula.fea.vibration.linkage_modes import LinkageModes, RimModes
 from alula.fea.vibration.modes import Mode
 from alula.fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies, lowest_pose
 from alula.fea.vibration.running_holes import running_holes
@@ -132,8 +132,23 @@ def _of_linkage(case: Case, history: FrequencyHistory) -> tuple[Band, Reason]:
         lowest=lowest_frequency(case, history),
         harmonic=nearest_or_met(case, history),
         hinged=_hinged(case, None),
+        rims=_on_rims(load_case, history.lowest.rims),
     )
     return ratio, why
+
+
+def _on_rims(load_case: str, rims: RimModes | None) -> Reason | None:
+    """What the load closes of the holes in which pins may run."""
+    if rims is None:
+        return None
+    return reason(
+        "frequency_on_rims",
+        load_case=load_case,
+        touching=rims.touching,
+        rims=rims.rims,
+        force=rims.force,
+        frequency=rims.frequency if rims.frequency is not None and rims.frequency.value > 0.0 else None,
+    )
 
 
 def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkModes]]:

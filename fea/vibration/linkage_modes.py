@@ -5,7 +5,8 @@ stiffness K_g of the forces that the load case's weight, inertia and stated load
 weights and springs hold a linkage), and the mass M of parts, pins and what links carry (``mass_matrix``). The pose is
 frozen: Coriolis and gyroscopic terms, and the change of inertia forces with the motion, are left out, which are small
 while links turn slowly beside the frequency. So are friction, play, and the air that moves along. Pins between layers
-are tight in both links; the low ends of bands have hinges in the holes in which they may run (``running_holes``).
+are tight in both links; the low ends of bands have hinges in the holes in which they may run (``running_holes``). What
+the load closes of them is told beside it (``on_rims``).
 
 The drive holds its link rigidly; with a stiffness of its own it is a spring about its joint or along its guide, about
 the state in which it held the linkage. A stop that bears is pressed on and holds rigidly. Where the pose balances by
@@ -19,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.build import ALONG_PINS, build_frame
 from alula.fea.frame.linear import FrameSolution, solve_frame
@@ -26,7 +28,9 @@ from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import FrameModel, Guide
 from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.on_rims import RimPath
 from alula.fea.nonlinear.stability import beam_answers, stiffness_parts
+from alula.fea.pins.states import standing_pins
 from alula.fea.vibration.flexibility_doubt import FlexibilityDoubt
 from alula.fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from alula.fea.vibration.modes import Mode, NaturalModes, lowest
@@ -65,6 +69,8 @@ class LinkageModes:
         The lowest frequency first.
     notes : tuple of Reason or str
         What the reader must know.
+    rims : RimModes or None
+        What the pins' holes make of the lowest frequency; None where no pin may run, and where that was not asked.
     """
 
     pose: Pose
@@ -73,6 +79,27 @@ class LinkageModes:
     model: FrameModel
     modes: tuple[Mode, ...]
     notes: tuple[Reason | str, ...] = ()
+    rims: "RimModes | None" = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RimModes:
+    """The lowest frequency of a linkage whose pins stand in their holes as its loads press them.
+
+    Attributes
+    ----------
+    frequency : Band or None
+        For vibrations so small that rims go on touching [Hz]; None where pins lean.
+    touching, rims : int
+        How many rims touch, of all at which pins may run.
+    force : float
+        The largest at a rim [N].
+    """
+
+    frequency: Band | None
+    touching: int
+    rims: int
+    force: float
 
 
 def linkage_modes(
@@ -110,40 +137,121 @@ def linkage_modes(
     CannotRunError
         Where the held frame moves without strain, or what moves has no mass.
     """
-    divided, parents = divide(frame, subdivisions)
-    held = solve_frame(divided)
-    model, guide_forces = divided, held.guide_forces
-    stiffness = _drive_stiffness(case, frame)
-    if stiffness is not None:
-        model, guide_forces = _released(case, frame, divided, held)
-    carried = case.load_cases[load_case].carried
-
-    tight = EquilibriumPath(model)
-    beams = beam_answers(tight, held.end_forces)
-    mass = mass_matrix(case, frame, model, parents, masses, carried=carried)
-    doubt = FlexibilityDoubt(case, frame, model, parents)
+    own = _Held.of(case, load_case, frame, masses, subdivisions)
+    tight = EquilibriumPath(own.model)
+    beams = beam_answers(tight, own.held.end_forces)
 
     def solved(path: EquilibriumPath, mass: MassMatrix) -> tuple[tuple[Mode, ...], float]:
-        K, G = stiffness_parts(path, held.end_forces, guide_forces, beams)
-        tangent = K + G
-        if stiffness:
-            way = _drive_way(frame, path)
-            tangent[: path.chain.count, : path.chain.count] += stiffness * np.outer(way, way)
-        found = frame_modes(path, tangent, mass, count + BASIS)
+        K, G = stiffness_parts(path, own.held.end_forces, own.guide_forces, beams)
+        found = frame_modes(path, K + G + own.drive(path), mass, count + BASIS)
         unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
         rate = float(np.sqrt(-found.values[0])) if unstable.any() else 0.0
-        return _modes(path, mass, found, count, doubt), rate
+        return _modes(path, mass, found, count, own.doubt), rate
 
-    (modes, rate), holes = solved(tight, mass), running_holes(case)
+    (modes, rate), holes = solved(tight, own.mass), running_holes(case)
     if holes:
         hinged: tuple[Mode, ...] = ()
-        loose = with_hinges(frame, model, parents, holes)
+        loose = with_hinges(frame, own.model, own.parents, holes)
         with suppress(CannotRunError):  # a pin alone may move freely, as between a hinge and a slot
             # Beams and bodies stay where they are, so that they answer and weigh the same.
-            hinged, _ = solved(EquilibriumPath(loose, tight.elements), replace(mass, model=loose))
+            hinged, _ = solved(EquilibriumPath(loose, tight.elements), replace(own.mass, model=loose))
         modes = with_low_ends(modes, hinged)
     notes = _notes(frame, rate)
-    return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=model, modes=modes, notes=notes)
+    return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=own.model, modes=modes, notes=notes)
+
+
+def on_rims(case: Case, found: LinkageModes, masses: Mapping[str, PartMass]) -> LinkageModes:
+    """Return the modes of a linkage with the frequency that it has with pins that stand in their holes.
+
+    Parameters
+    ----------
+    case : Case
+        As for ``linkage_modes``.
+    found : LinkageModes
+        Of the case.
+    masses : mapping of str to PartMass
+        Of the parts, by link.
+
+    Returns
+    -------
+    LinkageModes
+        The same where no pin may run. Where the rims hold the linkage less than hinges would, low ends are lower.
+    """
+    pins = standing_pins(case, found.frame)
+    if pins is None:
+        return found
+    own = _Held.of(case, found.load_case, found.frame, masses, SUBDIVISIONS)
+    tangent = pins.tangent(pins.radii.value, pins.value)
+    path = EquilibriumPath(own.model)
+    state = RimPath(pins.rims.divided(own.divided, own.parents), path)
+    forces = state.forces(tangent)
+    guides = forces.guide_forces if own.stiffness is None else _released(case, found.frame, own.divided, forces)[1]
+    known = state.extended(tangent, replace(forces, guide_forces=guides), own.drive(path))
+    modes, count = tuple[Mode, ...](), len(found.modes)
+    with suppress(CannotRunError):  # where pins lean that have no mass of their own
+        Z, M = known.allowed, own.mass.bordered(path)
+        whole = known.plain + known.pressed
+        swings = lowest(whole, np.pad(Z.T @ M @ Z, (0, len(whole) - Z.shape[1])), count + BASIS)
+        swings = replace(swings, vectors=Z @ swings.vectors[: Z.shape[1]])
+        modes = _modes(path, own.mass, swings, count, own.doubt)
+    rims = RimModes(
+        frequency=modes[0].frequency if modes else None,
+        touching=tangent.touching,
+        rims=2 * len(pins.rims.holes),
+        force=tangent.force,
+    )
+    return replace(found, modes=with_low_ends(found.modes, modes), rims=rims)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Held:
+    """A linkage in a pose with divided beams, held by its drive, under its loads.
+
+    ``divided`` is held rigidly and ``model`` by the drive's stiffness.
+    """
+
+    case: Case
+    frame: LinkageFrame
+    divided: FrameModel
+    parents: NDArray[np.int64]
+    held: FrameSolution
+    model: FrameModel
+    guide_forces: Floats
+    stiffness: float | None
+    mass: MassMatrix
+    doubt: FlexibilityDoubt
+
+    @classmethod
+    def of(
+        cls, case: Case, load_case: str, frame: LinkageFrame, masses: Mapping[str, PartMass], subdivisions: int
+    ) -> "_Held":
+        divided, parents = divide(frame, subdivisions)
+        held = solve_frame(divided)
+        model, guide_forces = divided, held.guide_forces
+        stiffness = _drive_stiffness(case, frame)
+        if stiffness is not None:
+            model, guide_forces = _released(case, frame, divided, held)
+        carried = case.load_cases[load_case].carried
+        return cls(
+            case=case,
+            frame=frame,
+            divided=divided,
+            parents=parents,
+            held=held,
+            model=model,
+            guide_forces=guide_forces,
+            stiffness=stiffness,
+            mass=mass_matrix(case, frame, model, parents, masses, carried=carried),
+            doubt=FlexibilityDoubt(case, frame, model, parents),
+        )
+
+    def drive(self, path: EquilibriumPath) -> Floats:
+        """Stiffness of the drive (k + g, k + g)."""
+        found = np.zeros((path.size, path.size))
+        if self.stiffness:
+            way = _drive_way(self.frame, path)
+            found[: path.chain.count, : path.chain.count] = self.stiffness * np.outer(way, way)
+        return found
 
 
 def frame_modes(path: EquilibriumPath, tangent: Floats, mass: MassMatrix, count: int) -> NaturalModes:

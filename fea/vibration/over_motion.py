@@ -16,7 +16,7 @@ from alula.fea.common.reason import reason
 from alula.fea.common.threads import bounded
 from alula.fea.frame.build import build_frame
 from alula.fea.vibration.link_modes import LinkModes, link_modes
-from alula.fea.vibration.linkage_modes import LinkageModes, linkage_modes
+from alula.fea.vibration.linkage_modes import LinkageModes, linkage_modes, on_rims
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.ties import TIE, first_least
 from alula.geometry.linkage.pose import Pose
@@ -160,7 +160,7 @@ def _standing(case: Case, masses: Mapping[str, PartMass], count: int) -> dict[st
         standing = stand(case, name, masses)
         own, pose = standing.case, standing.pose
         loads = acting_loads(own, load_case, placed(pose, load_case.speed), masses)
-        modes = _at(own, name, pose, loads, masses, count)
+        modes = on_rims(own, _at(own, name, pose, loads, masses, count), masses)
         at = pose.held if pose.coordinate is not None else 0.0
         found[name] = _history(abs(load_case.speed) / (2.0 * math.pi), {at: modes}, (), count)
     return found
@@ -198,12 +198,15 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
     if modes(best) is None:
         raise CannotRunError(f"load case {name}: no pose of the motion has an equilibrium that a frame can hold")
     _least_between(least, max(best - FINE, 0), min(best + FINE, size - 1))
+    found = {i: one for i, one in sorted(known.items()) if one is not None}
+    told = list(found)[lowest_pose(*np.transpose([_ends(one) for one in found.values()]))]
+    known[told] = on_rims(case, found[told], masses)
     spec, load_case = case.motion, case.load_cases[name]
     assert spec is not None
     speed = load_case.speed or spec.speed
-    found = {float(motion.angles[i]): one for i, one in sorted(known.items()) if one is not None}
+    at = {float(motion.angles[i]): one for i, one in sorted(known.items()) if one is not None}
     left_out = tuple(float(motion.angles[i]) for i, one in sorted(known.items()) if one is None)
-    return _history(abs(speed) / (2.0 * math.pi), found, left_out, count)
+    return _history(abs(speed) / (2.0 * math.pi), at, left_out, count)
 
 
 def _ends(modes: LinkageModes) -> tuple[float, float]:

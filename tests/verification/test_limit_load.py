@@ -101,6 +101,13 @@ def wing(diameter):
     return edited("owl-wing-static", [f'parts.tube.outer_diameter="{diameter} mm"'])
 
 
+def fitted_wing(diameter):
+    """The wing, whose pins are said to run; else they may stand so loosely that it leans."""
+    case = wing(diameter)
+    joints = {name: joint.model_copy(update={"fit": "running"}) for name, joint in case.joints.items()}
+    return case.model_copy(update={"joints": joints})
+
+
 EYED = BAR | {"eye_diameter": "14 mm", "eye_thickness": "12 mm", "fillet_radius": "1 mm"}
 FLAT = {"shape": "plate", "material": BAR["material"], "thickness": "6 mm", "eye_diameter": "8 mm"}
 SHARES = {"most": 1.0 / 1.2, "half": 0.5}
@@ -200,7 +207,8 @@ def test_a_displacement_whose_band_has_no_end_says_why(case, why):
         (partial(linear, 5.0), "fail"),
         (partial(wing, 7.0), "fail"),
         (partial(wing, 7.5), "undecided"),
-        (partial(wing, 8.0), "pass"),
+        (partial(wing, 8.0), "undecided"),
+        (partial(fitted_wing, 8.0), "pass"),
     ],
 )
 def test_a_load_is_held_for_sure_where_the_limit_load_is_surely_above_it(case, verdict):

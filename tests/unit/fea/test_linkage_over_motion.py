@@ -54,7 +54,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
     for name, stub in stubs.items():
         monkeypatch.setattr(linkage_history, name, stub)
     moved = SimpleNamespace(
-        case=SimpleNamespace(large_displacement="auto"),
+        case=SimpleNamespace(large_displacement="auto", layered=False),
         motion=SimpleNamespace(coordinate=Coordinate("crank"), angles=np.radians([10.0, 20.0])),
         loads={"push": ()},
         drive=None,

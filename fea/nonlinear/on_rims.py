@@ -1,0 +1,313 @@
+"""Small motions and linear stability of a frame whose pins stand in their holes, as the rims leave them free.
+
+Where a pin's ends move by S v against the nodes that they stand on, its beam stores ½ (u + S v)ᵀ k (u + S v). The rims
+leave the motions v = N w, which the forces at them resist by T (``alula.fea.pins.tangent``). With its stiffness k and
+the geometric stiffness k_g of its forces, and with K and K_g of the whole frame, the unknowns u and w have
+
+    | K        k S N      |     | K_g              (k_g + W) S N    |
+    | Nᵀ Sᵀ k  Nᵀ Sᵀ k S N | + λ | Nᵀ Sᵀ (k_g + W)ᵀ  Nᵀ Sᵀ k_g S N + T |
+
+at the factor λ on all loads, since T grows with the load as the geometric stiffness does. W is there since rims turn
+with their link: a turn θ of a node takes along the shift s and the tilt ρ of the pin's end against it, so that the
+end's force f and moment M work f · (θ × s) + M · (θ × ρ)/2 more (turns that follow one another: Argyris, Computer
+Methods in Applied Mechanics and Engineering 32, 1982). So a tie that rolls about the line through the rims that it
+hangs on has exactly no stiffness.
+
+Where motions are left that nothing but T holds, the frame may be unstable under any load: then it leans until further
+rims touch. Yet with every pin in its discs it has a stable state at every factor below that with tight pins, since the
+discs are bounded and the frame is stable for each place in them. So clearances that let pins tilt by no more than
+``SLIGHT`` cannot lose the linkage: the low end knows only wider ones, beside the value, of which a lean within
+``SLIGHT`` counts as stopped.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.frame.linear import FrameSolution
+from alula.fea.nonlinear.corotational import SUBDIVISIONS, subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.fea.nonlinear.stability import (
+    COARSE_SUBDIVISIONS,
+    NEAR_BUCKLING,
+    beam_answers,
+    largest_eigenvalue,
+    stiffness_parts,
+)
+from alula.fea.pins.holes import RimFrame
+from alula.fea.pins.states import PinStates
+from alula.fea.pins.tangent import RimTangent
+
+Floats = NDArray[np.float64]
+
+STARTS = (1.0, 0.1, 0.01, 1e-3)
+"""Factors on the load from which on the least one is sought; a frame that is unstable at all of them leans at once."""
+FLOATING = 1e-10
+"""Stiffness, over the largest, below which a pin floats between its holes."""
+FREE = 1e-10
+"""Stiffness, over the largest of pins, below which nothing but forces at rims holds a motion."""
+IDLE = 1e-7
+"""Work of forces in a motion that strains nothing, over that of all of its parts, below which it is rounding, such as
+that of a tie that rolls about the line through the rims that it hangs on."""
+SLIGHT = 0.02
+"""Tilt of pins in their holes up to which a linkage that leans keeps its shape, but for what bands of displacement say:
+it changes lengths by half its square."""
+MANY = 120
+"""Unknowns from which on one eigenvalue is sought."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Extended:
+    """The stiffness of a frame in the k scaled motions that guides allow, and in c of its pins against their links.
+
+    Attributes
+    ----------
+    allowed : ndarray, shape (u, k)
+        These motions in the unknowns of the path.
+    plain, pressed : ndarray, shape (k + c, k + c)
+        Of its material, and by its forces; symmetric.
+    free : ndarray, shape (k + c, f)
+        Motions that strain nothing.
+    """
+
+    allowed: Floats
+    plain: Floats
+    pressed: Floats
+    free: Floats
+
+    def factor(self, *, stopped: bool = False) -> float:
+        """Return the least factor on the load at which the frame becomes unstable.
+
+        Parameters
+        ----------
+        stopped : bool, optional
+            Whether the motions in which it leans are closed.
+
+        Returns
+        -------
+        float
+            0 where it is unstable at all of ``STARTS``. Motions that strain nothing and that no load drives do not
+            count.
+        """
+        size = np.diag(self.plain)
+        unit = 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
+        plain, pressed = self.plain * np.outer(unit, unit), self.pressed * np.outer(unit, unit)
+        Z, _ = np.linalg.qr(self.free / unit[:, None])
+        work, own = np.linalg.eigh(Z.T @ pressed @ Z)
+        Z = Z @ own
+        idle = np.abs(work) <= IDLE * (np.abs(Z) * (np.abs(pressed) @ np.abs(Z))).sum(axis=0)
+        leans = ~idle & (work < 0.0)
+        if leans.any() and not stopped:
+            return 0.0
+        closed = Z[:, idle | leans]
+        left = np.eye(len(plain)) - closed @ closed.T
+        plain, pressed = plain + closed @ closed.T, left @ pressed @ left
+        for start in STARTS:
+            whole = plain + start * pressed
+            try:
+                np.linalg.cholesky(whole)
+            except np.linalg.LinAlgError:
+                continue
+            largest = largest_eigenvalue(-pressed, whole, many=MANY)
+            return start + 1.0 / largest if largest > 1e-12 else np.inf
+        return 0.0
+
+
+class RimPath:
+    """The small motions of a frame whose pins are as rims leave them.
+
+    Parameters
+    ----------
+    rims : RimFrame
+        Of the path's model.
+    path : EquilibriumPath
+        At its start.
+    """
+
+    def __init__(self, rims: RimFrame, path: EquilibriumPath) -> None:
+        self.rims, self.path = rims, path
+        self._pins = list(rims.frame.pin_beams.values())
+        self._moved = path.places.matrices(path.chain.axes(path.state.rotations))[self._pins]
+
+    def forces(self, tangent: RimTangent) -> FrameSolution:
+        """Return the forces in the frame.
+
+        Parameters
+        ----------
+        tangent : RimTangent
+            Of the state.
+
+        Returns
+        -------
+        FrameSolution
+        """
+        return self.rims.solved.solved(self.rims.opened @ tangent.v)
+
+    def extended(
+        self, tangent: RimTangent, state: FrameSolution | None = None, further: Floats | None = None
+    ) -> Extended:
+        """Return stiffness and geometric stiffness in a state, with the motions that rims leave.
+
+        Parameters
+        ----------
+        tangent : RimTangent
+            Of the state.
+        state : FrameSolution, optional
+            Its forces, where they are known.
+        further : ndarray, shape (k + g, k + g), optional
+            Stiffness beside that of the path's model.
+
+        Returns
+        -------
+        Extended
+        """
+        path, pins, ways = self.path, self._pins, tangent.ways
+        state = state or self.forces(tangent)
+        plain, pressed = beam_answers(path, state.end_forces)
+        K, G = stiffness_parts(path, state.end_forces, state.guide_forces, (plain, pressed))
+        K = K if further is None else K + further
+        motions = path.allowed(K)
+        allowed = motions[: path.chain.count]
+        k, k_g = plain.tangent[pins], (pressed.tangent[pins] + pressed.tangent[pins].swapaxes(1, 2)) / 2.0
+        work = np.zeros_like(k)
+        for end in (0, 1):
+            local = state.end_forces[pins, end].reshape(-1, 2, 3, 1)
+            forces, moments = (path.elements.axes[pins, None] @ local)[..., 0].swapaxes(0, 1)
+            turn, shift = slice(6 * end + 3, 6 * end + 6), slice(6 * end, 6 * end + 3)
+            work[:, turn, shift] = _turning(forces)
+            work[:, turn, turn] = _turning(moments) / 2.0
+        own = ways.T @ self._own(k) @ ways
+        own_pressed = ways.T @ self._own(k_g) @ ways + np.diag(tangent.stiffness)
+        felt = _felt(own, own_pressed)
+        K, coupled, own = path.free(K), allowed.T @ self._coupled(k) @ ways @ felt, felt.T @ own @ felt
+        by_pins = -np.linalg.solve(K, coupled)
+        alone, freed = np.linalg.eigh(own + coupled.T @ by_pins)
+        freed = freed[:, alone < FREE * np.abs(own).max(initial=0.0)]
+        pressing = allowed.T @ self._coupled(k_g + work) @ ways @ felt
+        return Extended(
+            allowed=motions,
+            plain=_bordered(K, coupled, own),
+            pressed=_bordered(path.free(G), pressing, felt.T @ own_pressed @ felt),
+            free=np.vstack([by_pins @ freed, freed]),
+        )
+
+    def _own(self, stiffness: Floats) -> Floats:
+        """(4 h, 4 h) of pins' beams by the variables of the rims."""
+        return np.asarray(np.einsum("pic,pij,pjd->cd", self.rims.ends, stiffness, self.rims.ends, optimize=True))
+
+    def _coupled(self, stiffness: Floats) -> Floats:
+        """(k, 4 h) forces on the frame's unknowns by the variables of the rims."""
+        found = np.zeros((self.path.size + 1, self.rims.ends.shape[2]))
+        np.add.at(found, self.path.places.numbers[self._pins], self._moved @ stiffness @ self.rims.ends)
+        return found[: self.path.chain.count]
+
+
+def _turning(vectors: Floats) -> Floats:
+    """X (n, 3, 3) of vectors f, by which f · (θ × r) = θᵀ X r."""
+    x, y, z = vectors.T
+    o = np.zeros_like(x)
+    return np.array([[o, z, -y], [-z, o, x], [y, -x, o]]).transpose(2, 0, 1)
+
+
+def _felt(own: Floats, pressed: Floats) -> Floats:
+    """Directions (k, c) of rims' motions that bend a pin, or in which forces at rims do work."""
+    sizes = (np.abs(own).max(initial=0.0) or 1.0, np.abs(pressed).max(initial=0.0) or 1.0)
+    values, vectors = np.linalg.eigh(own @ own / sizes[0] ** 2 + pressed @ pressed / sizes[1] ** 2)
+    return np.asarray(vectors[:, values > FLOATING**2])
+
+
+def _bordered(whole: Floats, coupled: Floats, own: Floats) -> Floats:
+    return np.block([[(whole + whole.T) / 2.0, coupled], [coupled.T, own]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class RimFactors:
+    """Factors on all loads at which a linkage becomes unstable with its pins in their holes.
+
+    Attributes
+    ----------
+    value : float
+        Of the stated clearances; 0 where it leans at once by more than ``SLIGHT``.
+    low : float
+        The least, of all that clearances may be, but for those that let pins tilt by no more than that.
+    """
+
+    value: float
+    low: float
+
+    def within(self, tight: float) -> "RimFactors":
+        """Return the same, but no larger than with tight pins.
+
+        Parameters
+        ----------
+        tight : float
+
+        Returns
+        -------
+        RimFactors
+        """
+        return replace(self, value=min(self.value, tight), low=min(self.low, tight))
+
+    def lowered(self, factor: float, tight: float) -> float:
+        """Return a factor that holds with tight pins, lowered by what linear theory makes of pins in their holes.
+
+        Parameters
+        ----------
+        factor : float
+        tight : float
+            That of linear theory with tight pins.
+
+        Returns
+        -------
+        float
+        """
+        return factor * self.low / tight if math.isfinite(tight) else min(factor, self.low)
+
+
+def divided(pins: PinStates, subdivisions: int) -> RimPath:
+    """Return the small motions of a frame with divided beams.
+
+    Parameters
+    ----------
+    pins : PinStates
+    subdivisions : int
+        Elements per beam; pins are one each.
+
+    Returns
+    -------
+    RimPath
+    """
+    frame = pins.rims.frame
+    stiff = set(frame.pin_beams.values())
+    parts = [1 if i in stiff else subdivisions for i in range(len(frame.model.elements))]
+    model = subdivide(frame.model, parts)
+    return RimPath(pins.rims.divided(model, np.repeat(np.arange(len(parts)), parts)), EquilibriumPath(model))
+
+
+@lru_cache(maxsize=32)
+def rim_factors(pins: PinStates) -> RimFactors:
+    """Return the factors at which a linkage becomes unstable with its pins in their holes.
+
+    Parameters
+    ----------
+    pins : PinStates
+
+    Returns
+    -------
+    RimFactors
+    """
+    first, *others = pins.tangents
+    stopped, wide = first.tilt <= SLIGHT, [first, *(one for one in others if one.tilt > SLIGHT)]
+    coarse = divided(pins, COARSE_SUBDIVISIONS)
+    found = [coarse.extended(one).factor(stopped=stopped and one is first) for one in wide]
+    least = int(np.argmin(found))
+    ends = found[0], found[least]
+    if 0.0 < ends[1] < NEAR_BUCKLING:
+        fine = divided(pins, SUBDIVISIONS)
+        ends = fine.extended(first).factor(stopped=stopped), found[least]
+        if least > 0:
+            ends = ends[0], fine.extended(wide[least]).factor()
+    return RimFactors(value=ends[0], low=min(ends))
