@@ -245,24 +245,6 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
     Returns
     -------
     PinStates or None
-        None where no pin between layers may run, and where joint forces do not depend on how pins stand.
-    """
-    found = standing_pins(case, frame)
-    return None if found is None or found.rims.borne_alone else found
-
-
-def standing_pins(case: Case, frame: LinkageFrame) -> PinStates | None:
-    """Return how the pins of a frame may stand in their holes, also where that changes no force.
-
-    Parameters
-    ----------
-    case : Case
-    frame : LinkageFrame
-        With pins that are tight in both links.
-
-    Returns
-    -------
-    PinStates or None
         None where no pin between layers may run.
     """
     open_holes = clearances_of(case, frame)

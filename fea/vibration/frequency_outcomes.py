@@ -70,7 +70,7 @@ def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
     for one in asked(case, FrequencyCheck):
         if one.subject == LINKAGE:
             for load_case, history in found.histories.items():
-                yield one.outcome(load_case, *_of_linkage(case, history))
+                yield one.outcome(load_case, *_of_linkage(case, load_case, history))
         else:
             for load_case, modes in _by_itself(found, one.subject.name):
                 yield one.outcome(load_case, *_of_link(case, modes, found.histories[load_case].driving))
@@ -125,7 +125,7 @@ def least_at(history: FrequencyHistory) -> float:
     return float(history.at[lowest_pose(history.low[:, 0], history.frequencies[:, 0])])
 
 
-def _of_linkage(case: Case, history: FrequencyHistory) -> tuple[Band, Reason]:
+def _of_linkage(case: Case, load_case: str, history: FrequencyHistory) -> tuple[Band, Reason]:
     ratio = least_frequency(history).times(1.0 / history.driving)
     why = reason(
         "frequency_of_linkage",

@@ -30,7 +30,7 @@ from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.on_rims import RimPath
 from alula.fea.nonlinear.stability import beam_answers, stiffness_parts
-from alula.fea.pins.states import standing_pins
+from alula.fea.pins.states import pin_states
 from alula.fea.vibration.flexibility_doubt import FlexibilityDoubt
 from alula.fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from alula.fea.vibration.modes import Mode, NaturalModes, lowest
@@ -177,7 +177,7 @@ def on_rims(case: Case, found: LinkageModes, masses: Mapping[str, PartMass]) -> 
     LinkageModes
         The same where no pin may run. Where the rims hold the linkage less than hinges would, low ends are lower.
     """
-    pins = standing_pins(case, found.frame)
+    pins = pin_states(case, found.frame)
     if pins is None:
         return found
     own = _Held.of(case, found.load_case, found.frame, masses, SUBDIVISIONS)
