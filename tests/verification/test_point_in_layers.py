@@ -26,7 +26,7 @@ schema_version = 1
 title = "An arm on one pin beside its ground"
 layer_spacing = "{HEIGHT} mm"
 links.base = {{ ground = true, layer = 0, points = {{ J = ["0 mm", "0 mm"], O = ["0 mm", "50 mm"] }} }}
-joints.J = {{ links = ["base", "arm"], pin_diameter = "4 mm" }}
+joints.J = {{ links = ["base", "arm"], pin_diameter = "4 mm", tight_in = ["base", "arm"] }}
 pose = {{ coordinate = "arm", angle = "0 deg" }}
 drive = {{ link = "arm", joint = "J" }}
 solid = {{ mesh_size = 2.0 }}
