@@ -9,11 +9,11 @@ import pytest
 
 from benchmarks import draws
 
-MOST, OFTEN = 0.2, 0.02
+MOST, OFTEN = 0.05, 0.02
 """By how much the worst draw lies outside, over the band's larger end, and how many draws."""
 
 
-@pytest.mark.parametrize("seed", [1, 4, 5])
+@pytest.mark.parametrize("seed", [1, 5, 11])
 def test_no_state_that_is_drawn_lies_outside_the_bands(seed):
     count = 200
     found = draws.outside(draws.linkage(seed), count, seed)
@@ -25,7 +25,7 @@ def test_a_band_that_is_too_narrow_is_told(monkeypatch):
     """Where the search ends at once, draws leave the bands."""
     monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", lambda pins: pins.radii.value[None])
     found = draws.outside(draws.linkage(1), 100)
-    assert max(one.excess for one in found) > MOST
+    assert max(one.excess for one in found) > 4.0 * MOST
 
 
 def test_draws_lie_in_what_is_stated():

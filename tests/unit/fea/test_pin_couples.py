@@ -1,4 +1,4 @@
-"""The couples of pins that the search of their ends follows are those along and across links, whichever way pins point."""
+"""Couples whose ends are sought are those along and across links, whichever way pins point."""
 
 import numpy as np
 import pytest
