@@ -122,7 +122,7 @@ class Radii:
 
     Attributes
     ----------
-    holes : tuple of int
+    numbers : tuple of tuple of int
         Of each hole of each clearance, its number among the h holes.
     count : int
         h

@@ -67,7 +67,8 @@ class RimFrame:
     opened : ndarray, shape (u, 4 h)
         Scaled unknowns of the frame by the variables.
     couples : ndarray, shape (c, r)
-        The couples of all pins at both ends, along and across their links, from the natural forces of pins' beams.
+        The couples of all pins at both ends, along and across their links, and thrusts, from natural forces of pins'
+        beams.
     tight : ndarray, shape (r,)
         These natural forces with tight pins.
     by_rims : ndarray, shape (r, 4 h)
@@ -167,14 +168,17 @@ class RimFrame:
 
 
 def _couples(frame: LinkageFrame) -> Real:
-    """Couples (4 pins, 6 pins) of all pins at both ends, along and across the link there, from natural forces."""
-    found = np.zeros((4 * len(frame.pin_beams), 6 * len(frame.pin_beams)))
+    """Couples and thrusts (5 pins, 6 pins) of all pins, at both ends along and across the link, by natural forces."""
+    found = np.zeros((5 * len(frame.pin_beams), 6 * len(frame.pin_beams)))
     for k, name in enumerate(frame.pin_beams):
+        found[5 * k + 4, 6 * k] = 1.0
+        first, last = (frame.model.nodes[node][2] for node in frame.model.elements[frame.pin_beams[name]].nodes)
+        turned = -1.0 if last > first else 1.0  # local y of a pin that rises lies against y
         for end, (link, _) in enumerate(frame.pin_eyes[name]):
             angle = frame.pose.angles[link]
-            about_x, about_y = 6 * k + 1 + end, 6 * k + 3 + end  # local z and y of a pin lie along x and y, or against
-            found[4 * k + 2 * end, [about_x, about_y]] = np.cos(angle), np.sin(angle)
-            found[4 * k + 2 * end + 1, [about_x, about_y]] = -np.sin(angle), np.cos(angle)
+            about_x, about_y = 6 * k + 1 + end, 6 * k + 3 + end  # about a pin's local z, along x, and its local y
+            found[5 * k + 2 * end, [about_x, about_y]] = np.cos(angle), turned * np.sin(angle)
+            found[5 * k + 2 * end + 1, [about_x, about_y]] = -np.sin(angle), turned * np.cos(angle)
     return found
 
 

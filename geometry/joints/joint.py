@@ -58,7 +58,7 @@ class Joint(CaseModel):
     """Free length of the pin between the two eyes that it joins, for the check of pins; layers tell it as well."""
     tight_in: TightIn = ()
     """The link in which the pin is tight, where links lie in layers, or a list of both; in any other it may tilt. Left
-    out, it may be tight in either, and the band holds both."""
+    out, its value is a running pin in both holes, and the band holds pins that are tight as well."""
     friction: Coefficient = 0.0
     """Coefficient of friction of the pin in its bore, of a pin in its slot or of a slider on its guide, from 0 to 2. It
     opposes the motion, so every load case is solved for both directions of it, or for the one that it states."""

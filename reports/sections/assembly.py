@@ -23,14 +23,11 @@ _STACKING = (
     "offset causes additional bending and torsion."
 )
 _LAYERS = (
-    "Pins between layers are beams from mid-plane to mid-plane. The bands hold how they share couples: with the pins "
-    "of any link tilting in it or in their other link, and with all holes open that are not tight_in. That "
-    "washers, heads and faces that touch bear some of them is left out."
+    "Pins between layers are beams that touch their holes at the rims. Holes are as wide as the case states; where it "
+    "states nothing, the value has running pins (H8/f7), and the bands hold all from pressed pins to holes wider by a "
+    "tenth of the pin. That washers, heads and faces that touch bear couples is left out."
 )
-_TILT = (
-    " How far pins without a stated clearance tilt in their holes is in no displacement, and not in the gaps between "
-    "layers."
-)
+_TILT = " Displacements and the gaps between layers hold how far running pins tilt in holes of which nothing is stated."
 
 
 def assembly_section(result: CheckResult) -> Section:

@@ -16,9 +16,10 @@ import alula.fea.frame.equations
 import alula.fea.frame.system
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.frame.build import build_frame
+from alula.fea.frame.joint_forces import joint_forces
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.frame.sharing import hinges_tried, sharings
+from alula.fea.pins.clearances import clearances_of
 from alula.loads.case.case import Case
 from alula.loads.states.actions import stated_loads
 
@@ -108,41 +109,27 @@ def test_the_load_does_the_work_that_links_and_pins_store(layers: tuple[int, ...
 @pytest.mark.parametrize("layers", [TWO, FOUR])
 def test_every_link_balances_however_pins_share_the_couples(layers: tuple[int, ...]) -> None:
     case = stacked(layers)
-    frame, solution = solved(case)
-    every = [frame.reactions(solution.joint_wrenches, solution.residual)]
-    every += [shared.reactions for shared in sharings(frame)]
+    [load_case] = case.load_cases.values()
+    loads = stated_loads(case, load_case)
+    forces = joint_forces(case, case.solve_pose(), loads)
+    assert forces.sharings
+    every = [forces.on_tight_pins, forces.reactions, *forces.sharings]
     for reactions in every:
         for link in LINKS[1:]:
-            acting = link_loads("", link, case.body(link), reactions, frame.loads)
+            acting = link_loads("", link, case.body(link), reactions, loads)
             assert acting.resultant() == pytest.approx(np.zeros(6), abs=1e-7)
         plain = every[0].joints
         for name, joint in reactions.joints.items():
             assert joint.wrench[[0, 1]] == pytest.approx(plain[name].wrench[[0, 1]], abs=1e-9)
 
 
-def test_a_pin_that_tilts_gives_no_couple_to_that_link() -> None:
-    """The other has all of F h, h the distance of the mid-planes; of a single hinge, since several may have to bear."""
-    frame, _ = solved(stacked(FOUR))
-    tried = hinges_tried(frame.pose.linkage, tuple(frame.pin_beams))
-    assert {len(hinges) for hinges in tried} == {1, 2, 3, 2 * len(frame.pin_beams)}
-    for hinges, shared in zip(tried, sharings(frame), strict=True):
-        for name, link in hinges if len(hinges) == 1 else ():
-            joint = shared.reactions.joints[name]
-            about_second, rise = joint.wrench[3:5], frame.pose.linkage.rise(name)
-            fx, fy = joint.wrench[:2]
-            about_first = about_second + rise * np.array([-fy, fx])
-            tilts = about_second if link == joint.on else about_first
-            assert np.abs(tilts).max() < 1e-4 * rise * math.hypot(fx, fy)
-
-
-def test_a_pin_stated_tight_tilts_in_the_other_link_alone() -> None:
-    linkage = edited("owl-wing-static", [], bare=True).linkage
+def test_a_pin_stated_tight_runs_in_the_other_link_alone() -> None:
+    case = stacked(FOUR)
     stated = {"A": ("AE",), "B": ("CF",), "D": ("ED", "CH")}
-    joints = {n: joint.model_copy(update={"tight_in": stated.get(n, ())}) for n, joint in linkage.joints.items()}
-    tried = hinges_tried(type(linkage)(linkage.links, joints), tuple(joints))
-    assert {link for hinges in tried for name, link in hinges if name == "A"} == {"AG"}
-    assert {link for hinges in tried for name, link in hinges if name == "B"} == {"AE"}
-    assert {link for hinges in tried for name, link in hinges if name == "C"} == {"CF", "CH"}
-    assert not any(name == "D" for hinges in tried for name, _ in hinges)
-    every = {(name, link) for name in joints for link in joints[name].links if link not in stated.get(name, ())}
-    assert every in tried  # the state in which all holes that are not stated tight are open
+    joints = {n: joint.model_copy(update={"tight_in": stated.get(n, ())}) for n, joint in case.joints.items()}
+    case = case.model_copy(update={"joints": joints})
+    frame, _ = solved(case)
+    found = [hole for one in clearances_of(case, frame) for hole in one.holes]
+    assert sorted(found) == sorted(
+        (n, link) for n in joints if case.linkage.rise(n) for link in joints[n].links if link not in stated.get(n, ())
+    )

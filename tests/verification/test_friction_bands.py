@@ -157,7 +157,7 @@ def test_in_layers_the_least_is_by_forces_alone_and_the_largest_by_the_worst_cou
         assert abs(reactions.drive_torque - work.without[0]) > 1.4 * min(lost)
         loads, found = [load for load in statics.loads[name] if not isinstance(load, FrictionLoad)], []
         for shared in statics.forces[name].sharings:
-            wrenches = {joint: one.wrench[None] for joint, one in shared.reactions.joints.items()}
+            wrenches = {joint: one.wrench[None] for joint, one in shared.joints.items()}
             rubbed = (*loads, *pose_friction(case, name, statics.pose, loads, bore_presses(case, wrenches)))
             found.append(abs(solve_statics(statics.pose, case.pinned_drive, rubbed).drive_torque - work.without[0]))
         assert max(found) < max(lost)

@@ -8,7 +8,6 @@ along.
 
 import math
 import tomllib
-from dataclasses import replace
 
 import pytest
 from bars_in_layers import four_bars
@@ -16,7 +15,6 @@ from bars_in_layers import four_bars
 from alula.fea.check.run import check_case
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
-from alula.fea.outcomes.point_displacement import PointDisplacement
 from alula.geometry.bodies.section import ring
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
@@ -28,7 +26,7 @@ schema_version = 1
 title = "An arm on one pin beside its ground"
 layer_spacing = "{HEIGHT} mm"
 links.base = {{ ground = true, layer = 0, points = {{ J = ["0 mm", "0 mm"], O = ["0 mm", "50 mm"] }} }}
-joints.J = {{ links = ["base", "arm"], pin_diameter = "4 mm" }}
+joints.J = {{ links = ["base", "arm"], pin_diameter = "4 mm", tight_in = ["base", "arm"] }}
 pose = {{ coordinate = "arm", angle = "0 deg" }}
 drive = {{ link = "arm", joint = "J" }}
 solid = {{ mesh_size = 2.0 }}
@@ -93,45 +91,31 @@ maximum = "5 mm"
 """
 
 
-def four_bars_in_layers(tight: tuple[str, ...] = ()) -> Case:
+def four_bars_in_layers(*tight: list[str]) -> Case:
     """Parallel bars under two forces; pins A, B, C and D are tight in these links."""
     edits = {'["0 N", "-1 N"]': '["0 N", "10 N"]'}
     pairs = ('"base", "crank"', '"crank", "coupler"', '"coupler", "rocker"', '"base", "rocker"')
-    for links, link in zip(pairs, tight, strict=bool(tight)):
-        edits[f"[{links}]"] = f'[{links}], tight_in = "{link}"'
+    for links, held in zip(pairs, tight, strict=bool(tight)):
+        edits[f"[{links}]"] = f"[{links}], tight_in = {held}"
     return four_bars(
         (0, 1, 2, 1), (120.0, 100.0, 120.0, 100.0), near=(0.0, 60.0), start=60.0, end=5.0, more=FOUR_BARS, edits=edits
     )
 
 
-def test_a_band_without_upper_end_says_why_and_what_narrows_it() -> None:
-    """Tilting pins hold the frame so softly that its growth is not bounded; what is advised gives the band an end."""
+def test_the_band_of_a_point_holds_pins_that_run_and_pins_that_are_tight() -> None:
+    """It once had no upper end: hinges in all holes held the frame so softly that it might have given way."""
+    pairs = (["base", "crank"], ["crank", "coupler"], ["coupler", "rocker"], ["base", "rocker"])
     loose, tight = (
         {
             name: of_points(list(one.checks))["far"]
-            for name, one in check_case(four_bars_in_layers(links), fidelity="beam").load_cases.items()
+            for name, one in check_case(four_bars_in_layers(*links), fidelity="beam").load_cases.items()
         }
-        for links in ((), ("base", "crank", "rocker", "base"))
+        for links in ((), pairs)
     )
     for name in ("lift", "push"):
-        assert loose[name].verdict is Verdict.UNDECIDED
-        assert loose[name].value.high == math.inf
-        assert "the band has no upper end, since pins that tilt in their holes" in in_words(loose[name].reason)
-        assert "tight_in of joints A, B, C, D narrows it" in in_words(loose[name].reason)
-        assert set(COUPLES) <= set(loose[name].value.sources)
+        band = loose[name].value
+        assert math.isfinite(band.high)
+        assert set(COUPLES) <= set(band.sources)
+        assert band.low <= tight[name].value.value <= band.high
+        assert band.high - band.low > 1.5 * (tight[name].value.high - tight[name].value.low)
         assert tight[name].verdict is Verdict.PASS
-        assert tight[name].value.value == pytest.approx(loose[name].value.value)
-        assert "no upper end" not in in_words(tight[name].reason)
-
-
-def test_a_frame_of_solids_whose_pins_tilt_says_so_too() -> None:
-    """Tight, it gives way at 8 times the load; a factor was told to do so, of what tilting pins alone soften."""
-    case = four_bars_in_layers()
-    found = check_case(case, fidelity="beam", threads=1).load_cases["push"]
-    forces = replace(found.forces, solids=("crank",))
-    moved = replace(found.large_displacement, buckling=8.0)
-    told = PointDisplacement.of(case, ("rocker", "C"), "push", moved, found.links, {}, forces)
-    assert told.shares.framed is forces
-    assert told.value.high == math.inf
-    assert math.isfinite(told.elastic(tilted=False).high)
-    assert "pins that tilt in their holes let the frame move it by" in in_words(told.no_end)

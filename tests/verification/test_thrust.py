@@ -52,22 +52,30 @@ def forces_of(case: Case) -> JointForces:
 
 
 def test_pins_on_either_side_of_a_bar_are_pushed_by_its_couple_over_its_length() -> None:
-    """The coupler bears P alone, 10 mm beside its mid-plane at either end; pins are tight in it and tilt elsewhere."""
+    """The coupler bears P alone; pins are tight in it and run in crank and rocker, in holes of 6 mm, 10 mm beside it.
+
+    Loose ones bear up to P t/2 of each couple, so that P acts 7 to 10 mm off the mid-plane at either end. Where nothing
+    but the tight ends is stated, the band holds this.
+    """
     bars = {"start": 60.0, "end": 50.0}
     case = four_bars((0, 0, 1, 2), (60.0, 150.0, 120.0, 130.0), near=(15.0, 100.0), **bars)
-    tight = {name: case.joints[name].model_copy(update={"tight_in": ("coupler",)}) for name in "BC"}
-    forces = forces_of(case.model_copy(update={"joints": {**case.joints, **tight}}))
-    [both] = [one for one in forces.sharings if one.hinges == {("B", "crank"), ("C", "rocker")}]
-    pull = float(np.hypot(*both.reactions.joints["B"].wrench[:2]))
+
+    def stated(**inner: object) -> JointForces:
+        joints = {name: joint.model_copy(update={"tight_in": joint.links}) for name, joint in case.joints.items()}
+        joints |= {name: joints[name].model_copy(update={"tight_in": ("coupler",), **inner}) for name in "BC"}
+        return forces_of(case.model_copy(update={"joints": joints}))
+
+    forces, loose = stated(), stated(clearance=0.8).reactions.joints
+    pull = float(np.hypot(*loose["B"].wrench[:2]))
     told = thrusts(forces)
     for name in "BC":
-        thrust = abs(float(both.reactions.joints[name].wrench[2]))
-        assert thrust == pytest.approx(pull * (10.0 + 10.0) / 150.0, rel=1e-4)
+        thrust = abs(float(loose[name].wrench[2]))
+        assert pull * (7.0 + 7.0) / 150.0 <= thrust <= pull * (10.0 + 10.0) / 150.0
         assert told[name].low <= thrust * (1.0 + 1e-9)
         assert thrust <= told[name].high * (1.0 + 1e-9)
         alone = abs(float(forces.reactions.joints[name].wrench[2]))
         assert told[name].value == pytest.approx(alone)
-        every = [abs(float(one.reactions.joints[name].wrench[2])) for one in forces.sharings]
+        every = [abs(float(one.joints[name].wrench[2])) for one in forces.sharings]
         assert told[name].high == pytest.approx(max(alone, *every), rel=1e-12)
     [sentence] = thrust_texts(forces)
     assert sentence.text.startswith("Thrust along the pins [N], which heads, washers or rings must hold: ")

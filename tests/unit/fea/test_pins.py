@@ -246,14 +246,14 @@ def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_sh
         return PinStress(lever=1.0, shear=size, **bands)
 
     def ways(size):
-        return SimpleNamespace(reactions=SimpleNamespace(joints={"B": SimpleNamespace(wrench=size)}))
+        return SimpleNamespace(joints={"B": SimpleNamespace(wrench=size)})
 
     monkeypatch.setattr("alula.fea.outcomes.pins.stress_at", at)
     monkeypatch.setattr(
         "alula.fea.outcomes.pins._stresses_between", lambda case, joint, every: [at(case, joint, one) for one in every]
     )
     case = SimpleNamespace(linkage=SimpleNamespace(rise=lambda joint: 2.0))
-    forces = SimpleNamespace(reactions=ways(2.0).reactions, sharings=[ways(2.0 * size) for size in sizes])
+    forces = SimpleNamespace(reactions=ways(2.0), sharings=[ways(2.0 * size) for size in sizes])
     found = shared_stress(case, "B", 4.0, forces)
     assert found.shear == pytest.approx(12.0)
     for name in ("moment", "bending", "equivalent"):

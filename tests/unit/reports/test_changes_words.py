@@ -58,7 +58,7 @@ def test_own_weight_is_named_where_it_is_part_of_the_load(result, check):
             ["CALIBRATION"],
             "comes from calibration of the hand calculation, narrower by a solid model (--fidelity solid)",
         ),
-        (["COUPLES", "EYES"], "between layers and flexibility of eyes, bores and holes together, narrower by tight_in"),
+        (["COUPLES", "EYES"], "between layers and flexibility of eyes, bores and holes together, narrower by fits"),
         (["EYES", "GROWTH"], "growth with the load together, narrower by a solid model (--fidelity solid)."),
         (["GROWTH"], "growth with the load, which no entry of the case and no option narrows"),
         (["IMPERFECTION"], "geometric imperfection, which no entry of the case and no option narrows"),

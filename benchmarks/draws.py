@@ -1,0 +1,286 @@
+"""Clearances drawn at random against the bands of what they were drawn from, over random linkages in layers.
+
+    python -m benchmarks.draws [--linkages 20] [--draws 10000] [--first 0]
+
+Each linkage has four, six or eight links in layers of their own; of each hole is stated a range of its clearance, a
+press, one range for both of a joint's holes, a fit, or nothing. Each draw takes a clearance for every hole from what is
+stated of it, at its ends as often as between them. Told are the draws outside the bands: of the couples that pins bear,
+of joint forces, of links' stress by hand and of the displacement of a point.
+"""
+
+import argparse
+import cmath
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity
+from alula.fea.doubts.force_doubt import measures, sharing_answers, stress_by_hand
+from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.frame.thrust import thrusts
+from alula.fea.pins.states import PinStates, unstated
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
+
+Real = NDArray[np.float64]
+RESULTS = Path(__file__).with_name("results") / "draws.json"
+SAME = 2e-3
+"""Share of the largest of its kind by which a draw may lie outside: that to which states are told apart, twice."""
+DIRECTIONS = 40
+"""In which the draws are sought whose stress counts: it is a convex function of what acts on a link."""
+
+
+def linkage(seed: int) -> Case:
+    """Return a random linkage in layers: a four-bar, with up to two dyads more, under a force at its last link.
+
+    Parameters
+    ----------
+    seed : int
+
+    Returns
+    -------
+    Case
+    """
+    draw = np.random.default_rng(seed)
+    dyads = int(draw.integers(3))
+    a, angle = float(draw.uniform(25, 40)), math.radians(draw.uniform(40, 110))
+    places = {"O2": 0j, "A": cmath.rect(a, angle), "O4": complex(draw.uniform(90, 110), draw.uniform(-10, 10))}
+    places["B"] = places["O4"] + cmath.rect(draw.uniform(60, 80), math.radians(draw.uniform(75, 120)))
+    chains = {"crank": ["O2", "A"], "coupler": ["A", "B"], "rocker": ["O4", "B", "P"]}
+    joints = {"O2": ("base", "crank"), "A": ("crank", "coupler"), "B": ("coupler", "rocker"), "O4": ("base", "rocker")}
+    rocker = places["B"] - places["O4"]
+    places["P"] = places["O4"] + rocker * draw.uniform(1.4, 1.6)
+    ground, last, tip = ["O2", "O4"], "rocker", "P"
+    layers = {"base": 0, "crank": 1, "coupler": int(draw.choice([2, 0])), "rocker": 1}
+    for k in range(dyads):
+        one, other, foot, knee, end = (f"{name}{k}" for name in ("rod", "arm", "F", "K", "T"))
+        places[foot] = places[tip] + complex(draw.uniform(60, 90), draw.uniform(-60, -30))
+        places[knee] = places[tip] + complex(draw.uniform(40, 70), draw.uniform(10, 40))
+        places[end] = places[foot] + (places[knee] - places[foot]) * draw.uniform(1.35, 1.6)
+        chains |= {one: [tip, knee], other: [foot, knee, end]}
+        joints |= {tip: (last, one), knee: (one, other), foot: ("base", other)}
+        layers[one] = layers[last] + int(draw.choice([-1, 1]))
+        layers[other] = layers[one] + (1 if layers[one] != -1 else -1)
+        ground, last, tip = [*ground, foot], other, end
+    data = _tables(draw, places, chains, joints, layers, ground)
+    turn = draw.uniform(0.0, 2.0 * math.pi)
+    force = cmath.rect(draw.uniform(2.0, 20.0), turn)
+    data["load_cases"] = {"l": {"forces": [{"link": last, "at": tip, "force": [f"{force.real} N", f"{force.imag} N"]}]}}
+    data["checks"] = {"point": {"type": "displacement", "link": last, "at": tip, "maximum": "1 mm"}}
+    return validate({"schema_version": 1, "title": f"linkage {seed}", "large_displacement": "off", **data})
+
+
+def _tables(
+    draw: np.random.Generator,
+    places: Mapping[str, complex],
+    chains: Mapping[str, list[str]],
+    joints: Mapping[str, tuple[str, str]],
+    layers: Mapping[str, int],
+    ground: list[str],
+) -> dict[str, Any]:
+    def mm(x: float) -> str:
+        return f"{float(x)!r} mm"
+
+    links: dict[str, Any] = {
+        "base": {"ground": True, "layer": 0, "points": {n: [mm(places[n].real), mm(places[n].imag)] for n in ground}}
+    }
+    links["base"] |= {"thickness": "5 mm"} if draw.integers(2) else {}
+    near = {}
+    for name, points in chains.items():
+        first, along = places[points[0]], places[points[1]] - places[points[0]]
+        own = {p: [mm(abs(places[p] - first)), "0 mm"] for p in points}
+        links[name] = {"part": "bar", "layer": layers[name], "points": own}
+        near[name] = f"{cmath.phase(along)!r} rad"
+    stated: dict[str, Any] = {}
+    for name, pair in joints.items():
+        d = float(draw.uniform(2.5, 4.0))
+        stated[name] = {"links": list(pair), "pin_diameter": mm(d)}
+        ends = sorted(d * 10.0 ** draw.uniform(-3.0, -1.0, 2))
+        kind = draw.choice(["ranges", "press", "both", "fit", "nothing"])
+        if kind == "ranges":
+            pairs = zip(pair, (ends, sorted(d * 10.0 ** draw.uniform(-3.0, -1.0, 2))), strict=True)
+            stated[name]["clearance"] = {link: [mm(x) for x in own] for link, own in pairs}
+        elif kind == "press":
+            stated[name] |= {"tight_in": pair[int(draw.integers(2))], "clearance": [mm(x) for x in ends]}
+        elif kind == "both":
+            stated[name]["clearance"] = [mm(x) for x in ends]
+        elif kind == "fit":
+            stated[name]["fit"] = dict.fromkeys(pair, str(draw.choice(["H8/f7", "H9/d9"])))
+    young = 10.0 ** float(draw.uniform(3.3, 4.9))
+    entries = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
+    material = {"title": "drawn", "youngs_modulus": f"{young} MPa", "poissons_ratio": 0.35, "density": "1200 kg/m^3"}
+    material |= {"strength": "yield", "yield_strength": "100 MPa"}
+    material |= {table: dict.fromkeys(entries, "assumed") for table in ("sources", "status")}
+    bar = {"shape": "bar", "material": "drawn", "width": "9 mm", "thickness": "4 mm", "fillet_radius": "2 mm"}
+    crank = near.pop("crank")
+    return {
+        "layer_spacing": "4.6 mm",
+        "links": links,
+        "joints": stated,
+        "pose": {"coordinate": "crank", "angle": crank, "near": near},
+        "drive": {"link": "crank", "joint": "O2"},
+        "parts": {"bar": bar},
+        "materials": {"drawn": material},
+    }
+
+
+def shares(pins: PinStates, count: int, seed: int) -> Real:
+    """Return shares (count, k) of what is open: evenly drawn, towards small clearances, and at the ends.
+
+    Parameters
+    ----------
+    pins : PinStates
+    count, seed : int
+
+    Returns
+    -------
+    ndarray
+    """
+    draw = np.random.default_rng(seed)
+    found = draw.uniform(size=(count, len(pins.radii.value)))
+    kinds = draw.integers(4, size=found.shape) * (draw.uniform(size=(count, 1)) < 0.7)
+    found = np.where(kinds == 1, 0.0, np.where(kinds == 2, 1.0, np.where(kinds == 3, found**6, found)))
+    return np.asarray(found)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outside:
+    """A band that draws leave.
+
+    Attributes
+    ----------
+    of : str
+        What the band is of.
+    draws : int
+        How many lie outside.
+    excess : float
+        By how much at most, over the end of the band that is larger.
+    """
+
+    of: str
+    draws: int
+    excess: float
+
+
+def _beyond(of: str, low: float, high: float, found: Real) -> Iterator[Outside]:
+    excess = np.maximum(found - high, low - found) / (max(abs(low), abs(high)) or 1.0)
+    if excess.max() > SAME:
+        yield Outside(of=of, draws=int((excess > SAME).sum()), excess=float(excess.max()))
+
+
+def outside(case: Case, count: int, seed: int = 0) -> list[Outside]:
+    """Draw clearances of a linkage and return the bands that some draw leaves.
+
+    Parameters
+    ----------
+    case : Case
+    count : int
+        Of draws.
+    seed : int, optional
+
+    Returns
+    -------
+    list of Outside
+    """
+    statics = solve_case_statics(case)
+    forces = statics.forces["l"]
+    pins = forces.pins
+    if pins is None:
+        return []
+    v = pins.solved(shares(pins, count, seed)).v
+    names = list(case.joints)
+    # What joints bear is affine in where pins stand.
+    at_zero = _wrenches(pins, names, np.zeros(v.shape[1]))
+    by_unit = np.array([_wrenches(pins, names, unit) - at_zero for unit in np.eye(v.shape[1])])
+    drawn = at_zero + np.einsum("nv,vjk->njk", v, by_unit)
+    known = np.array([[one.joints[name].wrench for name in names] for one in (forces.reactions, *forces.sharings)])
+    found = list(_couples(case, names, drawn, known))
+    thrust, largest = thrusts(forces), float(np.abs(known[:, :, :2]).max())
+    for j, name in enumerate(names):
+        if name in thrust and thrust[name].high > 1e-4 * largest:
+            found += _beyond(f"thrust at {name}", thrust[name].low, thrust[name].high, np.abs(drawn[:, j, 2]))
+    found += _stresses(case, statics, pins, v, drawn)
+    return [*found, *_points(case, statics, pins, v)]
+
+
+def _wrenches(pins: PinStates, names: list[str], v: Real) -> Real:
+    found = pins.reactions(v).joints
+    return np.array([found[name].wrench for name in names])
+
+
+def _couples(case: Case, names: list[str], drawn: Real, known: Real) -> Iterator[Outside]:
+    """Couples along and across both links of every joint."""
+    angles = case.solve_pose().angles
+    for j, name in enumerate(names):
+        rise, every = case.linkage.rise(name), []
+        for wrench in (known[:, j], drawn[:, j]):
+            second = wrench[:, 3:5]
+            every.append((second + rise * np.column_stack([-wrench[:, 1], wrench[:, 0]]), second))
+        for link, (states, of_draws) in zip(case.joints[name].links, zip(*every, strict=True), strict=True):
+            turn = angles[link]
+            axes = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+            low, high = (states @ axes).min(axis=0), (states @ axes).max(axis=0)
+            largest = float(np.abs(states).max())
+            for k, way in enumerate(("along", "across")):
+                if max(abs(low[k]), abs(high[k])) > 1e-2 * largest:
+                    yield from _beyond(f"couple at {name} {way} {link}", low[k], high[k], (of_draws @ axes)[:, k])
+
+
+def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real, drawn: Real) -> Iterator[Outside]:
+    forces, loads = statics.forces["l"], statics.loads["l"]
+    directions = np.random.default_rng(1).standard_normal((DIRECTIONS, drawn.shape[2] - 1))
+    for link in case.checked_links:
+        own = [j for j, name in enumerate(case.joints) if link in case.joints[name].links]
+        scale = np.abs(drawn[:, own]).max(axis=(0, 1))[:-1] + 1e-12
+        along = [(drawn[:, j, :5] / scale) @ directions.T for j in own]
+        chosen = {int(i) for one in (*along, sum(along)) for i in (*one.argmax(axis=0), *one.argmin(axis=0))}
+        answers = sharing_answers(case, "l", link, forces, loads)
+        every = [stress_by_hand(case, link, one) for one in answers.every]
+        of_draws = [
+            measures(case, link, link_loads("l", link, case.body(link), pins.reactions(v[i]), loads), tilts=True)[0]
+            for i in sorted(chosen)
+        ]
+        yield from _beyond(f"stress of {link}", min(every), max(every), np.array(of_draws))
+
+
+def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:
+    """Displacement of the point, where all holes are stated: of others it holds running fits, not the loosest holes."""
+    frame = statics.forces["l"].frame
+    assert frame is not None
+    if unstated(case, pins):
+        return
+    [check] = case.checks.values()
+    node = frame.points[check.link, check.at]  # type: ignore[union-attr]
+    plain = pins.answer(np.zeros(v.shape[1])).displacements[node, :3]
+    by_unit = np.array([pins.answer(unit).displacements[node, :3] - plain for unit in np.eye(v.shape[1])])
+    for one in check_case(case, fidelity="beam", threads=1).load_cases["l"].checks:
+        if one.quantity is Quantity.DISPLACEMENT:
+            moved = np.linalg.norm(plain + v @ by_unit, axis=1)
+            yield from _beyond("displacement", one.value.low, one.value.high, moved)
+
+
+def main() -> None:
+    """Draw, tell what lies outside, and keep it."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name, number in (("linkages", 20), ("draws", 10_000), ("first", 0)):
+        parser.add_argument(f"--{name}", type=int, default=number)
+    asked, kept = parser.parse_args(), {}
+    for seed in range(asked.first, asked.first + asked.linkages):
+        case = linkage(seed)
+        found = outside(case, asked.draws, seed)
+        kept[seed] = {"links": len(case.links), "draws": asked.draws, "outside": [vars(one) for one in found]}
+        told = "; ".join(f"{one.of}: {one.draws} by up to {one.excess:.2%}" for one in found)
+        print(f"linkage {seed}, {len(case.links)} links: {told or 'none outside'}", flush=True)
+    RESULTS.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

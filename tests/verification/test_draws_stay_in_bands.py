@@ -1,0 +1,38 @@
+"""Clearances drawn from what a case leaves open, on random linkages in layers: bands hold them.
+
+The linkages are those of ``benchmarks/draws.py``, which tells the same of 10,000 draws on 20 linkages. The ends of
+bands are sought, and no bounds: what draws may lie outside is what was measured there.
+"""
+
+import numpy as np
+import pytest
+
+from benchmarks import draws
+
+MOST, OFTEN = 0.05, 0.02
+"""By how much the worst draw lies outside, over the band's larger end, and how many draws."""
+
+
+@pytest.mark.parametrize("seed", [1, 5, 11])
+def test_no_state_that_is_drawn_lies_outside_the_bands(seed):
+    count = 200
+    found = draws.outside(draws.linkage(seed), count, seed)
+    assert [one for one in found if one.excess > MOST or one.draws > OFTEN * count] == []
+    assert not [one for one in found if one.of == "displacement"]
+
+
+def test_a_band_that_is_too_narrow_is_told(monkeypatch):
+    """Where the search ends at once, draws leave the bands."""
+    monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", lambda pins: pins.radii.value[None])
+    found = draws.outside(draws.linkage(1), 100)
+    assert max(one.excess for one in found) > 4.0 * MOST
+
+
+def test_draws_lie_in_what_is_stated():
+    pins = draws.solve_case_statics(draws.linkage(0)).forces["l"].pins
+    assert pins is not None
+    radii, _ = pins.radii.of(draws.shares(pins, 50, 0))
+    for one, numbers in zip(pins.radii.clearances, pins.radii.numbers, strict=True):
+        both = 2.0 * sum(radii[:, 2 * k] for k in numbers)
+        assert np.all((one.low - 1e-12 <= both) & (both <= one.high + 1e-12))
+        assert both.max() - both.min() == pytest.approx(one.high - one.low, rel=0.2)

@@ -1,0 +1,249 @@
+"""Pins in their holes by hand: lap joints, pressed and running pins, a stub, three links on one pin, a clevis.
+
+A coupler of steel lies at the height h beside its crank and stays parallel to it, held by the pins of both its ends
+along their axes. The pin at A, far softer than the links, is then a beam whose ends turn only as far as its holes let
+it: with the force F across it, the turns θ1 and θ2 of its ends against the links and the shear of a beam left alone
+(which bends nothing),
+
+    M1 = F h/2 + E I (θ1 + θ2)/h ,   M2 = F h/2 - E I (θ1 + θ2)/h ,   M1 + M2 = F h ,
+
+where θ2 turns the pin as M2 bends it and θ1 against M1. (Timoshenko, Strength of Materials I, 3rd ed., chapter 5.) A
+hole of length t bears up to F t/2 without any tilt, beyond it more only where the pin has tilted by c/t.
+"""
+
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+from tilting_pins import checked
+
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity
+from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.frame.joint_forces import JointForces
+from alula.loads.case.case import Case
+
+HIGH, SOFT = 10.0, 1000.0
+BENDING = SOFT * math.pi * 3.0**4 / 64.0
+"""E I of the pin at A [N mm²]."""
+LAP = """
+schema_version = 1
+title = "A coupler beside its crank"
+links.base = { ground = true, z = "0 mm", points = { O2 = ["0 mm", "0 mm"], O4 = ["100 mm", "0 mm"] } }
+links.crank = { part = "crank", z = "0 mm", points = { O2 = ["0 mm", "0 mm"], A = ["40 mm", "0 mm"] } }
+links.rocker = { part = "crank", z = "0 mm", points = { O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"] } }
+joints.O2 = { links = ["base", "crank"], pin_diameter = "3 mm" }
+joints.O4 = { links = ["base", "rocker"], pin_diameter = "8 mm" }
+drive = { link = "crank", joint = "O2" }
+pose = { coordinate = "crank", angle = "90 deg", near = { coupler = "0 deg", rocker = "90 deg" } }
+parts.crank = { shape = "bar", material = "hard", width = "20 mm", thickness = "6 mm", fillet_radius = "2 mm" }
+parts.coupler = { shape = "bar", material = "hard", width = "20 mm", thickness = "12 mm", fillet_radius = "2 mm" }
+[links.coupler]
+part = "coupler"
+z = "10 mm"
+points = { A = ["0 mm", "0 mm"], M = ["50 mm", "0 mm"], B = ["100 mm", "0 mm"] }
+[joints.A]
+links = ["crank", "coupler"]
+pin_diameter = "3 mm"
+pin_material = "soft"
+[joints.B]
+links = ["coupler", "rocker"]
+pin_diameter = "8 mm"
+clearance = { coupler = "0 mm", rocker = "0 mm" }
+[load_cases]
+l = { forces = [{ link = "coupler", at = "M", force = ["20 N", "0 N"] }] }
+"""
+
+
+def material(young: float) -> dict[str, Any]:
+    card = {
+        "title": "one",
+        "youngs_modulus": f"{young} MPa",
+        "poissons_ratio": 0.33,
+        "density": "1 kg/m^3",
+        "strength": "yield",
+        "yield_strength": "240 MPa",
+    }
+    entries = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
+    return card | {table: dict.fromkeys(entries, "assumed") for table in ("sources", "status")}
+
+
+def lap(clearances: dict[str, float], *, force: float = 20.0, crank: float = 6.0, coupler: float = 12.0) -> dict:
+    """The data of the lap joint: clearances at A, the force, and thicknesses [mm, N]."""
+    data = tomllib.loads(LAP)
+    data["materials"] = {"hard": material(210000.0), "soft": material(SOFT)}
+    data["joints"]["A"]["clearance"] = {link: f"{size} mm" for link, size in clearances.items()}
+    data["load_cases"]["l"]["forces"][0]["force"] = [f"{force} N", "0 N"]
+    for name, thickness in (("crank", crank), ("coupler", coupler)):
+        data["parts"][name]["thickness"] = f"{thickness} mm"
+    return data
+
+
+def forces_of(case: Case) -> JointForces:
+    return solve_case_statics(case).forces["l"]
+
+
+def couples(case: Case, joint: str) -> tuple[float, float]:
+    """Sizes of what the pin bears at its first link and at its second, about y under a force along x."""
+    wrench = forces_of(case).reactions.joints[joint].wrench
+    return abs(wrench[4] + case.linkage.rise(joint) * wrench[0]), abs(wrench[4])
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.01, 0.1, 1.0])
+def test_two_plates_of_one_thickness_share_the_couple_alike(clearance):
+    """Turned by half a turn about the line of the force, a lap joint is itself: each hole bears F h/2."""
+    case = checked(lap(dict.fromkeys(("crank", "coupler"), clearance), crank=9.0, coupler=9.0))
+    assert couples(case, "A") == pytest.approx((20.0 * HIGH / 2.0,) * 2, rel=2e-3)
+
+
+@pytest.mark.parametrize("clearance", [0.01, 0.1, 1.0])
+def test_a_running_pin_stays_seated_below_half_its_force_times_the_hole(clearance):
+    """In 12 mm it bears up to 6 F without tilt, and has to bear F h/2 = 5 F."""
+    case = checked(lap({"crank": 0.0, "coupler": clearance}))
+    assert couples(case, "A") == pytest.approx((100.0, 100.0), rel=2e-3)
+    forces = forces_of(case)
+    assert forces.pins is not None
+    [[low, high]] = forces.pins.value.reshape(-1, 2, 2)
+    assert np.hypot(*low) == pytest.approx(clearance / 2.0, rel=1e-4)
+    assert high == pytest.approx(low, abs=1e-3 * clearance)  # shifted, not tilted
+
+
+@pytest.mark.parametrize("clearance", [0.01, 0.1, 0.3])
+def test_a_running_pin_tilts_by_its_clearance_over_the_hole_and_the_pressed_plate_bears_the_rest(clearance):
+    """In 6 mm it would bear 3 F without tilt; tilted by c/6 it bears F h/2 - E I c/(6 h)."""
+    case = checked(lap({"crank": 0.0, "coupler": clearance}, crank=12.0, coupler=6.0))
+    less = BENDING * clearance / 6.0 / HIGH
+    assert 100.0 - less > 60.0
+    assert couples(case, "A") == pytest.approx((100.0 + less, 100.0 - less), rel=2e-3)
+
+
+def test_a_running_pin_tilts_about_one_rim_until_it_meets_the_other():
+    """Of the 2 F of its couple beyond F t/2 the pin rids itself by a tilt that the clearance has room for."""
+    case = checked(lap({"crank": 0.0, "coupler": 0.1}, force=1.0, crank=12.0, coupler=6.0))
+    tilt = (HIGH / 2.0 - 6.0 / 2.0) * HIGH / BENDING
+    assert tilt < 0.1 / 6.0
+    assert couples(case, "A") == pytest.approx((HIGH - 3.0, 3.0), rel=2e-3)
+    pins = forces_of(case).pins
+    assert pins is not None
+    [[low, high]] = pins.value.reshape(-1, 2, 2)
+    assert abs(high[0] - low[0]) == pytest.approx(tilt * 6.0, rel=1e-2)
+
+
+def test_the_longer_hole_of_two_with_one_clearance_bears_more():
+    """Both could tilt; the one of 6 mm does, by c/6, and that of 12 mm stays seated below 6 F."""
+    case = checked(lap({"crank": 0.01, "coupler": 0.01}))
+    less = BENDING * 0.01 / 6.0 / HIGH
+    assert couples(case, "A") == pytest.approx((100.0 - less, 100.0 + less), rel=2e-3)
+
+
+STUB = """
+schema_version = 1
+title = "A lever on a stub"
+links.base = { ground = true, z = "0 mm", thickness = "8 mm", points = { O = ["0 mm", "0 mm"] } }
+links.lever = { part = "bar", z = "7 mm", points = { O = ["0 mm", "0 mm"], P = ["60 mm", "0 mm"] } }
+joints.O = { links = ["base", "lever"], pin_diameter = "3 mm", clearance = { base = "0 mm", lever = "0.12 mm" } }
+drive = { link = "lever", joint = "O" }
+pose = { coordinate = "lever", angle = "0 deg" }
+parts.bar = { shape = "bar", material = "hard", width = "10 mm", thickness = "4 mm", fillet_radius = "2 mm" }
+load_cases = { l = { forces = [{ link = "lever", at = "P", force = ["0 N", "-5 N"] }] } }
+checks = { d = { type = "displacement", at = "P", maximum = "5 mm" } }
+"""
+
+
+def test_a_stub_pressed_in_the_ground_bears_the_couple_alone():
+    """Equilibrium of the lever: its hole bears none, whatever its clearance, and the ground F h."""
+    case = checked(tomllib.loads(STUB) | {"materials": {"hard": material(210000.0)}})
+    forces = forces_of(case)
+    wrench = forces.reactions.joints["O"].wrench
+    assert np.abs(wrench[3:5]).max() < 1e-8
+    assert np.hypot(*wrench[:2]) == pytest.approx(5.0)
+    for one in forces.sharings:
+        assert one.joints["O"].wrench == pytest.approx(wrench, abs=1e-8)
+    [check] = [
+        one for one in check_case(case, fidelity="beam").load_cases["l"].checks if one.quantity is Quantity.DISPLACEMENT
+    ]
+    # The lever's tip rises and sinks by the tilt c/t over its length, and goes with the pin by c/2 in the plane.
+    assert check.value.high == pytest.approx(math.hypot(60.0 * 0.12 / 4.0, 0.06), rel=0.1)
+    assert check.value.high >= 60.0 * 0.12 / 4.0
+
+
+def three(joints: dict[str, list[str]], clearances: dict[str, str], *, lower: float = 20.0, upper: float = 20.0):
+    """A crank between two couplers on one pin, each with a rocker of its own; forces along both couplers [N]."""
+    data = lap({})
+    points = data["links"]["coupler"]["points"]
+    del data["links"]["coupler"], data["joints"]["A"], data["joints"]["B"]
+    for name, z in (("lower", -HIGH), ("upper", HIGH)):
+        data["links"][name] = {"part": "coupler", "z": f"{z} mm", "points": points}
+    data["links"]["other"] = data["links"]["rocker"]
+    stiff = {"pin_diameter": "8 mm"}
+    data["joints"]["O5"] = stiff | {"links": ["base", "other"], "points": ["O4", "O4"]}
+    for name, pair in (("B", ["upper", "rocker"]), ("C", ["lower", "other"])):
+        data["joints"][name] = stiff | {"links": pair, "points": ["B", "B"]}
+        data["joints"][name]["clearance"] = dict.fromkeys(pair, "0 mm")
+    for name, pair in joints.items():
+        own = {link: clearances.get(link, "0 mm") for link in pair}
+        data["joints"][name] = {"links": pair, "points": ["A", "A"], "pin_diameter": "3 mm", "clearance": own}
+        data["joints"][name]["pin_material"] = "soft"
+    data["pose"]["near"] = {"lower": "0 deg", "upper": "0 deg", "rocker": "90 deg", "other": "90 deg"}
+    data["parts"]["crank"]["thickness"], data["parts"]["coupler"]["thickness"] = "6 mm", "12 mm"
+    forces = {"lower": lower, "upper": upper}
+    data["load_cases"]["l"]["forces"] = [
+        {"link": link, "at": "M", "force": [f"{force} N", "0 N"]} for link, force in forces.items()
+    ]
+    return checked(data)
+
+
+ONE_PIN = [
+    {"A": ["lower", "crank"], "A2": ["lower", "upper"]},  # from the lowest to the highest
+    {"A": ["crank", "lower"], "A2": ["crank", "upper"]},  # from the middle to both sides
+]
+
+
+def borne_by(case: Case) -> dict[str, float]:
+    """Couple about y that the pin puts on each of the three links, by what its joints put on them."""
+    found = dict.fromkeys(("lower", "crank", "upper"), 0.0)
+    reactions = forces_of(case).reactions.joints
+    for name in ("A", "A2"):
+        first, second = case.joints[name].links
+        wrench = reactions[name].wrench
+        found[second] += wrench[4]
+        found[first] -= wrench[4] + case.linkage.rise(name) * wrench[0]
+    return found
+
+
+@pytest.mark.parametrize("joints", ONE_PIN)
+@pytest.mark.parametrize("clearance", ["0 mm", "0.02 mm", "0.2 mm"])
+def test_pulled_alike_on_both_sides_the_middle_link_of_a_pin_bears_no_couple(joints, clearance):
+    """Its hole lies in the plane of symmetry, where one beam keeps its slope; two pins would tilt in it, each alone."""
+    found = borne_by(three(joints, {"crank": clearance}))
+    assert abs(found["crank"]) < 0.1
+    assert found["upper"] == pytest.approx(-found["lower"], rel=1e-3)
+    assert abs(found["upper"]) == pytest.approx(20.0 * HIGH / 2.0, rel=5e-3)
+
+
+@pytest.mark.parametrize("joints", ONE_PIN)
+@pytest.mark.parametrize(("clearance", "tilt"), [("0 mm", 0.0), ("0.02 mm", 0.02 / 6.0), ("2.9 mm", math.inf)])
+def test_pulled_against_each_other_the_middle_link_bears_what_its_tilt_leaves(joints, clearance, tilt):
+    """By halves beams of h: the crank bears F h - 2 E I θ/h, tilted by θ = c/t; none where a pin runs freely."""
+    found = borne_by(three(joints, {"crank": clearance}, lower=-20.0))
+    free = 20.0 * HIGH**2 / (2.0 * BENDING)
+    less = 2.0 * BENDING * min(tilt, free) / HIGH
+    assert abs(found["crank"]) == pytest.approx(20.0 * HIGH - less, rel=5e-3, abs=0.5)
+    for link in ("lower", "upper"):
+        assert abs(found[link]) == pytest.approx((20.0 * HIGH + less) / 2.0, rel=5e-3)
+    assert sum(found.values()) == pytest.approx(math.copysign(2.0 * 20.0 * HIGH, sum(found.values())), rel=5e-3)
+
+
+@pytest.mark.parametrize("clearance", ["0 mm", "0.1 mm"])
+def test_a_clevis_bears_no_couple(clearance):
+    """Cheeks on either side, or plates of a pair: half of the force in each, and their rise is zero."""
+    data = lap({})
+    data["links"]["coupler"] |= {"z": "0 mm", "count": 2, "apart": "20 mm"}
+    data["joints"]["A"]["clearance"] = {"crank": clearance, "coupler": clearance}
+    forces = forces_of(checked(data))
+    wrench = forces.reactions.joints["A"].wrench
+    assert wrench[:2] == pytest.approx([-20.0, 0.0], abs=1e-9)
+    assert np.abs(wrench[3:5]).max() < 1e-9
+    assert forces.pins is None
