@@ -27,9 +27,9 @@ ROUNDS = 6
 """At most, in which shares go to the ends of their ranges."""
 LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
 """Shares of all that is open at which the search starts, beside the values."""
-DRAWS = 24
+DRAWS = 240
 """Further states at which the search starts, drawn at random: most of them with some small clearances."""
-ASCENTS = 2
+ASCENTS = 3
 """How many of the starts each couple is followed from, the largest ones."""
 PARTS = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Of the way to the ends of ranges, tried in turn until a couple grows."""
