@@ -243,7 +243,7 @@ def frequencies(
     CannotRunError
         Where a stage fails.
     """
-    from alula.fea.common.at_temperature import require_stiffness
+    from alula.fea.asked.at_temperature import require_stiffness
     from alula.fea.common.threads import bounded
     from alula.fea.vibration.over_motion import case_frequencies
     from alula.reports.notebook.frequency_report import FrequencyReport

@@ -12,9 +12,9 @@ import time
 import numpy as np
 
 from alula.geometry.linkage.motion import solve_motion
+from alula.loads.acting.weight import inertia_loads
 from alula.loads.case.case_file import read_case
 from alula.loads.records.applied import PartMass, PointLoad
-from alula.loads.states.actions import inertia_loads
 from alula.loads.states.kinetostatics import energies, solve_kinetostatics
 
 POSES = 100_000
@@ -36,7 +36,7 @@ def main() -> None:
         moved = time.perf_counter()
         place = motion.placement
         acting = [load, *inertia_loads(place, masses, np.zeros(3))]
-        found = solve_kinetostatics(motion, case.pinned_drive, acting, energies(place, [load], masses))
+        found = solve_kinetostatics(motion, case.pinned_drive, acting, energies(place, [], [load], masses))
         end, cpu = time.perf_counter(), time.process_time() - cpu
         for key, seconds in zip(best, (moved - start, end - moved, end - start, cpu), strict=True):
             best[key] = min(best[key], seconds)

@@ -8,8 +8,8 @@ from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scot
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.loads.acting.weight import Weight, inertia_loads
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
-from alula.loads.states.actions import inertia_loads
 from alula.loads.states.kinetostatics import Kinetostatics, energies, solve_kinetostatics, torque_by_virtual_work
 from alula.loads.statics.statics import Drive
 
@@ -107,7 +107,10 @@ def kinetostatics(motion: Motion, drive: Drive | None, loads, masses=None) -> Ki
     """Joint forces over a motion under loads and weights, with the inertia of the masses."""
     own = masses or {}
     inertia = inertia_loads(motion.placement, own, np.zeros(3))
-    return solve_kinetostatics(motion, drive, [*loads, *inertia], energies(motion.placement, loads, own))
+    pulled = [one for one in loads if isinstance(one, BodyForce)]
+    weights = [Weight(link=one.link, mass=one.mass, gravity=np.atleast_2d(one.specific_force)[0]) for one in pulled]
+    power = energies(motion.placement, weights, [one for one in loads if not isinstance(one, BodyForce)], own)
+    return solve_kinetostatics(motion, drive, [*loads, *inertia], power)
 
 
 def virtual_work(motion: Motion, drive: Drive, loads, masses=None) -> np.ndarray:

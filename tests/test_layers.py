@@ -17,10 +17,10 @@ LAYERS = {
         *("base", "materials", "imported", "bodies", "parts"),
         *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
-    "loads": ("text", "records", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
+    "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
     "fea": (
-        *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "superposition", "vibration", "outcomes", "whole", "links", "doubts"),
+        *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
+        *("refine", "superposition", "vibration", "outcomes", "links", "doubts", "judging", "whole"),
         *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
     "reports": (
@@ -29,6 +29,18 @@ LAYERS = {
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
+JOINT_FORCE = (
+    "alula.fea.frame.joint_forces",  # of a pose, by equilibrium or by a frame
+    "alula.fea.frame.case_statics",  # of every load case
+    "alula.fea.nonlinear.large_displacement",  # on the deformed shape
+    "alula.fea.links.link_by_hand",  # each link cut free, with its stress by beams
+    "alula.fea.links.fidelity",  # or by its solid
+    "alula.fea.doubts.load_growth",  # what leaves it open
+    "alula.fea.judging.link_result",  # its band
+    "alula.fea.judging.judge",  # held against a limit: its outcome
+    "alula.fea.check.run",  # all outcomes: the verdict
+)
+"""The way of a joint force from the case to the verdict, in the order in which modules hand it on."""
 DRAWN = ("sheet", "outlines", "vibration", "motion", "study")
 """The folders of ``reports/figures/``; none imports another but ``sheet``, which imports none."""
 PACKAGES = tuple(LAYERS)
@@ -146,6 +158,27 @@ def test_no_module_imports_itself_by_way_of_others(tmp_path):
     (tmp_path / "fea" / "b.py").write_text("if TYPE_CHECKING:\n    import alula.fea.a", encoding="utf-8")
     with pytest.raises(graphlib.CycleError):
         graphlib.TopologicalSorter(module_graph(tmp_path)).prepare()
+
+
+def reached(graph: dict[str, set[str]], module: str) -> set[str]:
+    """Return all modules that a module imports, directly or by way of others."""
+    found: set[str] = set()
+    left = [module]
+    while left:
+        new = graph[left.pop()] - found
+        found |= new
+        left += new
+    return found
+
+
+def test_a_joint_force_goes_to_the_verdict_without_turning_back():
+    """No module on its way imports one that comes later, even by way of others, and the last one imports all."""
+    graph = module_graph(ROOT)
+    for number, module in enumerate(JOINT_FORCE):
+        assert not reached(graph, module) & set(JOINT_FORCE[number:]), module
+    assert set(JOINT_FORCE[:-1]) <= reached(graph, JOINT_FORCE[-1])
+    ranks = [LAYERS["fea"].index(module.split(".")[2]) for module in JOINT_FORCE]
+    assert ranks == sorted(ranks)
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def link_loads(
         own = in_axes(load, "link", place) if axes is None else turned(in_axes(load, "global", place), turn)
         if isinstance(own, PointLoad):
             wrenches[own.point] = wrenches.get(own.point, np.zeros(6)) + own.wrench
-            if isinstance(own, FrictionLoad) and place.linkage.joints[own.joint].type != "slider":
+            if isinstance(own, FrictionLoad) and place.linkage.joints[own.joint].kind.has_pin:
                 rubbed[own.point] = rubbed.get(own.point, np.zeros(6)) + own.wrench
         elif isinstance(own, LineLoad):
             lines.append(own)

@@ -1,4 +1,4 @@
-"""Whether links buckle, each by itself and the linkage as a whole.
+"""Whether links buckle, each by itself, and how their joints hold them.
 
-Hands on ``Column`` and ``CheckOutcome``s.
+Hands on ``StraightColumn`` and ``CheckOutcome``s.
 """

@@ -1,6 +1,6 @@
 """Buckling of links in compression, each by itself.
 
-Plates, discs and parts from files buckle as solids (``alula.fea.outcomes.solid_buckling``), held alike. Any other link
+Plates, discs and parts from files buckle as solids (``alula.fea.judging.solid_buckling``), held alike. Any other link
 is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks take the
 section's place (``alula.fea.beam.flanks``). How its joints hold it is known but in part, so that its factor is a band:
 
@@ -17,7 +17,7 @@ low    a third of the value, since nothing is relied on below 3 (see below), tim
        outermost pins, and free elsewhere.
 
 That joints stay where they are is taken for granted: sway of the whole linkage is the subject of
-``alula.fea.buckling.linkage``.
+``alula.fea.judging.linkage``.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
@@ -33,6 +33,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked
 from alula.fea.beam.column_factor import AxialForce, column_factors
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.holding import Plane, columns, holding, of_cuts
@@ -265,8 +266,22 @@ def column_outcome(
     load = reason(
         "compressed_column", compression=found.compression, where=where, factor=band.value, pins=found.outermost
     )
-    outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, load)
+    outcome = asked_of(Subject.link(link)).outcome(load_case, band, load)
     return outcome.because(reason("buckling_judged", found=load, judgement=judgement(outcome, moved)))
+
+
+def asked_of(subject: Subject) -> Asked:
+    """Return what nobody has to ask for: whether a link, or the linkage, buckles under its load.
+
+    Parameters
+    ----------
+    subject : Subject
+
+    Returns
+    -------
+    Asked
+    """
+    return Asked(name=NAME, subject=subject, quantity=Quantity.BUCKLING_FACTOR, limit=1.0)
 
 
 def factor_band(

@@ -8,6 +8,7 @@ from alula.fea.beam.cut_beam import cells
 from alula.fea.beam.flanks import flanks_of
 from alula.geometry.bodies.body import Body, hand_section, mouth
 from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.joints.joint_kinds import Way
 from alula.loads.case.case import Case
 
 Plane = tuple[float, Sequence[Stretch]]
@@ -113,7 +114,7 @@ def holding(case: Case, link: str) -> Holding:
     pins = {pin.name: pin for pin in body.pins}
     mouths = {end.name: mouth(body, end) for end in body.ends}
     joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
-    carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
+    carried = {name for name in joints if linkage.joints[name].carrier == link}
     places, feet = case.links[link].points, {point: pin.foot[0] for point, pin in pins.items() if pin.foot is not None}
     foot = {name: feet.get(point, mouths.get(point, places[point][0])) for name, point in joints.items()}
     on_arms = {name for name, point in joints.items() if point in feet}
@@ -125,8 +126,8 @@ def holding(case: Case, link: str) -> Holding:
     first, last = min(plain), max(plain)
     drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
     # A pin that holds the link off its axis may keep its angle, held by other pins as well.
-    fixed = {name for name in joints if linkage.joints[name].bonded}
-    guides = {name for name in carried if linkage.joints[name].type == "slider"}
+    fixed = {name for name in joints if linkage.joints[name].fixed}
+    guides = {name for name in carried if Way.PIN in linkage.joints[name].bears}
     alone = {foot[name] for name in (fixed | drive) & set(joints)}
     return Holding(
         outermost=tuple(support) or ((first, last) if last - first > slack else (first,)),

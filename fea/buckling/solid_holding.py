@@ -68,11 +68,7 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     """
     linkage, body = case.linkage, case.body(link)
     joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
-    carried = {
-        point
-        for name, point in joints.items()
-        if linkage.joints[name].type != "revolute" and linkage.joints[name].links[0] == link
-    }
+    carried = {point for name, point in joints.items() if linkage.joints[name].carrier == link}
     places = {f"bore:{pin.name}": np.array([pin.x, pin.y, 0.0]) for pin in body.pins}
     places |= {f"end:{end.name}": np.array([end.x, end.y, 0.0]) for end in body.ends if end.clamped}
     support = case.links[link].held_at
@@ -82,7 +78,7 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     held = _Conditions(places)
     held_joints = [point for point in joints.values() if point not in carried] or list(joints.values())
     drive = case.drive.joint if case.drive is not None and case.drive.link == link else None
-    kept = {point for name, point in joints.items() if linkage.joints[name].bonded or name == drive}
+    kept = {point for name, point in joints.items() if linkage.joints[name].fixed or name == drive}
     most = [held.kept(held.surface(p), ALL if p in kept else ALL[:TURN_Z]) for p in joints.values()]
     if support is not None:
         value, how = held.kept(f"end:{support}", ALL), reason("built_in_at", place=support)

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.geometry.linkage.linkage import Linkage
-from alula.loads.records.applied import Load, shifted
-from alula.loads.states.springs import spring_loads
+from alula.loads.acting.acting import loads_of
+from alula.loads.records.applied import Load, PointLoad, shifted
+from alula.loads.states.actions import lasting
 from alula.loads.statics.friction import friction_wrenches
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.statics.rounding import rounded, size_of
@@ -70,8 +71,8 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
         travelled = reaction.arm - _lever(reaction, pose.linkage) if reaction.by == ground else np.zeros(3)
         places[name] = np.array([*point, 0.0]) + travelled
     about = next(iter(joints))
-    for load in spring_loads(case.standing.case, pose.placement):
-        if load.link == ground:
+    for load in loads_of(lasting(case.standing.case), pose.placement):
+        if isinstance(load, PointLoad) and load.link == ground:
             name = f"springs at {load.point}"
             joints[name] = joints.get(name, np.zeros(6)) + load.wrench
             places[name] = np.array([*pose.position(ground, load.point), 0.0])
@@ -90,7 +91,7 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
 
 def _lever(reaction: JointReaction, linkage: Linkage) -> Real:
     """Vector (3,) to the pin at a joint's second link from where it stands in the mid-plane of the first [mm]."""
-    return reaction.arm if linkage.joints[reaction.joint].type == "revolute" else reaction.arm * [0.0, 0.0, 1.0]
+    return reaction.arm * [0.0, 0.0, 1.0] if linkage.joints[reaction.joint].slides else reaction.arm
 
 
 def wrenches_on_ground(reactions: Reactions, loads: Sequence[Load] = ()) -> dict[str, Real]:

@@ -8,22 +8,20 @@ from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
+from alula.fea.asked.asked import asked, asked_of
+from alula.fea.asked.at_temperature import as_known
 from alula.fea.beam.theory import CantileverCheck, uniform_cantilever
 from alula.fea.buckling.buckling import buckling_outcomes
-from alula.fea.buckling.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.check.known_stiffness import as_stiff_as_may_be, with_known_stiffness
-from alula.fea.check.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
-from alula.fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from alula.fea.check.point_solids import decide_point
 from alula.fea.check.solid_frame import with_solids
-from alula.fea.common.at_temperature import as_known
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
-from alula.fea.common.verdict import CheckOutcome, Verdict, overall
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, overall
 from alula.fea.doubts.air_doubt import air_doubt, air_warnings
 from alula.fea.doubts.force_doubt import sharing_answers, sharing_doubt, stiffness_answers, stiffness_doubt
 from alula.fea.doubts.friction_doubt import friction_doubt, friction_warnings
@@ -33,17 +31,20 @@ from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings,
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from alula.fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
+from alula.fea.judging.bearing import bearing_outcome
+from alula.fea.judging.judge import outcomes
+from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
+from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
+from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
+from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
-from alula.fea.outcomes.bearing import bearing_outcome
-from alula.fea.outcomes.judge import outcomes
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
-from alula.fea.outcomes.solid_buckling import solid_buckling_outcomes
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from alula.fea.refine.beyond_meshes import OpenRanges
@@ -564,7 +565,7 @@ def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink])
     """Return the error of displacements that links must keep to for the checks of points, the least of all."""
     found: dict[str, float] = {}
     for one in load_cases:
-        if any(isinstance(check, DisplacementCheck) and check.at for check in one.case.checks.values()):
+        if any(asked(one.case, DisplacementCheck, quantity=Quantity.DISPLACEMENT)):
             wanted = meshes_to_refine(one.case, one.load_case, one.moved, one.links(decided), one.free, one.forces)
             found |= {link: min(error, found.get(link, math.inf)) for link, error in wanted.items()}
     return found
@@ -577,10 +578,8 @@ def _grown(moved: LargeDisplacement) -> bool:
 
 def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, PinStress]:
     """Stresses of the pins that a check asks for."""
-    checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
-    asked = dict.fromkeys(joint for check in checks for joint in check.joints or case.pinned_joints)
     found = {}
-    for joint in asked:
+    for joint in asked_of(case, PinCheck):
         reaction = reactions.joints[joint]
         twist = twist_of(case, joint, float(reaction.wrench[5]), float(reactions.drive_torque))
         found[joint] = twisted(case, joint, shared_stress(case, joint, reaction, forces), twist)
@@ -591,11 +590,10 @@ def _bearing(
     case: Case, load_case: str, reactions: Reactions, forces: JointForces, growth: Mapping[str, Scatter]
 ) -> Iterator[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
-    for name, check in case.checks.items():
-        if isinstance(check, BearingCheck):
-            for joint in check.joints or case.bearing_joints:
-                every = [one.joints[joint].wrench for one in (reactions, *forces.sharings)]
-                yield bearing_outcome(case, load_case, name, check, joint, every, growth.get(joint))
+    for one in asked(case, BearingCheck):
+        joint, ways = one.subject.name, (reactions, *forces.sharings)
+        every = [way.joints[joint].wrench for way in ways]
+        yield bearing_outcome(case, load_case, one, every, growth.get(joint))
 
 
 def hand_calculations(case: Case) -> dict[str, CantileverCheck]:

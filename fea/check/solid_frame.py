@@ -17,13 +17,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import asked
 from alula.fea.beam.calibration import uncalibrated
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
 from alula.fea.common.reason import reason, together
 from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
-from alula.fea.common.verdict import Verdict
+from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.elements.space import displacement_space
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.case_statics import CaseStatics
@@ -134,10 +135,8 @@ def with_solids(
 def _leave_a_point_open(case: Case, load_case: str, moved: LargeDisplacement, forces: JointForces) -> bool:
     """Whether centre lines leave the check of a point open; what was followed on its deformed shape keeps them."""
     return not moved.followed and any(
-        outcome.verdict is Verdict.UNDECIDED
-        for name, check in case.checks.items()
-        if isinstance(check, DisplacementCheck) and check.at is not None
-        for outcome in [point_outcome(case, name, check, load_case, moved, {}, {}, forces)]
+        point_outcome(case, one, load_case, moved, {}, {}, forces).verdict is Verdict.UNDECIDED
+        for one in asked(case, DisplacementCheck, quantity=Quantity.DISPLACEMENT)
     )
 
 

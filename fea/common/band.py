@@ -1,7 +1,7 @@
 """A number with its error band."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from alula.fea.common.reason import Reason, reason
@@ -105,13 +105,33 @@ class Band:
         Returns
         -------
         Band
+            Not known where one of them is not.
         """
-        return cls(
-            value=max(band.value for band in bands),
-            low=max(band.low for band in bands),
-            high=max(band.high for band in bands),
-            sources=distinct(*(band.sources for band in bands)),
-        )
+        return cls._outermost(bands, max)
+
+    @classmethod
+    def least(cls, bands: Sequence["Band"]) -> "Band":
+        """Return the band of the least of several numbers, each within its band.
+
+        Parameters
+        ----------
+        bands : sequence of Band
+            At least one.
+
+        Returns
+        -------
+        Band
+            Not known where one of them is not.
+        """
+        return cls._outermost(bands, min)
+
+    @classmethod
+    def _outermost(cls, bands: Sequence["Band"], of: Callable[[Iterable[float]], float]) -> "Band":
+        lost = next((band for band in bands if band.unknowable), None)
+        if lost is not None:
+            return cls.unknown(lost.without)
+        value, low, high = map(of, zip(*((band.value, band.low, band.high) for band in bands), strict=True))
+        return cls(value=value, low=low, high=high, sources=distinct(*(band.sources for band in bands)))
 
     def inverse(self, numerator: float) -> "Band":
         """Return ``numerator`` divided by the number: strength over stress gives a safety factor.

@@ -1,10 +1,13 @@
 """Verdicts: pass, fail, or undecided where the error band straddles the limit."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, StrEnum
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
@@ -23,6 +26,10 @@ class Verdict(StrEnum):
         return {"pass": 0, "fail": 1, "undecided": 3}[self.value]
 
 
+Ends = float | NDArray[np.float64]
+Origin = Literal["loads", "motor", "shape", "vibration"]
+"""Where a number comes from; what comes from the shape is the same under every load case, and stands with the first."""
+Sided = bool | NDArray[np.bool_] | np.bool_
 _DECISIVE = (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS)
 """Of several checks, the first of these that any of them has is the verdict of all."""
 
@@ -47,23 +54,55 @@ class Sense(Enum):
         -------
         Verdict
         """
-        if self is Sense.AT_LEAST:
-            kept, missed = value.low >= limit, value.high < limit
-        else:
-            kept, missed = value.high <= limit, value.low > limit
+        kept, missed = self.sides(value.low, value.high, limit)
         return Verdict.PASS if kept else Verdict.FAIL if missed else Verdict.UNDECIDED
+
+    def sides(self, low: Ends, high: Ends, limit: float) -> tuple[Sided, Sided]:
+        """Tell whether a band keeps its limit as a whole, and whether it misses it as a whole.
+
+        Parameters
+        ----------
+        low, high : float or ndarray
+            Ends of a band, or of those of several poses or samples; NaN where they are not known.
+        limit : float
+            In the unit of the number.
+
+        Returns
+        -------
+        tuple of 2 bool or ndarray of bool
+            Both False where it is open.
+        """
+        if self is Sense.AT_LEAST:
+            return low >= limit, high < limit
+        return high <= limit, low > limit
+
+    def worst(self, bands: Sequence[Band]) -> Band:
+        """Return the band of the worst of several numbers, such as those of the poses of a motion.
+
+        Parameters
+        ----------
+        bands : sequence of Band
+            At least one.
+
+        Returns
+        -------
+        Band
+            Not known where one of them is not.
+        """
+        return (Band.least if self is Sense.AT_LEAST else Band.largest)(bands)
 
 
 class Quantity(StrEnum):
-    """What is set against a limit: its name, as text, with its unit ("" for a pure number) and its sense."""
+    """What is set against a limit: its name, as text, with its unit ("" for a pure number), its sense and origin."""
 
     unit: str
     sense: Sense
+    origin: Origin
 
-    def __new__(cls, name: str, unit: str, sense: Sense) -> "Quantity":
+    def __new__(cls, name: str, unit: str, sense: Sense, origin: Origin = "loads") -> "Quantity":
         """Return a member that is its name."""
         found = str.__new__(cls, name)
-        found._value_, found.unit, found.sense = name, unit, sense
+        found._value_, found.unit, found.sense, found.origin = name, unit, sense, origin
         return found
 
     SAFETY_FACTOR = "safety factor", "", Sense.AT_LEAST
@@ -82,21 +121,26 @@ class Quantity(StrEnum):
     """Fatigue strength over stress."""
     FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST
     """Life over the repetitions that are wanted."""
-    CLEARANCE = "clearance", "mm", Sense.AT_LEAST
+    CLEARANCE = "clearance", "mm", Sense.AT_LEAST, "shape"
     """Least gap between outlines that lie at one height; negative where they lie in each other."""
     LAYER_GAP = "gap between layers", "mm", Sense.AT_LEAST
     """Least gap along the pins that deflection and tilting pins leave between links that pass over each other."""
-    FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST
+    FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST, "vibration"
     """The lowest natural frequency over the motion, over that of the drive."""
-    DRIVE_POWER = "drive power", "W", Sense.AT_MOST
-    DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST
-    DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST
-    TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST
-    MASS = "total mass", "g", Sense.AT_MOST
-    SIZE_X = "size along x", "mm", Sense.AT_MOST
+    DRIVE_POWER = "drive power", "W", Sense.AT_MOST, "motor"
+    DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST, "motor"
+    DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST, "motor"
+    TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST, "motor"
+    MASS = "total mass", "g", Sense.AT_MOST, "shape"
+    SIZE_X = "size along x", "mm", Sense.AT_MOST, "shape"
     """Of the box about the linkage over all poses."""
-    SIZE_Y = "size along y", "mm", Sense.AT_MOST
-    SIZE_Z = "size along z", "mm", Sense.AT_MOST
+    SIZE_Y = "size along y", "mm", Sense.AT_MOST, "shape"
+    SIZE_Z = "size along z", "mm", Sense.AT_MOST, "shape"
+
+    @property
+    def unloaded(self) -> bool:
+        """True where it does not come from loads; they change frequencies alone, as far as they tighten links."""
+        return self.origin in ("shape", "vibration")
 
     def margins(self, value: float, low: float, high: float, limit: float) -> tuple[float, float, float]:
         """Return by what factor a banded number keeps its limit: 1 at the limit, less where it misses it.
@@ -134,11 +178,9 @@ def _share(value: float, limit: float) -> float:
 
 
 SIZES = (Quantity.SIZE_X, Quantity.SIZE_Y, Quantity.SIZE_Z)
-SHARED_QUANTITIES = (Quantity.CLEARANCE, Quantity.MASS, *SIZES)
-"""What is the same under every load case, and stands with the first one."""
-UNLOADED_QUANTITIES = (*SHARED_QUANTITIES, Quantity.FREQUENCY_RATIO)
-"""What does not come from loads; they change frequencies alone, as far as they tighten links."""
-MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
+UNLOADED_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.unloaded)
+"""What does not come from loads."""
+MOTOR_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.origin == "motor")
 """What is asked of a motor over the motion of a rigid linkage."""
 
 
@@ -338,13 +380,14 @@ class CheckOutcome:
     @property
     def gives_way(self) -> bool:
         """True where it says that the linkage as a whole does not hold the load."""
-        asked = self.subject == LINKAGE and self.quantity not in (Quantity.LIMIT_LOAD, *UNLOADED_QUANTITIES)
+        quantity = self.quantity
+        asked = self.subject == LINKAGE and quantity is not Quantity.LIMIT_LOAD and not quantity.unloaded
         return asked and self.verdict is Verdict.FAIL
 
     @property
     def shared(self) -> bool:
         """True where it is the same under every load case, and stands with the first one for all of them."""
-        return self.quantity in SHARED_QUANTITIES
+        return self.quantity.origin == "shape"
 
     @property
     def unit(self) -> str:

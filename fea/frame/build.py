@@ -1,7 +1,7 @@
 """Builds the frame of a linkage: nodes, beams, ties, guides and loads of all its links."""
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,29 +11,30 @@ from alula.fea.beam.cut_beam import changes
 from alula.fea.beam.flanks import Flanks, flanks_of
 from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.condensed import CondensedLink, LinkFlexibility
-from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
-from alula.fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
+from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam
+from alula.fea.frame.model import DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from alula.fea.frame.spring import FrameSpring
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import patch_span
 from alula.geometry.bodies.section import ring
+from alula.geometry.joints.joint_kinds import ALL_WAYS, MOVES, TURNS, Way, Ways
 from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.parts.part import Section
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
 from alula.loads.records.conditions import at_temperature
-from alula.loads.records.springs import Tendon, TurnSpring
-from alula.loads.states.springs import spring_states
+from alula.loads.states.actions import lasting
 from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
-TURNS: frozenset[Dof] = frozenset({"rx", "ry", "rz"})
 STIFF_IN_TWIST = 1e6
 """How many times its own twist stiffness the pin of the drive's joint, or of a bonded one, has between layers: the
 torque goes from the one link to the other beside the pin."""
-JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot": frozenset(), "slider": TURNS}
-"""What the two links of a joint share; guides add what slots hold."""
+DOF_OF: Mapping[Way, Dof] = dict(zip(Way, DOFS, strict=True))
+"""What the two links of a joint share in each way that is tied."""
+TIED_TURNS = (frozenset(TURNS), frozenset((Way.ABOUT_ALONG, Way.ABOUT_ACROSS)))
+"""All turns, or those but about the pin: of a node that is tied in others large displacements know no equations."""
 ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
@@ -92,29 +93,25 @@ def build_frame(
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
     builder = _Builder(case, pose, loads, solids or {})
     supports, ties, guides = builder.supports, [], []
-    revolute = {name: joint for name, joint in case.linkage.joints.items() if joint.type == "revolute"}
-    bonds = frozenset(name for name, joint in revolute.items() if bonded or joint.bonded)
+    joints = case.linkage.joints
+    bonds = frozenset(name for name, joint in joints.items() if joint.fixed or (bonded and not joint.slides))
     stiff = bonds if held is None else bonds | {held.joint}
     by_length = sorted(case.joints, key=lambda name: abs(case.linkage.rise(name)))
     contacts = {name: builder.contact(name, twists=name not in stiff) for name in by_length}
     places = np.array(builder.places)
     for name, joint in case.joints.items():
-        held_here = held is not None and name == held.joint
-        keeps = ALL_DOFS if joint.type == "slider" else TURNS
-        dofs = ALL_DOFS if name in bonds else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
+        ways = ALL_WAYS if name in bonds else joint.bears
+        if held is not None and name == held.joint:
+            ways |= joint.kind.driven
+        tied = _tied(ways)
+        dofs = frozenset(DOF_OF[way] for way in tied)
         first, second = contacts[name]
         if first is not None and second is not None:
             places[second] = places[first]
             ties += [Tie(nodes=(first, second), dofs=dofs)] if dofs else []
         else:
             supports += [Support(node=node, dofs=dofs) for node in (first, second) if node is not None and dofs]
-        if not {"ux", "uy"} <= dofs:
-            across = slot_normal(pose, name)
-            guides.append(Guide(carrier=first, pin=second, normal=across))
-            if joint.type == "slider":
-                guides.append(Guide(carrier=first, pin=second, normal=ALONG_PINS))
-            elif not dofs:
-                guides.append(Guide(carrier=first, pin=second, normal=across, axis=ALONG_PINS))
+        guides += [_guide(pose, name, way, contacts[name]) for way in Way if way in ways - tied]
     return LinkageFrame(
         pose=pose,
         held=held,
@@ -129,7 +126,7 @@ def build_frame(
             loads=tuple(builder.node_loads),
             names=tuple(builder.names),
             condensed=tuple(builder.condensed),
-            springs=tuple(_springs(case, pose, builder.points)),
+            springs=tuple(FrameSpring.of(one, pose, builder.points) for one in lasting(case)),
         ),
         points=builder.points,
         pins=builder.pins,
@@ -143,28 +140,19 @@ def build_frame(
     )
 
 
-def _springs(case: Case, pose: Pose, points: Mapping[tuple[str, str], int]) -> Iterator[FrameSpring]:
-    """Yield the springs and tendons of a case as they stand in a pose, on the nodes of links' points."""
-    for state in spring_states(case, pose.placement):
-        pull, pulls = float(state.effort), state.kind == "tendon"
-        record = case.tendons[state.name] if pulls else case.springs[state.name]
-        if isinstance(record, TurnSpring):
-            joint = record.joint
-            ends = tuple(zip(case.joints[joint].links, case.linkage.joint_points(joint), strict=True))
-        else:
-            route = record.through if isinstance(record, Tendon) else record.between
-            ends = tuple((one.link, one.at) for one in route)
-        if isinstance(record, Tendon) and record.free_length is not None and record.stiffness is not None:
-            pull = record.stiffness * (float(state.size) - record.free_length)
-        yield FrameSpring(
-            ends=ends,
-            nodes=tuple(points.get(end) for end in ends),
-            places=np.array([pose.position(*end) for end in ends]),
-            stiffness=record.stiffness or 0.0,
-            effort=pull,
-            pulls=pulls,
-            turns=state.turns,
-        )
+def _tied(ways: Ways) -> Ways:
+    """Return which of the ways that a joint bears a tie holds, in global axes: what has no direction of its own."""
+    moves, turns = ways & frozenset(MOVES), ways & frozenset(TURNS)
+    return (moves if Way.ALONG in ways else frozenset()) | (turns if turns in TIED_TURNS else frozenset())
+
+
+def _guide(pose: Pose, name: str, way: Way, nodes: tuple[int | None, int | None]) -> Guide:
+    """Return what holds a joint in a way by itself: a plane for its pin, or one for an axis that turns with it."""
+    planar = pose.placement.along(name)
+    along, across = vector(planar), vector(1j * planar)
+    normal = {Way.PIN: ALONG_PINS, Way.ABOUT_ACROSS: along}.get(way, across)
+    axis = {Way.ABOUT_ALONG: ALONG_PINS, Way.ABOUT_ACROSS: ALONG_PINS, Way.ABOUT_PIN: along}.get(way)
+    return Guide(carrier=nodes[0], pin=nodes[1], normal=normal, axis=axis)
 
 
 class _Builder:
@@ -228,23 +216,23 @@ class _Builder:
         rise = linkage.rise(name)
         if rise == 0.0:
             return first, second
-        revolute = joint.type == "revolute"
-        root, link = (first, joint.links[0]) if revolute else (second, joint.links[1])
-        eye, far, up = ((one, linkage.point_of(name, one)) for one in joint.links), 0.0, rise if revolute else -rise
-        own, other = eye if revolute else reversed([*eye])
-        for shorter, (start, end) in self.pin_eyes.items() if revolute else ():
+        root, link = (second, joint.links[1]) if joint.slides else (first, joint.links[0])
+        eyes = [(one, linkage.point_of(name, one)) for one in joint.links]
+        eye, opposite = reversed(eyes) if joint.slides else eyes
+        far, up = 0.0, -rise if joint.slides else rise
+        for shorter, (start, until) in self.pin_eyes.items() if joint.pivots else ():
             reach = linkage.rise(shorter)
-            if start == own and far < reach / up < 1.0 and linkage.joints[shorter].type == "revolute":
-                root, own, far = self.pin_ends[shorter], end, reach / up
+            if start == eye and far < reach / up < 1.0 and linkage.joints[shorter].pivots:
+                root, eye, far = self.pin_ends[shorter], until, reach / up
         if root is None:
             root = self._node(link, *self.case.links[link].points[linkage.point_of(name, link)], name)
             self.supports.append(Support(node=root))
-        self.pin_eyes[name] = own, other
+        self.pin_eyes[name] = eye, opposite
         self.places.append(self.places[root] + np.array([0.0, 0.0, (1.0 - far) * up]))
         self.names.append(f"the pin at {name}")
         self.pin_ends[name] = end = len(self.places) - 1
         self.pin_beams[name] = len(self.elements)
-        if joint.pin_diameter is None or joint.type == "slider":
+        if joint.pin_diameter is None or not joint.kind.has_pin:
             self._stiff(root, end, z_axis=ALONG_X)
         else:
             material = at_temperature(self.case.all_materials[joint.pin_material], self.case.conditions)
@@ -254,13 +242,13 @@ class _Builder:
             self.elements.append(
                 FrameElement(nodes=(root, end), section=section, young=young, poisson=poisson, z_axis=ALONG_X)
             )
-        return (end, second) if revolute else (first, end)
+        return (first, end) if joint.slides else (end, second)
 
     def _contacts(self, link: str) -> dict[str, tuple[float, float]]:
         """Joint -> place of its pin in the frame of a link that carries the slot."""
         found = {}
         for name, joint in self.case.joints.items():
-            if joint.type != "revolute" and joint.links[0] == link:
+            if joint.carrier == link:
                 pin = self.pose.position(joint.links[1], self.case.linkage.joint_points(name)[1])
                 x, y = self.pose.rotation(link).T @ (pin - self.pose.origins[link])
                 found[name] = (float(x), float(y))

@@ -165,7 +165,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
     CaseError
         Where no model has them, such as at a dead point of the driven link.
     """
-    bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
+    bonded = [name for name, joint in case.linkage.joints.items() if joint.fixed]
     which = reason("all_joints_bonded") if case.joint_model == "bonded" else _named(case, bonded)
     model = BONDED_FRAME if bonded else PINNED_FRAME
     system = assemble(pose.placement, case.pinned_drive, ())
@@ -314,7 +314,7 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[WayToHo
     drives: Mapping[str, Drive] = {
         link: Drive(link=link, joint=name)
         for name, joint in case.joints.items()
-        if joint.type == "revolute" and ground in joint.links
+        if not joint.slides and ground in joint.links
         for link in joint.links
         if link != ground
     }

@@ -13,7 +13,6 @@ free to slide along the slot, which turns with that station, to turn about its o
 along it and to tilt along the slot. A slider is free to slide, and carries all else.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -26,9 +25,8 @@ from alula.fea.frame.model import FrameModel
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
-from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction, travelled
-from alula.loads.statics.statics import Drive, Reactions, assemble
+from alula.loads.statics.statics import Drive, Reactions, assemble, unknowns_of
 from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
@@ -130,34 +128,23 @@ class LinkageFrame:
         """
         shape = np.zeros((len(self.model.nodes), 3)) if displacements is None else displacements
         on_link = _joint_by_joint(self, joint_wrenches, shape)
-        torque, push, joints = 0.0, 0.0, {}
-        effort = None if self.held is None else self.held.effort(self.pose.linkage)
-        for name, joint in self.pose.linkage.joints.items():
-            wrench = on_link[name].copy()
-            if self.held is not None and name == self.held.joint and effort is DriveEffort.TORQUE:
-                torque = float(wrench[5]) * (1.0 if joint.links[1] == self.held.link else -1.0)
-                wrench[5] = 0.0
-            joints[name] = JointReaction(
-                joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=self._arm(name, shape)
+        value = unknowns_of(self.pose.placement, self.held, on_link)
+        if self.held is not None and "T" in value:
+            on_link[self.held.joint][5] = 0.0
+        joints = {
+            name: JointReaction(
+                joint=name, on=joint.links[1], by=joint.links[0], wrench=on_link[name], arm=self._arm(name, shape)
             )
-        system = self._equilibrium
-        value = {f"R{name}{axis}": joints[name].wrench[k] for name in joints for k, axis in enumerate("xy")}
-        for name in joints:
-            value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
-            value[f"M:{name}"] = float(joints[name].wrench[5])
-        if self.held is not None and effort is DriveEffort.FORCE:
-            across = slot_normal(self.pose, self.held.joint)
-            force = joints[self.held.joint].wrench
-            push = self.held.sign(self.pose.linkage) * float(across[1] * force[0] - across[0] * force[1])
-        value |= {"T": torque, "P": push}
+            for name, joint in self.pose.linkage.joints.items()
+        }
         return Reactions(
             pose=self.pose,
             drive=self.held,
-            system=system,
-            unknowns=np.array([value[column] for column in system.columns]),
+            system=self._equilibrium,
+            unknowns=np.array(list(value.values())),
             joints=joints,
-            drive_torque=torque,
-            drive_force=push,
+            drive_torque=float(value.get("T", 0.0)),
+            drive_force=float(value.get("P", 0.0)),
             residual=residual,
         )
 
@@ -169,7 +156,7 @@ class LinkageFrame:
     def _arm(self, name: str, shape: Real) -> Real:
         """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""
         linkage, arm = self.pose.linkage, travelled(self.pose.placement, name)
-        if linkage.joints[name].type == "revolute" and name not in self.pin_beams:
+        if not linkage.joints[name].slides and name not in self.pin_beams:
             return arm  # one place in both links
         first, second = linkage.joints[name].links
         if second != linkage.ground:
@@ -221,26 +208,6 @@ def out_of_plane(loads: Sequence[Load]) -> bool:
     return False
 
 
-def slot_normal(pose: Pose, name: str) -> Real:
-    """Return the direction in the linkage's plane in which a joint's slot holds its pin.
-
-    Parameters
-    ----------
-    pose : Pose
-        The linkage's pose.
-    name : str
-        Of the joint.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        Unit vector, global axes.
-    """
-    joint = pose.linkage.joints[name]
-    along = pose.angles[joint.links[0]] + joint.direction
-    return np.array([-math.sin(along), math.cos(along), 0.0])
-
-
 def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> dict[str, Real]:
     """What each joint does to its second link (6,), told apart where several joints share a node.
 
@@ -262,7 +229,7 @@ def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> d
     for name, end in frame.pin_ends.items():
         held_by, wrench = frame.pins[name][1], -left[end]
         found[name] = wrench
-        if linkage.joints[name].type != "revolute":
+        if linkage.joints[name].slides:
             held_by = frame.pins[name][0]
             found[name] = shifted(-wrench, np.array([0.0, 0.0, -linkage.rise(name)]))
         if held_by is not None:

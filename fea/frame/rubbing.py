@@ -64,7 +64,7 @@ def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
     least = NOTHING * max(float(np.abs(wrench[:, :2]).max(initial=0.0)) for wrench in wrenches.values())
     for name in rubbing_joints(case):
         joint = case.joints[name]
-        if joint.type != "revolute":
+        if joint.slides:
             continue
         try:
             rings = eyes(case, name)

@@ -1,20 +1,19 @@
 """Springs and tendons of a frame: what they do more, or less, once its points have moved.
 
-As the frame stands, their forces are among its loads. In large displacement they follow the points: with the length L
-of a spring's line through k points, in the linkage's plane, and its gradient g by their places (2 k), the pull is
-
-    T = λ T0 + c (L - L0),    force -T g,    tangent c g gᵀ + T d²L
-
-where λ is the share of the loads, T0 and L0 pull and length as the frame stands, and c the stiffness. A tendon pulls
-where T > 0 alone. Springs about a joint turn with their two nodes about z.
+As the frame stands, their forces are among its loads. In large displacement they follow the points, in the linkage's
+plane: see ``alula.loads.acting.sprung``.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CannotRunError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.sizes import places
+from alula.loads.acting.sprung import Sprung
 
 Floats = NDArray[np.float64]
 
@@ -25,32 +24,44 @@ class FrameSpring:
 
     Attributes
     ----------
-    ends : tuple of tuple of 2 str
-        (link, point) of its points, one after the other; of a spring about a joint those of its two links.
+    acting : Sprung
     nodes : tuple of int or None
-        Numbers of their nodes; None on the ground.
-    places : ndarray, shape (k, 2)
-        Where they stand in the linkage's plane [mm].
-    stiffness : float
-        [N/mm], or [N mm/rad] about a joint.
-    effort : float
-        Pull as the frame stands [N]: of a slack tendon what it would be if it could push. Of no use about a joint.
-    pulls : bool
-        True for a tendon, which does not push.
-    turns : bool
-        True for a spring about a joint.
+        Numbers of the nodes of its ends; None on the ground.
+    places : complex ndarray, shape (k,)
+        Where its ends stand in the linkage's plane [mm].
+    size : float
+        Its length [mm] or angle [rad] as the frame stands.
+    softness : float
+        By which its stiffness is divided, as that of beams is, and what keeps a tendon slack.
     """
 
-    ends: tuple[tuple[str, str], ...]
+    acting: Sprung
     nodes: tuple[int | None, ...]
-    places: Floats
-    stiffness: float
-    effort: float = 0.0
-    pulls: bool = False
-    turns: bool = False
+    places: NDArray[np.complex128]
+    size: float
+    softness: float = 1.0
+
+    @classmethod
+    def of(cls, acting: Sprung, pose: Pose, points: Mapping[tuple[str, str], int]) -> "FrameSpring":
+        """Return a spring as it stands in a pose.
+
+        Parameters
+        ----------
+        acting : Sprung
+        pose : Pose
+        points : mapping of (str, str) to int
+            (link, point) -> number of its node.
+
+        Returns
+        -------
+        FrameSpring
+        """
+        place, ends = pose.placement, acting.ends
+        nodes = tuple(points.get(end) for end in ends)
+        return cls(acting=acting, nodes=nodes, places=places(place, ends), size=float(acting.along.of(place)))
 
     def softened(self, factor: float) -> "FrameSpring":
-        """Return the spring with its stiffness divided by a factor, as that of beams is.
+        """Return the spring with its stiffness divided by a factor.
 
         Parameters
         ----------
@@ -59,71 +70,48 @@ class FrameSpring:
         Returns
         -------
         FrameSpring
-            What keeps a tendon slack is divided too.
         """
-        effort = self.effort / factor if self.pulls and self.effort < 0.0 else self.effort
-        return replace(self, stiffness=self.stiffness / factor, effort=effort)
+        return replace(self, softness=self.softness * factor)
 
-    def loaded(self, factor: float) -> float:
-        """Return its pull as the frame stands under a share of the loads; what keeps a tendon slack is no load.
-
-        Parameters
-        ----------
-        factor : float
-
-        Returns
-        -------
-        float
-            [N]
-        """
-        return self.effort if self.pulls and self.effort < 0.0 else factor * self.effort
-
-    def pull(self, displacements: Floats, factor: float) -> tuple[float, Floats, Floats]:
-        """Return its pull where its points have moved, with gradients.
+    def resists(self, displacements: Floats, turns: Floats, factor: float) -> tuple[Floats, Floats]:
+        """Return what it resists where its ends have moved, and its tangent.
 
         Parameters
         ----------
         displacements : ndarray, shape (k, 2)
-            Of its points [mm].
+            Of its ends [mm].
+        turns : ndarray, shape (k,)
+            By how much they are turned about z [rad].
         factor : float
             Share of the loads.
 
         Returns
         -------
-        tuple of float and 2 ndarray
-            Pull [N], its work per displacement T g less that of the pull as the frame stands (k, 2) [N], and the
-            tangent (2 k, 2 k) [N/mm].
+        tuple of 2 ndarray
+            Fx, Fy and Mz at its ends, less those as the frame stands (k, 3) [N, N mm]; the tangent (3 k, 3 k).
 
         Raises
         ------
         CannotRunError
             Where two neighbouring points meet.
         """
-        length, rest = _line(self.places)[0], self.loaded(factor)
-        now, gradient, bend = _line(self.places + displacements)
-        pull, holds = rest + self.stiffness * (now - length), True
-        if self.pulls and (pull < 0.0 or (pull == 0.0 and self.effort <= 0.0)):
-            pull, holds = 0.0, False
-        flat = gradient.ravel()
-        tangent = pull * bend + (self.stiffness * np.outer(flat, flat) if holds else 0.0)
-        before = max(rest, 0.0) if self.pulls else rest
-        return pull, pull * gradient - before * _line(self.places)[1], tangent
-
-
-def _line(places: Floats) -> tuple[float, Floats, Floats]:
-    """Return the length of a line through points (k, 2), its gradient (k, 2) and second derivatives (2 k, 2 k)."""
-    ways = np.diff(places, axis=0)
-    lengths = np.linalg.norm(ways, axis=1)
-    if not np.all(lengths > 0.0):
-        raise CannotRunError("two points of a spring or tendon meet, so that the direction of its force is not known")
-    along = ways / lengths[:, None]
-    gradient, bend = np.zeros(places.shape), np.zeros((2 * len(places), 2 * len(places)))
-    for i, (unit, length) in enumerate(zip(along, lengths, strict=True)):
-        gradient[i] -= unit
-        gradient[i + 1] += unit
-        across = (np.eye(2) - np.outer(unit, unit)) / length
-        bend[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += np.kron(np.array([[1.0, -1.0], [-1.0, 1.0]]), across)
-    return float(lengths.sum()), gradient, bend
+        along, law = self.acting.along, self.acting.law
+        moved = self.places + displacements @ [1.0, 1.0j]
+        if any((*along.meeting(moved, 0.0), *along.meeting(self.places, 0.0))):
+            raise CannotRunError(
+                "two points of a spring or tendon meet, so that the direction of its force is not known"
+            )
+        still = float(law.wanted(self.size))
+        slack = law.pulls and still < 0.0
+        before = still / self.softness if slack else factor * still
+        grown = float(along.between(moved, turns) - along.between(self.places, np.zeros(len(turns))))
+        effort = before + (float(law.wanted(self.size + grown)) - still) / self.softness
+        if law.pulls and (effort < 0.0 or (effort == 0.0 and still <= 0.0)):
+            effort, tangent = 0.0, np.zeros(2 * (3 * len(turns),))
+        else:
+            tangent = self.acting.bent(moved, effort, law.slope(self.size + grown) / self.softness)
+        before = max(before, 0.0) if law.pulls else before
+        return effort * along.gradient(moved) - before * along.gradient(self.places), tangent
 
 
 def turn_about_z(rotation: Floats) -> float:

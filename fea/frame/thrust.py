@@ -36,7 +36,7 @@ def thrusts(forces: JointForces, deformed: Reactions | None = None) -> dict[str,
     sources = distinct(forces.sources, COUPLES if forces.sharings else ())
     found = {}
     for name, joint in linkage.joints.items():
-        if joint.type != "revolute" or joint.bonded:
+        if not joint.pivots:
             continue
         value, own = float(shown[name].wrench[2]), float(plain[name].wrench[2])
         steps = np.array(

@@ -12,7 +12,6 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from alula.fea.elements.mouth import reference_surfaces
 from alula.fea.links.clamp_edge import CLAMP, EDGE, edge_stress
 from alula.fea.outcomes.compare import compare_sections
 from alula.fea.outcomes.layer_stress import LayerStress
@@ -21,7 +20,7 @@ from alula.fea.outcomes.result import SolidResult, VariantPeak
 from alula.fea.refine.convergence import GridConvergence
 from alula.fea.refine.discretisation import Discretisation, discretisation_source, judged
 from alula.fea.refine.link_series import STRESS, CasePrecision, Measure, PeakQuantity
-from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.link_task import ElasticLink, LinkTask
 from alula.fea.refine.refinement import RefinedSolid
 from alula.fea.refine.singular import LOADED
 from alula.fea.solid.layers import Layers, best_directions, on_plane
@@ -47,18 +46,12 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
     -------
     LinkTask
     """
-    material, body = case.material_of(link), case.body(link)
+    body = case.body(link)
     return LinkTask(
-        body=body,
+        **vars(ElasticLink.of(body, case.material_of(link), layers_of(case, link))),
         loads=tuple(loads),
-        E=material.youngs_modulus,
-        nu=material.poissons_ratio,
-        density=material.density,
-        line=reference_surfaces(body),
-        brittle=material.brittle,
         stress_limits=stress_limits(case, link),
         displacement_limits=displacement_limits(case, link),
-        layers=layers_of(case, link),
         layer_limits=layer_limits(case, link),
         holding=None if body.part.is_beam else solid_holding(case, link),
     )

@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.motion.envelope_result import StressAlong, VariantCurve
-from alula.fea.solid.stress import extreme_principal, von_mises
-from alula.fea.superposition.unit_solutions import UnitSolutions
+from alula.fea.superposition.link_measure import LinkMeasure
 from alula.geometry.base.ties import first_largest
 
 Real = NDArray[np.float64]
@@ -31,20 +30,16 @@ def spread_poses(count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, count - 1, min(count, POSES)).round().astype(np.int64))
 
 
-def stress_along(
-    solved: UnitSolutions, curve: VariantCurve, evaluated: NDArray[np.bool_], *, brittle: bool
-) -> StressAlong:
+def stress_along(measure: LinkMeasure, curve: VariantCurve, evaluated: NDArray[np.bool_]) -> StressAlong:
     """Return the stress along a link over a motion: at evenly spread poses, and at the worst.
 
     Parameters
     ----------
-    solved : UnitSolutions
+    measure : LinkMeasure
     curve : VariantCurve
         The variant that governs.
     evaluated : ndarray of bool, shape (n,)
         The poses that count; others are left out.
-    brittle : bool
-        True for the largest principal stress, False for the von Mises stress.
 
     Returns
     -------
@@ -54,6 +49,7 @@ def stress_along(
     poses = np.union1d(spread_poses(len(evaluated)), [first_largest(curve.stress)])
     poses = poses[evaluated[poses]]
     loads = curve.first + np.cumsum(evaluated)[poses] - 1
+    solved = measure.solved
     x = solved.space.nodes[solved.nodes, 0]
     first, last = float(x.min()), float(x.max())
     stretches = STATIONS
@@ -64,8 +60,5 @@ def stress_along(
         stretches -= 1
     stress = np.empty((len(poses), stretches))
     for k in range(stretches):
-        nodes = solved.stress[stretch == k]
-        sigma = (nodes @ solved.combination[:, loads]).swapaxes(1, 2)
-        values = extreme_principal(sigma)[0] if brittle else von_mises(sigma)
-        stress[:, k] = values.max(axis=0)
+        stress[:, k] = measure.decisive.at(np.flatnonzero(stretch == k), solved.combination[:, loads]).max(axis=0)
     return StressAlong(first=first, last=last, poses=poses, stress=stress)

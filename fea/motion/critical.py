@@ -1,7 +1,5 @@
 """Where a link fatigues first: among all nodes, the one at which the largest cycle of a motion harms most."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,8 +13,8 @@ Real = NDArray[np.float64]
 _BLOCK = 128
 
 
-def critical_nodes(modes: ModeMeasures, combinations: Sequence[Real], material: Material) -> list[tuple[int, Real]]:
-    """Return the node that fatigues first, for each of several motions.
+def critical_node(modes: ModeMeasures, stress: Real, combination: Real, material: Material) -> tuple[int, Real]:
+    """Return the node that fatigues first over a motion.
 
     The largest cycle of a node goes from its smallest to its largest signed stress. A node is left out if the cycle
     between bounds on these harms no more than the cycle of one already found.
@@ -24,22 +22,20 @@ def critical_nodes(modes: ModeMeasures, combinations: Sequence[Real], material: 
     Parameters
     ----------
     modes : ModeMeasures
-    combinations : sequence of ndarray, shape (m, n)
-        Of the modes at the n poses of each motion.
+        Of the largest principal or the von Mises stress, as the material breaks.
+    stress : ndarray, shape (nodes, 6, m)
+        Components of the modes [MPa].
+    combination : ndarray, shape (m, n)
+        Of the modes at the n poses.
     material : Material
         With fatigue data.
 
     Returns
     -------
-    list of tuple of (int, ndarray, shape (n,))
+    tuple of (int, ndarray, shape (n,))
         The node, and the history of its signed stress [MPa].
     """
-    return [_critical(modes, combination, material) for combination in combinations]
-
-
-def _critical(modes: ModeMeasures, combination: Real, material: Material) -> tuple[int, Real]:
-    stress = modes.stress
-    bound = _largest_harm(*signed_bounds(modes, combination, brittle=material.brittle), material)
+    bound = _largest_harm(*signed_bounds(modes, combination), material)
     order = np.argsort(-bound)
     best, node, history = _most_harmed(stress, order[:_BLOCK], combination, material)
     for start in range(_BLOCK, len(order), _BLOCK):

@@ -12,9 +12,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.buckling.linkage import unless_it_gives_way
+from alula.fea.asked.at_temperature import as_known
 from alula.fea.check.run import effort_of
-from alula.fea.common.at_temperature import as_known
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
@@ -22,6 +21,7 @@ from alula.fea.common.scatter import Scatter, load_scatter
 from alula.fea.common.threads import bounded, bounded_run
 from alula.fea.common.verdict import CheckOutcome, overall
 from alula.fea.elements.space import DisplacementSpace, displacement_space
+from alula.fea.judging.linkage import unless_it_gives_way
 from alula.fea.links.clamp_edge import CLAMP_SCATTER
 from alula.fea.links.solid_result import link_task
 from alula.fea.motion.buckling_history import with_second_order
@@ -41,7 +41,7 @@ from alula.fea.refine.refinement import START, Effort, refine_links
 from alula.fea.solid.solution import require_compressible
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.fea.superposition.solid_shares import solid_shares
-from alula.fea.whole.outcomes import unloaded_outcomes, whole_numbers
+from alula.fea.whole.outcomes import KINDS, unloaded_outcomes, whole_numbers
 from alula.fea.whole.rubbed_motion import rubbed_motion, work_between
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.bodies.body import clamped_end
@@ -148,8 +148,7 @@ class _Envelope:
                 space = refined.solution.space
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
-            layers = layers_of(case, link)
-            shared, layered = {}, replace(task, layers=layers)
+            shared, layered = {}, replace(task, layers=motion.measure.link.layers)
             for load_case in dict.fromkeys(history.name for history in self.loaded[link]):
                 if (load_case, link) in self.ways:
                     couples = [self.ways[load_case, link]]
@@ -167,9 +166,9 @@ class _Envelope:
             found = motion.envelope(repetitions=repetitions, refined=refined, scatter=own)
             every = {x: built_in_any_direction(case, motion, one, own[x]) for x, one in found.load_cases.items()}
             found = replace(found, notes=(*of_pair(case, link), *found.notes), load_cases=every)
-            if layers is None or not found.worst.known:
+            if layered.layers is None or not found.worst.known:
                 return found
-            return replace(found, layers=layer_envelopes(motion, layers, scatter("layers"), repetitions))
+            return replace(found, layers=layer_envelopes(motion, scatter("layers"), repetitions))
 
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""
@@ -189,6 +188,7 @@ class _Envelope:
             evaluated=self.evaluated,
             stated=case.torque_transfer,
             returns=self.moved.motion.returns,
+            layers=layers_of(case, link),
         )
 
     def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool = False) -> list[CheckOutcome]:
@@ -364,7 +364,7 @@ def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growt
         )
     elif left_out:
         found.append(reason("poses_without_balance", left_out=left_out, poses=len(evaluated)))
-    others = [name for name, check in case.all_checks.items() if not isinstance(check, FOLLOWED)]
+    others = [name for name, check in case.all_checks.items() if not isinstance(check, (*FOLLOWED, *KINDS))]
     if others:
         found.append(reason("not_checked_over_motion", checks=others))
     if case.large_displacement != "off":

@@ -7,35 +7,32 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked, asked
 from alula.fea.buckling.buckling import column_outcome, worst_column
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
+from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.other_case import widened
+from alula.fea.judging.bearing import bearing_outcome, pressing
+from alula.fea.judging.judge import link_outcome
+from alula.fea.judging.layers import CHECK as LAYERS
+from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
+from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.loosened import MotionGrowth, column_growth, joint_growth
-from alula.fea.outcomes.bearing import bearing_outcome, pressing
-from alula.fea.outcomes.judge import safety_factor_outcome
-from alula.fea.outcomes.layers import CHECK as LAYERS
-from alula.fea.outcomes.layers import no_strength, without_shear
-from alula.fea.outcomes.limits import layer_limit
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
-from alula.fea.outcomes.solid_buckling import undecided_buckling
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.records.check_spec import (
     BearingCheck,
-    ClearanceCheck,
-    FrequencyCheck,
     LimitLoadCheck,
-    MassCheck,
     PinCheck,
     SafetyFactorCheck,
-    SizeCheck,
 )
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.joint_reaction import JointReaction
@@ -43,11 +40,8 @@ from alula.loads.statics.joint_reaction import JointReaction
 BEYOND_CARD = reason("repetitions_beyond_card")
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (
-    *(SafetyFactorCheck, PinCheck, BearingCheck),
-    *(LimitLoadCheck, ClearanceCheck, FrequencyCheck, MassCheck, SizeCheck),
-)
-"""Checks of the case that are decided over the motion."""
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck)
+"""Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
 def envelope_outcomes(
@@ -80,29 +74,31 @@ def envelope_outcomes(
     CaseError
         Where neither check nor material states a limit, or a pin has no diameter.
     """
-    case, found = moved.case, []
-    for name, check in case.all_checks.items():
-        if isinstance(check, SafetyFactorCheck):
-            for link in (x for x in check.links or case.checked_links if x in links):
-                for load_case, over in links[link].load_cases.items():
-                    meshes = over.discretisation
-                    outcome = safety_factor_outcome(case, name, check, load_case, link, over.safety_factor, meshes)
-                    found.append(_complete(outcome, evaluated))
-        elif isinstance(check, PinCheck | BearingCheck):
-            found += _joints(moved, name, check, evaluated, grown or {})
+    case, found = moved.case, list[CheckOutcome]()
+    for one in asked(case, SafetyFactorCheck, PinCheck, BearingCheck):
+        if one.subject.kind == "pin":
+            found += _joint(moved, one, evaluated, grown or {})
+        elif one.subject.name in links:
+            for load_case, over in links[one.subject.name].load_cases.items():
+                outcome = link_outcome(case, load_case, one, over.safety_factor, over.discretisation)
+                found.append(_complete(outcome, evaluated))
     for link, envelope in links.items():
         found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
             if over.fatigue is not None:
                 found += fatigue_outcomes(case.material_of(link).fatigue, link, load_case, over.fatigue)
             elif lasting:
-                why = envelope.no_fatigue or reason("peak_not_known")
-                subject, unknown = Subject.link(link), Band.unknown(why)
-                quantity = Quantity.FATIGUE_STRESS
-                found.append(CheckOutcome.of("fatigue", subject, load_case, quantity, unknown, STRESS_FACTOR, why))
+                unknown = Band.unknown(envelope.no_fatigue or reason("peak_not_known"))
+                found.append(_fatigue(link, Quantity.FATIGUE_STRESS).outcome(load_case, unknown))
         for load_case, layers in envelope.layers.items():
             found += layer_fatigue_outcomes(case.material_of(link), link, load_case, layers)
     return found
+
+
+def _fatigue(link: str, quantity: Quantity, name: str = "fatigue") -> Asked:
+    """What nobody has to ask for: fatigue over a motion, against its default limits."""
+    limit = STRESS_FACTOR if quantity is Quantity.FATIGUE_STRESS else LIFE_FACTOR
+    return Asked(name=name, subject=Subject.link(link), quantity=quantity, limit=limit)
 
 
 def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iterator[CheckOutcome]:
@@ -119,22 +115,20 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
     CheckOutcome
         None for a link whose layers are not checked.
     """
-    case, limit, subject = moved.case, layer_limit(moved.case, link), Subject.link(link)
-    if limit is None:
+    case, one = moved.case, asked_of_layers(moved.case, link)
+    if one is None:
         return
     material = case.material_of(link)
     for load_case, over in envelope.load_cases.items():
         found = envelope.layers.get(load_case)
-        value = Band.unknown() if found is None else found.safety_factor
-        outcome = CheckOutcome.of(LAYERS, subject, load_case, Quantity.LAYERS, value, limit)
         if found is not None:
             where = reason("at_pose_and_place", pose=_when(moved, found.pose), place=tuple(map(float, found.location)))
-            outcome = outcome.because(together(outcome.reason, where))
-            yield outcome if material.shear_strength_between_layers else without_shear(outcome, material.title)
+            yield layers_judged(case, load_case, one, found.safety_factor, where)
         elif material.strength_across_layers is None:
-            yield outcome.because(no_strength(material.title))
+            yield one.outcome(load_case, Band.unknown(), no_strength(material.title))
         else:
-            yield outcome.because(over.discretisation.reason if over.discretisation else reason("peak_not_known"))
+            why = over.discretisation.reason if over.discretisation else reason("peak_not_known")
+            yield one.outcome(load_case, Band.unknown(), why)
 
 
 def layer_fatigue_outcomes(
@@ -157,11 +151,7 @@ def layer_fatigue_outcomes(
     fatigue, name = layers.fatigue, f"fatigue of {LAYERS}"
     if fatigue is None:
         if layers.no_fatigue:
-            unknown = Band.unknown(layers.no_fatigue)
-            subject = Subject.link(link)
-            yield CheckOutcome.of(
-                name, subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, layers.no_fatigue
-            )
+            yield _fatigue(link, Quantity.FATIGUE_STRESS, name).outcome(load_case, Band.unknown(layers.no_fatigue))
         return
     place = tuple(map(float, fatigue.location))
     where = reason("fatigue_of_layers", tension=fatigue.tension, shear=fatigue.shear, place=place)
@@ -189,72 +179,71 @@ def fatigue_outcomes(
     ------
     CheckOutcome
     """
-    subject, wanted = Subject.link(link), fatigue.wanted
+    wanted, stress = fatigue.wanted, _fatigue(link, Quantity.FATIGUE_STRESS, name)
     if fatigue.strength is not None:
-        factor = fatigue.stress.inverse(fatigue.strength)
-        yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_STRESS, factor, STRESS_FACTOR)
+        yield stress.outcome(load_case, fatigue.stress.inverse(fatigue.strength))
     elif fatigue.repetitions is None:
         assert data is not None
-        unknown = Band.unknown(BEYOND_CARD)
         why = reason("card_ends_before", cycles=data.cycles, wanted=wanted)
-        yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, why)
+        yield stress.outcome(load_case, Band.unknown(BEYOND_CARD), why)
     if fatigue.repetitions is not None:
-        share = fatigue.repetitions.times(1.0 / wanted)
-        yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_LIFE, share, LIFE_FACTOR)
+        life = _fatigue(link, Quantity.FATIGUE_LIFE, name)
+        yield life.outcome(load_case, fatigue.repetitions.times(1.0 / wanted))
 
 
-def _joints(
-    moved: CaseMotion,
-    name: str,
-    check: PinCheck | BearingCheck,
-    evaluated: NDArray[np.bool_],
-    grown: Mapping[str, MotionGrowth],
+def _joint(
+    moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, MotionGrowth]
 ) -> Iterator[CheckOutcome]:
-    """Outcome of every joint at the pose of its largest force, to which in a plane all its stresses are in proportion.
+    """Outcome of a joint under every load case, at the pose where its pin or its eyes bear most."""
+    joint = one.subject.name
+    for load_case, solved in moved.forces.items():
+        growth = joint_growth(moved, load_case, joint, evaluated)
+        if load_case in grown and joint in grown[load_case].joints:
+            growth = growth.times(grown[load_case].joints[joint])
+        worst = _worst_bearing if isinstance(one.check, BearingCheck) else _worst_pin
+        pose, outcome = worst(moved, one, load_case, evaluated, growth)
+        force = float(np.linalg.norm(solved.forces[joint][pose]))
+        outcome = _complete(outcome, evaluated)
+        yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
 
-    Between layers, and where a torque goes through it, a pin is judged where its own stress is largest.
+
+def _worst_bearing(
+    moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> tuple[int, CheckOutcome]:
+    """Return the pose where either eye is pressed most, and the outcome there."""
+    case, joint = moved.case, one.subject.name
+    wrenches = moved.forces[load_case].joints[joint].wrench
+    pressed = np.max([*pressing(case, joint, wrenches).values()], axis=0)
+    pose = first_largest(np.where(evaluated, pressed, -np.inf))
+    every = [wrenches[pose]]
+    if case.linkage.rise(joint) != 0.0 and any(case.links[x].count == 2 for x in case.joints[joint].links):
+        every += [way.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
+    return pose, bearing_outcome(case, load_case, one, every, growth)
+
+
+def _worst_pin(
+    moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> tuple[int, CheckOutcome]:
+    """Return the pose where a pin is stressed most, and the outcome there.
+
+    That is the pose of the largest force, to which in a plane all stresses are in proportion. Between layers, and where
+    a torque goes through the pin, it is that of its own largest stress.
     """
-    case = moved.case
-    asked = case.bearing_joints if isinstance(check, BearingCheck) else case.pinned_joints
-    for joint in check.joints or asked:
-        for load_case, solved in moved.forces.items():
-            wrenches = solved.joints[joint].wrench
-            bearing = isinstance(check, BearingCheck)
-            pressed = np.max([*pressing(case, joint, wrenches).values()], axis=0)
-            size = np.where(evaluated, pressed if bearing else np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
-            twists: list[Band] = []
-            if isinstance(check, PinCheck):
-                turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
-                twists = [twist_of(case, joint, *of) for of in zip(wrenches[:, 5], turning, strict=True)]
-            between_layers = isinstance(check, PinCheck) and case.linkage.rise(joint) != 0.0
-            by_itself = between_layers or any(twist.high > 0.0 for twist in twists)
-            if by_itself:
-                at_poses = [_at(solved.joints[joint], i) for i in range(len(evaluated))]
-                found = zip(at_poses, twists, evaluated, strict=True)
-                size = np.array(
-                    [
-                        twisted(case, joint, stress_at(case, joint, r), twist).equivalent.high if counts else -np.inf
-                        for r, twist, counts in found
-                    ]
-                )
-            pose = first_largest(size)
-            growth = joint_growth(moved, load_case, joint, evaluated)
-            if load_case in grown and joint in grown[load_case].joints:
-                growth = growth.times(grown[load_case].joints[joint])
-            force = float(np.linalg.norm(solved.forces[joint][pose]))
-            if isinstance(check, BearingCheck):
-                every = [wrenches[pose]]
-                if case.linkage.rise(joint) != 0.0 and any(case.links[x].count == 2 for x in case.joints[joint].links):
-                    every += [way.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
-                outcome = bearing_outcome(case, load_case, name, check, joint, every, growth)
-            elif by_itself:
-                shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
-                shared = twisted(case, joint, shared, twists[pose])
-                outcome = pin_outcome(case, load_case, name, check, joint, shared, growth)
-            else:
-                outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force), growth)
-            outcome = _complete(outcome, evaluated)
-            yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
+    case, joint, solved = moved.case, one.subject.name, moved.forces[load_case]
+    reaction, sizes = solved.joints[joint], np.linalg.norm(solved.forces[joint], axis=1)
+    turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
+    twists = [twist_of(case, joint, *of) for of in zip(reaction.wrench[:, 5], turning, strict=True)]
+    if case.linkage.rise(joint) == 0.0 and not any(twist.high > 0.0 for twist in twists):
+        pose = first_largest(np.where(evaluated, sizes, -np.inf))
+        return pose, pin_outcome(case, load_case, one, stress_of(case, joint, float(sizes[pose])), growth)
+    at_poses = [_at(reaction, i) for i in range(len(evaluated))]
+    bent = [
+        twisted(case, joint, stress_at(case, joint, r), twist).equivalent.high if counts else -np.inf
+        for r, twist, counts in zip(at_poses, twists, evaluated, strict=True)
+    ]
+    pose = first_largest(np.array(bent))
+    shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
+    return pose, pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
 
 
 def _at(reaction: JointReaction, pose: int) -> JointReaction:

@@ -10,31 +10,30 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
+from alula.fea.judging.layers import in_any_direction, may_lie_in_any_direction
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.fatigue import closed_history, not_closed, strength_at
 from alula.fea.motion.layer_fatigue import LayerCycle, critical_layer
 from alula.fea.motion.link_envelope import LinkMotion
-from alula.fea.outcomes.layers import in_any_direction, may_lie_in_any_direction
-from alula.fea.solid.layers import Layers
-from alula.fea.superposition.peaks import ModeMeasures, largest_stress
+from alula.fea.refine.link_series import STRESS
+from alula.fea.superposition.link_measure import StatePeaks
 from alula.geometry.base.ties import first_largest
+from alula.geometry.materials.material import Fatigue
 from alula.loads.case.case import Case
-from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 Real = NDArray[np.float64]
 ESTIMATED = Source(kind=SourceKind.DISCRETISATION, detail=reason("fourfold_estimate_of_layers"))
 
 
 def layer_envelopes(
-    motion: LinkMotion, layers: Layers, scatter: Mapping[str, Scatter], repetitions: float | None = None
+    motion: LinkMotion, scatter: Mapping[str, Scatter], repetitions: float | None = None
 ) -> dict[str, LayerEnvelope]:
     """Return the layers of a link over a motion under every load case.
 
     Parameters
     ----------
     motion : LinkMotion
-        The link, solved on its finest mesh.
-    layers : Layers
+        The link, solved on its finest mesh, with layers.
     scatter : mapping of str to Scatter
         Load case -> that of its loads.
     repetitions : float, optional
@@ -44,14 +43,14 @@ def layer_envelopes(
     -------
     dict of str to LayerEnvelope
     """
-    value, place, upper = _peaks(motion, layers)
+    peaks = motion.measure.peaks("layers")
     lacking = _lacking(motion, repetitions)
     known = motion.material.fatigue_across_layers is not None and not lacking
     found = {}
     for name, curves in motion.curves.items():
         load = scatter.get(name, Scatter())
-        fatigue = _fatigue(motion, layers, curves, load, repetitions) if known else None
-        own = _over_motion(motion, layers, curves, value, place, upper, load)
+        fatigue = _fatigue(motion, curves, load, repetitions) if known else None
+        own = _over_motion(motion, curves, peaks, load)
         found[name] = replace(own, fatigue=fatigue, no_fatigue=lacking)
     return found
 
@@ -86,13 +85,11 @@ def built_in_any_direction(
 
 def _largest(motion: LinkMotion, curves: Sequence[VariantCurve], *, brittle: bool) -> float:
     """Return the upper end of the largest stress of a load case, by the fourfold estimate on one mesh [MPa]."""
-    peaks = largest_stress(motion.solved.measures, motion.solved.combination, brittle=brittle)
-    count, found = int(motion.evaluated.sum()), []
+    peaks, count, found = motion.measure.peaks(STRESS[brittle]), int(motion.evaluated.sum()), []
     for curve in curves:
         number = curve.first + first_largest(peaks.value[curve.first : curve.first + count])
-        error = motion.local_error(number, int(motion.solved.nodes[peaks.node[number]]))
-        contact = 1.0 - CONTACT_SHORTFALL if curve.span == NARROW.span else 1.0
-        found.append((max(float(peaks.value[number]), 0.0) + error) / contact)
+        peak = max(float(peaks.value[number]), 0.0)
+        found.append(motion.measure.ends(STRESS[brittle], number, int(peaks.node[number]), peak)[1])
     return max(found)
 
 
@@ -109,50 +106,21 @@ def _lacking(motion: LinkMotion, repetitions: float | None) -> Reason | None:
     return reason("no_fatigue_data_of_layers", material=material.title)
 
 
-def _peaks(motion: LinkMotion, layers: Layers) -> tuple[Real, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return the largest stress on layers under each of the solutions' loads, its node, and whether z ≥ 0 there.
-
-    Where the upper half of the link tells all, the lower one has the same stress on mirrored layers.
-    """
-    solved = motion.solved
-    sides = [
-        largest_stress(ModeMeasures.of(solved.stress, one), solved.combination, brittle=False, layers=one)
-        for one, _ in _sides(motion, layers)
-    ]
-    values = np.array([side.value for side in sides])
-    best = np.argmax(values, axis=0)
-    nodes = np.array([solved.nodes[side.node] for side in sides])
-    return values.max(axis=0), np.take_along_axis(nodes, best[None], axis=0)[0], best == 0
-
-
-def _over_motion(
-    motion: LinkMotion,
-    layers: Layers,
-    curves: Sequence[VariantCurve],
-    value: Real,
-    place: NDArray[np.int64],
-    upper: NDArray[np.bool_],
-    load: Scatter,
-) -> LayerEnvelope:
-    count = int(motion.evaluated.sum())
-    peaks = {}
-    for curve in curves:
-        number = curve.first + first_largest(value[curve.first : curve.first + count])
-        error = layers.sensitivity * motion.local_error(number, int(place[number]))
-        contact = 1.0 - CONTACT_SHORTFALL if curve.span == NARROW.span else 1.0
-        peak = float(value[number])
-        peaks[number] = peak, max(peak - error, 0.0), (peak + error) / contact, curve
-    own = [number for number, (*_, curve) in peaks.items() if curve.transfer in (None, motion.stated)]
-    worst = own[first_largest([value[number] for number in own])]
-    curve = peaks[worst][-1]
+def _over_motion(motion: LinkMotion, curves: Sequence[VariantCurve], peaks: StatePeaks, load: Scatter) -> LayerEnvelope:
+    layers, value, count = motion.measure.sides[0][0], peaks.value, int(motion.evaluated.sum())
+    numbers = [curve.first + first_largest(value[curve.first : curve.first + count]) for curve in curves]
+    ends = [motion.measure.ends("layers", number, int(peaks.node[number]), float(value[number])) for number in numbers]
+    own = [i for i, curve in enumerate(curves) if curve.transfer in (None, motion.stated)]
+    governing = own[first_largest([value[numbers[i]] for i in own])]
+    curve, worst = curves[governing], numbers[governing]
     stress = Band(
         value=float(value[worst]),
-        low=min(low for _, low, _, _ in peaks.values()),
-        high=max(high for _, _, high, _ in peaks.values()),
+        low=min(low for low, _ in ends),
+        high=max(high for _, high in ends),
         sources=(*pin_sources(driven=curve.transfer is not None), ESTIMATED),
     )
     factor = layer_scatter(motion.material).times(load.inverse).on(stress.inverse(layers.across))
-    at = motion.solved.space.nodes[place[worst]] * (1.0, 1.0, 1.0 if upper[worst] else -1.0)
+    at = motion.measure.solved.space.nodes[peaks.node[worst]] * (1.0, 1.0, -1.0 if peaks.image[worst] else 1.0)
     return LayerEnvelope(
         safety_factor=factor if layers.between is not None else replace(factor, low=0.0),
         pose=int(np.flatnonzero(motion.evaluated)[worst - curve.first]),
@@ -163,14 +131,14 @@ def _over_motion(
 
 
 def _fatigue(
-    motion: LinkMotion, layers: Layers, curves: Sequence[VariantCurve], load: Scatter, repetitions: float | None
+    motion: LinkMotion, curves: Sequence[VariantCurve], load: Scatter, repetitions: float | None
 ) -> LayerFatigue:
     """Return the fatigue of the layers under a load case, at the critical node of the variant that governs."""
-    data = motion.material.fatigue_across_layers
+    data, layers = motion.material.fatigue_across_layers, motion.measure.sides[0][0]
     assert data is not None
     own, stresses, lives = [], [], []
     for curve in curves:
-        cycle, at, factors = _critical(motion, layers, curve)
+        cycle, at, factors = _critical(motion, data, curve)
         ends = [(cycle.stress(data, layers.across, f), cycle.repetitions(data, layers.across, f))
                 for f in (1.0, factors[0] * load.low, factors[1] * load.high)]  # fmt: skip
         stresses += [stress for stress, _ in ends]
@@ -192,27 +160,20 @@ def _fatigue(
     )
 
 
-def _critical(motion: LinkMotion, layers: Layers, curve: VariantCurve) -> tuple[LayerCycle, Real, tuple[float, float]]:
+def _critical(motion: LinkMotion, data: Fatigue, curve: VariantCurve) -> tuple[LayerCycle, Real, tuple[float, float]]:
     """Return the worst cycle of a variant, its place, and by which factors its stress may be off."""
-    solved, data = motion.solved, motion.material.fatigue_across_layers
-    assert data is not None
+    solved, sides = motion.measure.solved, motion.measure.sides
     part = solved.combination[:, curve.first : curve.first + int(motion.evaluated.sum())]
     found = []
-    for one, sign in _sides(motion, layers):
+    for one, sign in sides:
         number, traction = critical_layer(solved.stress, part, one, data)
         closed = np.array([closed_history(row, returns=motion.returns) for row in traction])
         found.append((LayerCycle.of(closed), int(solved.nodes[number]), sign, traction))
-    cycle, node, sign, traction = max(found, key=lambda one: one[0].stress(data, layers.across))
+    cycle, node, sign, traction = max(found, key=lambda one: one[0].stress(data, sides[0][0].across))
     size = np.linalg.norm(traction, axis=0)
     pose = first_largest(size)
-    if size[pose] == 0.0:
-        return cycle, solved.space.nodes[node] * (1.0, 1.0, sign), (1.0, 1.0)
-    error = layers.sensitivity * motion.local_error(curve.first + pose, node) / float(size[pose])
-    contact = 1.0 - CONTACT_SHORTFALL if curve.span == NARROW.span else 1.0
-    return cycle, solved.space.nodes[node] * (1.0, 1.0, sign), (max(1.0 - error, 0.0), (1.0 + error) / contact)
-
-
-def _sides(motion: LinkMotion, layers: Layers) -> list[tuple[Layers, float]]:
-    """Layers that the solved nodes have, and the sign of z: where the upper half tells all, those of its image too."""
-    halved = len(motion.solved.nodes) < len(motion.solved.space.nodes)
-    return [(layers, 1.0), (layers.mirrored, -1.0)] if halved else [(layers, 1.0)]
+    at, stress = solved.space.nodes[node] * (1.0, 1.0, sign), float(size[pose])
+    if stress == 0.0:
+        return cycle, at, (1.0, 1.0)
+    low, high = motion.measure.ends("layers", curve.first + pose, node, stress)
+    return cycle, at, (low / stress, high / stress)

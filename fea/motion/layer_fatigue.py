@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from alula.fea.motion.fatigue import NEGLIGIBLE, cycles_to_failure, equivalent_peak, repeated_cycles
 from alula.fea.solid.layers import Layers
-from alula.fea.superposition.peaks import mode_sizes
+from alula.fea.superposition.peaks import ModeMeasures
 from alula.geometry.materials.material import Fatigue
 
 Real = NDArray[np.float64]
@@ -189,7 +189,7 @@ def critical_layer(stress: Real, combination: Real, layers: Layers, data: Fatigu
         The node, and its traction as of ``Layers.parts`` [MPa].
     """
     parts, strength = layers.parts(stress), layers.across
-    reach = mode_sizes(parts) @ np.abs(combination).max(axis=1)
+    reach = ModeMeasures(parts=parts).sizes @ np.abs(combination).max(axis=1)
     # √2 times the worst of either: no mean or amplitude exceeds the reach.
     coarse = np.column_stack([reach, reach])
     most = _harm(coarse, coarse, data, strength)

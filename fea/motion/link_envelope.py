@@ -11,32 +11,28 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
-from alula.fea.elements.mouth import reference_surfaces
 from alula.fea.elements.space import DisplacementSpace
 from alula.fea.elements.supports import LineReference
 from alula.fea.motion.along import stress_along
-from alula.fea.motion.critical import critical_nodes
+from alula.fea.motion.critical import critical_node
 from alula.fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.fatigue import closed_history, fatigue_life, missing_data, not_closed, strength_at
 from alula.fea.motion.mesh_factors import MeshFactors
-from alula.fea.refine.convergence import ALONE
-from alula.fea.refine.error_estimate import estimate_error
+from alula.fea.refine.link_series import STRESS
+from alula.fea.refine.link_task import ElasticLink
 from alula.fea.refine.refinement import RefinedSolid
+from alula.fea.solid.layers import Layers
 from alula.fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
-from alula.fea.solid.stress import stress_field
-from alula.fea.superposition.peaks import Peaks, largest_stress
-from alula.fea.superposition.unit_solutions import UnitSolutions, solve_units
-from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.superposition.link_measure import LinkMeasure
+from alula.fea.superposition.unit_solutions import UnitSolutions
 from alula.fea.tractions.traction import Transfer
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Material, stress_measure
 from alula.geometry.parts.part import Body
-from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 
-LAWS = (WIDE, NARROW)
 ELSEWHERE, FATIGUE_ELSEWHERE = (
     Source(kind=SourceKind.DISCRETISATION, detail=reason(kind))
     for kind in ("fourfold_estimate_of_pose", "fourfold_estimate_of_fatigue")
@@ -53,6 +49,7 @@ def link_motion(
     evaluated: NDArray[np.bool_],
     stated: Transfer,
     returns: bool,
+    layers: Layers | None = None,
     threads: int | None = None,
 ) -> "LinkMotion":
     """Solve one link over a motion, on one mesh.
@@ -72,6 +69,8 @@ def link_motion(
         How the drive torque enters, by the case; the other way stands in the band.
     returns : bool
         True where the last pose is the first again; else the motion goes there and back.
+    layers : Layers, optional
+        Of a printed part.
     threads : int, optional
 
     Returns
@@ -83,54 +82,27 @@ def link_motion(
     CannotRunError
         For loads that do not balance, supports that react, or a failing solver.
     """
-    solved, curves = _solved(space, material, histories, evaluated, threads)
+    chosen = [history.chosen(evaluated) for history in histories]
+    measure = LinkMeasure.of_units(ElasticLink.of(body, material, layers), space, chosen, threads=threads)
+    _balanced(measure.solved)
+    peaks = measure.peaks(STRESS[material.brittle])
+    curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
+    for variant in measure.variants:
+        stress, node = np.full(len(evaluated), np.nan), np.full(len(evaluated), -1)
+        stress[evaluated], node[evaluated] = peaks.value[variant.loads], peaks.node[variant.loads]
+        curve = VariantCurve(
+            span=variant.law.span, transfer=variant.transfer, stress=stress, node=node, first=variant.loads.start
+        )
+        curves[chosen[variant.record].name].append(curve)
     return LinkMotion(
         link=link,
-        body=body,
+        measure=measure,
         material=material,
         evaluated=evaluated,
         stated=stated,
         returns=returns,
-        solved=solved,
         curves=curves,
     )
-
-
-def _solved(
-    space: DisplacementSpace,
-    material: Material,
-    histories: Sequence[LinkLoads],
-    evaluated: NDArray[np.bool_],
-    threads: int | None,
-) -> tuple[UnitSolutions, dict[str, list[VariantCurve]]]:
-    """Return the solutions of the poses that count, and of every load case the curves of its variants."""
-    chosen = [history.chosen(evaluated) for history in histories]
-    units = LinkTractions.of(space, chosen, density=material.density)
-    size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
-    names: list[tuple[str, PressureLaw, Transfer | None]] = []
-    columns, scales = [], []
-    for history in chosen:
-        scale = history.size(size)
-        for law in LAWS:
-            for transfer in units.transfers(history):
-                names.append((history.name, law, transfer))
-                columns.append(units.coefficients(history, law, transfer))
-                scales.append(np.where(scale > 0.0, scale, scale.max()))
-    solved = solve_units(
-        units,
-        np.hstack(columns),
-        np.concatenate(scales),
-        E=material.youngs_modulus,
-        nu=material.poissons_ratio,
-        threads=threads,
-    )
-    _balanced(solved)
-    peaks = largest_stress(solved.measures, solved.combination, brittle=material.brittle)
-    peaks = replace(peaks, node=solved.nodes[peaks.node])
-    curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
-    for number, (name, law, transfer) in enumerate(names):
-        curves[name].append(_curve(law, transfer, peaks, number * int(evaluated.sum()), evaluated))
-    return solved, curves
 
 
 def _balanced(solved: UnitSolutions) -> None:
@@ -145,20 +117,6 @@ def _balanced(solved: UnitSolutions) -> None:
             )
 
 
-def _relative(space: DisplacementSpace, body: Body, field: Real) -> Real:
-    """Displacements relative to the line through the link's first and last pin, or to the mouth of its clamp."""
-    return LineReference(space, reference_surfaces(body)).relative(field)
-
-
-def _curve(
-    law: PressureLaw, transfer: Transfer | None, peaks: Peaks, first: int, evaluated: NDArray[np.bool_]
-) -> VariantCurve:
-    stress, node = np.full(len(evaluated), np.nan), np.full(len(evaluated), -1)
-    part = slice(first, first + int(evaluated.sum()))
-    stress[evaluated], node[evaluated] = peaks.value[part], peaks.node[part]
-    return VariantCurve(span=law.span, transfer=transfer, stress=stress, node=node, first=first)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinkMotion:
     """A link solved over a motion on one mesh.
@@ -166,7 +124,8 @@ class LinkMotion:
     Attributes
     ----------
     link : str
-    body : Body
+    measure : LinkMeasure
+        Of all loads of all variants.
     material : Material
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
@@ -174,19 +133,16 @@ class LinkMotion:
         How the drive torque enters, by the case.
     returns : bool
         True where the last pose is the first again.
-    solved : UnitSolutions
-        Of all loads of all variants.
     curves : dict of str to list of VariantCurve
         Load case -> peaks of its variants.
     """
 
     link: str
-    body: Body
+    measure: LinkMeasure
     material: Material
     evaluated: NDArray[np.bool_]
     stated: Transfer
     returns: bool
-    solved: UnitSolutions
     curves: Mapping[str, Sequence[VariantCurve]]
 
     @property
@@ -220,7 +176,7 @@ class LinkMotion:
         -------
         LinkEnvelope
         """
-        solved, material, space = self.solved, self.material, self.solved.space
+        solved, material, space = self.measure.solved, self.material, self.measure.solved.space
         lacking = (missing_data(material) or not_closed(self.evaluated)) if fatigue else reason("not_asked_for")
         found = {}
         for name, curves in self.curves.items():
@@ -228,13 +184,12 @@ class LinkMotion:
             own = self._estimated(self._by_meshes(name, curves, series), series)
             own = _scattered(own, material, load)
             if own.known:
-                along = stress_along(solved, own.governing, self.evaluated, brittle=material.brittle)
-                own = replace(own, along=along)
+                own = replace(own, along=stress_along(self.measure, own.governing, self.evaluated))
             if not lacking and own.known:
                 own = replace(own, fatigue=self._fatigue(own, series, load, repetitions))
             found[name] = own
         worst = min(found.values(), key=lambda load_case: load_case.severity)
-        raw = solved.field(worst.governing.first + int(np.count_nonzero(self.evaluated[: worst.pose])))
+        number = self.load(worst.governing, worst.pose)
         return LinkEnvelope(
             link=self.link,
             measure=stress_measure(brittle=material.brittle),
@@ -242,15 +197,15 @@ class LinkMotion:
             load_cases=found,
             elements=len(space.cells),
             unknowns=space.unknowns,
-            units=solved.units,
+            units=solved.projection.shape[1],
             modes=len(solved.combination),
             solver=solved.solver,
             solver_reason=solved.solver_reason,
             solver_error=solved.solver_error,
             reaction=float(solved.reaction.max()),
             imbalance=float(solved.imbalance.max()),
-            field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
-            displacement=_relative(space, self.body, raw),
+            field=self.measure.field(number),
+            displacement=LineReference(space, self.measure.link.line).relative(solved.field(number)),
             no_fatigue=lacking,
             notes=() if refined is None else refined.solution.notes,
             layers={},
@@ -291,7 +246,7 @@ class LinkMotion:
             stress=peak,
             safety_factor=peak.inverse(self.material.allowable),
             pose=pose,
-            location=self.solved.space.nodes[governing.node[pose]].copy(),
+            location=self.measure.solved.space.nodes[governing.node[pose]].copy(),
             fatigue=None,
             discretisation=series.discretisation,
         )
@@ -300,15 +255,14 @@ class LinkMotion:
         """Return the envelope; a peak that no mesh was refined for gets a band by the estimate on this mesh alone."""
         if not load_case.known or not series.was_not_refined_for(load_case.governing):
             return load_case
-        governing, pose = load_case.governing, load_case.pose
-        number = governing.first + int(np.count_nonzero(self.evaluated[:pose]))
-        error = self.local_error(number, int(governing.node[pose]))
-        contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
-        peak = load_case.stress
+        governing, pose, peak = load_case.governing, load_case.pose, load_case.stress
+        low_end, high_end = self.measure.ends(
+            STRESS[self.material.brittle], self.load(governing, pose), int(governing.node[pose]), peak.value
+        )
         peak = Band(
             value=peak.value,
-            low=min(peak.low, max(peak.value - error, 0.0)),
-            high=max(peak.high, (peak.value + error) / contact),
+            low=min(peak.low, low_end),
+            high=max(peak.high, high_end),
             sources=(*peak.sources, ELSEWHERE),
         )
         low, high = load_case.low.copy(), load_case.high.copy()
@@ -316,43 +270,36 @@ class LinkMotion:
         factor = peak.inverse(self.material.allowable)
         return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
 
-    def local_error(self, number: int, node: int) -> float:
-        """Return the fourfold estimate beside a node, on this mesh alone.
+    def load(self, variant: VariantCurve, pose: int) -> int:
+        """Return the number of a load among the solutions' combinations.
 
         Parameters
         ----------
-        number : int
-            Of the load among the solutions' combinations.
-        node : int
+        variant : VariantCurve
+        pose : int
+            Its number; one that counts.
 
         Returns
         -------
-        float
-            [MPa]
+        int
         """
-        field, young, poisson = self.solved.field(number), self.material.youngs_modulus, self.material.poissons_ratio
-        estimate = estimate_error(
-            stress_field(self.solved.space, field, E=young, nu=poisson), field, E=young, nu=poisson
-        )
-        beside = (self.solved.space.cells == node).any(axis=1)
-        return ALONE * float(estimate.stress[beside].max())
+        return variant.first + int(np.count_nonzero(self.evaluated[:pose]))
 
     def _fatigue(
         self, load_case: LoadCaseEnvelope, series: MeshFactors, load: Scatter, repetitions: float | None
     ) -> LinkFatigue:
         """Return the fatigue under a load case, at the critical node of the variant that governs."""
         assert self.material.fatigue is not None
-        every, found, parts, meshes = [], [], [], list(series.sources)
+        every, found, meshes, count = [], [], list(series.sources), int(self.evaluated.sum())
+        solved = self.measure.solved
         for variant in load_case.variants:
-            count = int(np.isfinite(variant.stress).sum())
-            parts.append(self.solved.combination[:, variant.first : variant.first + count])
-        critical = critical_nodes(self.solved.measures, parts, self.material)
-        for variant, (number, history) in zip(load_case.variants, critical, strict=True):
-            node = int(self.solved.nodes[number])
+            part = solved.combination[:, variant.first : variant.first + count]
+            number, history = critical_node(self.measure.decisive, solved.stress, part, self.material)
+            node = int(solved.nodes[number])
             closed = closed_history(history, returns=self.returns)
             life = fatigue_life(closed, self.material)
             factors = series.of_variant(variant)
-            if series.discretisation is not None and not series.holds_at(variant, self.solved.space.nodes, node):
+            if series.discretisation is not None and not series.holds_at(variant, solved.space.nodes, node):
                 factors = self._fatigue_factors(variant, node, history)
                 meshes.append(FATIGUE_ELSEWHERE)
             ends = (factors[0] * load.low, factors[1] * load.high)
@@ -364,7 +311,7 @@ class LinkMotion:
         wanted = self.material.fatigue.cycles if repetitions is None else repetitions
         counts = tuple(one.repetitions for one in every if one.repetitions is not None)
         return LinkFatigue(
-            location=self.solved.space.nodes[node].copy(),
+            location=solved.space.nodes[node].copy(),
             history=history,
             life=life,
             stress=Band.around(life.stress, tuple(one.stress for one in every), *sources),
@@ -379,9 +326,8 @@ class LinkMotion:
         stress = abs(float(history[pose]))
         if stress == 0.0:
             return 1.0, 1.0
-        error = self.local_error(variant.first + pose, node) / stress
-        contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
-        return max(1.0 - error, 0.0), (1.0 + error) / contact
+        low, high = self.measure.ends(STRESS[self.material.brittle], variant.first + pose, node, stress)
+        return low / stress, high / stress
 
 
 def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -> LoadCaseEnvelope:

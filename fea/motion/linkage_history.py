@@ -8,19 +8,20 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.buckling.linkage import by_linear_theory
-from alula.fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
+from alula.fea.asked.asked import asked, asks
 from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import air_source, distinct, friction_source
-from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.common.source import air_source, friction_source
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.play_doubt import shaken
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.displacement_band import compliance_range
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.linear import solve_frame
+from alula.fea.judging.linkage import by_linear_theory
+from alula.fea.judging.linkage_numbers import limit_load_outcome, linkage_numbers
 from alula.fea.motion.layered import forces_at
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
 from alula.fea.nonlinear.stability import dead_point_factor, linkage_factor
@@ -71,7 +72,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
     They are the pose next to a dead point of the driven link and that of the largest drive torque. The rule is that of
-    single poses (``alula.fea.buckling.linkage``).
+    single poses (``alula.fea.judging.linkage``).
 
     Parameters
     ----------
@@ -190,9 +191,8 @@ def asked_over_motion(moved: CaseMotion) -> dict[str, LinkageOverMotion]:
     dict of str to LinkageOverMotion
         By load case.
     """
-    asked = any(isinstance(check, LimitLoadCheck) for check in moved.case.checks.values())
     balanced = np.all([np.isfinite(torque) for torque in moved.torque.values()], axis=0)
-    return over_motion(moved, balanced) if asked and balanced.any() else {}
+    return over_motion(moved, balanced) if asks(moved.case, LimitLoadCheck) and balanced.any() else {}
 
 
 def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion]) -> Iterator[CheckOutcome]:
@@ -208,9 +208,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
     ------
     CheckOutcome
     """
-    for name, check in moved.case.checks.items():
-        if not isinstance(check, LimitLoadCheck):
-            continue
+    for one in asked(moved.case, LimitLoadCheck):
         for load_case, over in found.items():
             pose = None
             if over.limit_pose >= 0:
@@ -218,7 +216,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
                 pose = reason("pose_of_motion", coordinate=motion.coordinate.name, value=float(at), unit=motion.unit)
             counts = {"looked_at": len(over.poses), "poses": len(moved.motion.angles)}
             where = reason("least_of_poses", **counts, pose=pose)
-            yield limit_load_outcome(name, check, load_case, over.limit_load, where)
+            yield limit_load_outcome(one, load_case, over.limit_load, where)
 
 
 def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[int]:
@@ -280,15 +278,13 @@ def causes_over(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_])
 
 def _over(poses: list[int], at: list[tuple[Band, Band, Reason | str]]) -> LinkageOverMotion:
     limits, moves, places = zip(*at, strict=True)
-    least = Band.unknown(next((b.without for b in limits if b.unknowable), ""))
-    most, where, least_at, most_at = Band.unknown(next((b.without for b in moves if b.unknowable), "")), "", -1, -1
-    if not any(band.unknowable for band in limits):
-        ends = {end: min(getattr(band, end) for band in limits) for end in ("value", "low", "high")}
-        least = Band(**ends, sources=distinct(*(band.sources for band in limits)))
+    least, most = Quantity.LIMIT_LOAD.sense.worst(limits), Quantity.DISPLACEMENT.sense.worst(moves)
+    where, least_at, most_at = "", -1, -1
+    if not least.unknowable:
         least_at = poses[min(range(len(poses)), key=lambda k: (limits[k].value, limits[k].low))]
-    if not any(band.unknowable for band in moves):
+    if not most.unknowable:
         k = max(range(len(poses)), key=lambda k: moves[k].value)
-        most, where, most_at = Band.largest(moves), places[k], poses[k]
+        where, most_at = places[k], poses[k]
     return LinkageOverMotion(
         poses=tuple(poses),
         limit_load=least,

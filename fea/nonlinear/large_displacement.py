@@ -460,7 +460,7 @@ def _deformed(
         *(
             PointLoad(link=link, point=point, wrench=wrench)
             for spring, wrenches in found.springs
-            for (link, point), wrench in zip(spring.ends, wrenches, strict=True)
+            for (link, point), wrench in zip(spring.acting.ends, wrenches, strict=True)
         ),
     )
     return replace(

@@ -44,20 +44,18 @@ class SpringForces:
         """
         for spring in self.springs:
             found = np.zeros((len(spring.nodes), 6))
-            if spring.turns:
-                moment = spring.stiffness * _turned(spring, rotations)
-                found[:, 5] = moment, -moment
-            else:
-                found[:, :2] = -spring.pull(_moved(spring, displacements), factor)[1]
+            found[:, [0, 1, 5]] = -spring.resists(*_moved(spring, displacements, rotations), factor)[0]
             yield spring, found
 
-    def tangent(self, displacements: Floats, axes: Floats, factor: float) -> Floats:
+    def tangent(self, displacements: Floats, rotations: Floats, axes: Floats, factor: float) -> Floats:
         """Return the derivative of what they resist by the unknowns, but for what moments gain about pins.
 
         Parameters
         ----------
         displacements : ndarray, shape (n, 3)
             Of the nodes [mm].
+        rotations : ndarray, shape (n, 3, 3)
+            Of the nodes.
         axes : ndarray, shape (count, 3)
             Present axes of the unknowns.
         factor : float
@@ -69,26 +67,25 @@ class SpringForces:
         """
         found = np.zeros((self.chain.count, self.chain.count))
         for spring in self.springs:
-            if spring.turns:
-                way = np.zeros(self.chain.count)
-                for node, sense in zip(spring.nodes, (-1.0, 1.0), strict=True):
-                    if node is not None:
-                        numbers = [step.number for step in self.chain.nodes[node]]
-                        np.add.at(way, numbers, sense * (axes[numbers] @ ABOUT_Z))
-                found += spring.stiffness * np.outer(way, way)
-            else:
-                stiffness = spring.pull(_moved(spring, displacements), factor)[2]
-                rows = [[-1, -1] if n is None else self.chain.translations[n][:2] for n in spring.nodes]
-                places = np.array(rows, dtype=np.int64).ravel()
-                free = np.flatnonzero(places >= 0)
-                np.add.at(found, np.ix_(places[free], places[free]), stiffness[np.ix_(free, free)])
+            ways = self._ways(spring, axes)
+            found += ways.T @ spring.resists(*_moved(spring, displacements, rotations), factor)[1] @ ways
         return found
 
+    def _ways(self, spring: FrameSpring, axes: Floats) -> Floats:
+        """Return the derivatives (3 k, count) of ux, uy and rotation of a spring's ends by the unknowns."""
+        found = np.zeros((len(spring.nodes), 3, self.chain.count))
+        for way, node in zip(found, spring.nodes, strict=True):
+            if node is not None:
+                for axis, number in enumerate(self.chain.translations[node][:2]):
+                    if number >= 0:
+                        way[axis, number] = 1.0
+                numbers = [step.number for step in self.chain.nodes[node]]
+                np.add.at(way[2], numbers, axes[numbers] @ ABOUT_Z)
+        return found.reshape(-1, self.chain.count)
 
-def _moved(spring: FrameSpring, displacements: Floats) -> Floats:
-    return np.array([np.zeros(2) if node is None else displacements[node, :2] for node in spring.nodes])
 
-
-def _turned(spring: FrameSpring, rotations: Floats) -> float:
-    first, second = (0.0 if node is None else turn_about_z(rotations[node]) for node in spring.nodes)
-    return second - first
+def _moved(spring: FrameSpring, displacements: Floats, rotations: Floats) -> tuple[Floats, Floats]:
+    """Return displacements (k, 2) and turns (k,) of a spring's ends."""
+    moved = [np.zeros(2) if node is None else displacements[node, :2] for node in spring.nodes]
+    turns = [0.0 if node is None else turn_about_z(rotations[node]) for node in spring.nodes]
+    return np.array(moved), np.array(turns)

@@ -20,11 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution, solve_frame
-from alula.fea.frame.linkage_frame import LinkageFrame, slot_normal
+from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import FrameModel
 from alula.fea.nonlinear.corotational import SUBDIVISIONS, subdivide
 from alula.fea.nonlinear.corotational_element import ElementResponse
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
+from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
 Floats = NDArray[np.float64]
@@ -159,7 +160,8 @@ def stiffness_parts(
     bent = path.assemble(pressed, loaded, 1.0)[1]
     if path.model.springs:
         # Their stiffness is in K already; what their forces make of it is left.
-        elastic = path.springs.tangent(start.displacements, path.chain.axes(start.rotations), 0.0)
+        axes = path.chain.axes(start.rotations)
+        elastic = path.springs.tangent(start.displacements, start.rotations, axes, 0.0)
         bent[: path.chain.count, : path.chain.count] -= elastic
     axes = path.chain.axes(start.rotations)
     for load in path.model.loads:
@@ -203,7 +205,7 @@ def dead_point_factor(frame: LinkageFrame, solution: FrameSolution) -> float:
     float
         Infinite where they lead away.
     """
-    if all(joint.type != "revolute" or name in frame.bonded for name, joint in frame.pose.linkage.joints.items()):
+    if not any(joint.pivots and name not in frame.bonded for name, joint in frame.pose.linkage.joints.items()):
         return math.inf
     matrix = _constraints(frame, frame.pose)
     u, sizes, v = np.linalg.svd(matrix, full_matrices=False)
@@ -232,13 +234,12 @@ def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:
         turns.append(float((arms[:, 0] * moves[:, 1] - arms[:, 1] * moves[:, 0]).sum()) / size if size > 0.0 else 0.0)
     slid = []
     for name in pose.closure.slots:
-        across = slot_normal(pose, name)
         apart = np.zeros(3)
         for link, point, sign in zip(
             pose.linkage.joints[name].links, pose.linkage.joint_points(name), (-1.0, 1.0), strict=True
         ):
             apart = apart + sign * moved.get((link, point), np.zeros(3))
-        slid.append(float(across[1] * apart[0] - across[0] * apart[1]))
+        slid.append(float(vector(pose.placement.along(name)) @ apart))
     return Pose(
         linkage=pose.linkage,
         q=pose.q + np.array([*turns, *slid]),

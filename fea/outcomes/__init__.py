@@ -1,4 +1,4 @@
-"""From numbers to verdicts: one file a kind of check but buckling, each decided on its whole band.
+"""The records of results, and what their numbers need besides: pins, points, limits, what no check looks at.
 
-Hands on ``CheckOutcome``s and the records of results.
+Hands on ``LinkResult`` and ``CheckResult``.
 """

@@ -1,12 +1,13 @@
 """The limits that a case states on its links, for what decides whether hand calculation or a mesh is good enough."""
 
+import math
 from collections.abc import Iterator
 
+from alula.fea.asked.asked import asked, asked_of, cards_of, subjects_of
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
+from alula.fea.common.verdict import Quantity, Subject
 from alula.fea.solid.layers import Layers
-from alula.geometry.base.errors import CaseError
-from alula.geometry.materials.material import Material
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed, is_solid_stock
 from alula.loads.case.case import Case
@@ -22,34 +23,6 @@ from alula.loads.records.check_spec import (
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
 Ends = tuple[float, float]
-
-
-def least_safety_factor(name: str, stated: float | None, material: Material, what: str) -> float:
-    """Return the limit on a safety factor: that of the check, else the material's.
-
-    Parameters
-    ----------
-    name : str
-        Of the check.
-    stated : float or None
-        Its own limit.
-    material : Material
-    what : str
-        What the check is about, for the error.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    CaseError
-        Where neither states a limit.
-    """
-    limit = stated or material.minimum_safety_factor
-    if limit is None:
-        raise CaseError(f"checks.{name}.minimum: the material of '{what}' has no default; state the limit")
-    return limit
 
 
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
@@ -72,13 +45,12 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
         Where a check has no limit.
     """
     material, load, found = case.material_of(link), spread or _widest_load(case), []
-    for name, check in case.all_checks.items():
-        if isinstance(check, SafetyFactorCheck | SustainedCheck) and link in (check.links or case.checked_links):
-            if isinstance(check, SafetyFactorCheck):
-                limit = material.allowable / least_safety_factor(name, check.minimum, material, link)
-                found.append(_spread(limit, strength_scatter(material).times(load.inverse)))
-            elif material.sustained_stress is not None:
-                found.append(_spread(material.sustained_stress, load.inverse))
+    for one in asked(case, SafetyFactorCheck, SustainedCheck, subject=Subject.link(link)):
+        if one.quantity is Quantity.SAFETY_FACTOR:
+            strength = strength_scatter(material).times(load.inverse)
+            found.append(_spread(material.allowable / one.limit, strength))
+        elif not math.isnan(one.limit):
+            found.append(_spread(one.limit, load.inverse))
     return tuple(found)
 
 
@@ -97,11 +69,8 @@ def displacement_limits(case: Case, link: str, spread: Scatter | None = None) ->
     tuple of (float, float)
     """
     scatter = compliance_scatter(case.material_of(link)).times(spread or _widest_load(case))
-    return tuple(
-        _spread(check.maximum, scatter.inverse)
-        for check in case.all_checks.values()
-        if isinstance(check, DisplacementCheck) and check.at is None and link in (check.links or case.checked_links)
-    )
+    every = asked(case, DisplacementCheck, subject=Subject.link(link))
+    return tuple(_spread(one.limit, scatter.inverse) for one in every)
 
 
 def layer_limit(case: Case, link: str) -> float | None:
@@ -123,14 +92,9 @@ def layer_limit(case: Case, link: str) -> float | None:
     CaseError
         Where a check has no limit.
     """
-    material = case.material_of(link)
-    asked = [
-        least_safety_factor(name, check.minimum, material, link)
-        for name, check in case.all_checks.items()
-        if isinstance(check, SafetyFactorCheck) and link in (check.links or case.checked_links)
-    ]
-    stated = case.part_of(link).build_direction is not None and not is_solid_stock(material)
-    return max(asked) if asked and stated else None
+    stated = case.part_of(link).build_direction is not None and not is_solid_stock(case.material_of(link))
+    limits = [one.limit for one in asked(case, SafetyFactorCheck, subject=Subject.link(link))]
+    return max(limits) if limits and stated else None
 
 
 def layers_of(case: Case, link: str) -> Layers | None:
@@ -203,12 +167,7 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
         elif isinstance(check, SafetyFactorCheck | PinCheck | BearingCheck | LimitLoadCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:
-            cards = (
-                [case.part_of(link).material for link in check.links or case.checked_links]
-                if isinstance(check, SafetyFactorCheck)
-                else [case.joints[joint].pin_material for joint in check.joints or case.pinned_joints]
-            )
-            for card in cards:
+            for card in (x for one in subjects_of(case, name, check) for x in cards_of(case, check, one)):
                 own = case.all_materials[card].minimum_safety_factor
                 least[f"materials.{card}.minimum_safety_factor"] = (own, breaks)
     for entry, (minimum, why) in least.items():
@@ -229,9 +188,8 @@ def layer_caveats(case: Case) -> Iterator[Caveat]:
     ------
     Caveat
     """
-    checks = [check for check in case.all_checks.values() if isinstance(check, SafetyFactorCheck)]
-    asked = dict.fromkeys(link for check in checks for link in check.links or case.checked_links)
-    unknown = [link for link in asked if case.material_of(link).strength_across_layers is None]
+    asked_for = asked_of(case, SafetyFactorCheck)
+    unknown = [link for link in asked_for if case.material_of(link).strength_across_layers is None]
     bare = [link for link in unknown if case.part_of(link).build_direction is None and _may_be_printed(case, link)]
     if bare:
         all_links = len(bare) == len(case.checked_links)

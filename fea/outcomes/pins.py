@@ -45,21 +45,20 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked
 from alula.fea.beam.pin_between import largest_between
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind
-from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.common.verdict import CheckOutcome
 from alula.fea.frame.joint_forces import JointForces
-from alula.fea.outcomes.limits import least_safety_factor
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import Ring
 from alula.loads.case.case import Case
 from alula.loads.case.eyes import other_link
 from alula.loads.case.forks import eye_of, eyes, outer_link
 from alula.loads.records.applied import shifted
-from alula.loads.records.check_spec import PinCheck
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.statics.statics import Drive
@@ -116,7 +115,7 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
         [N mm]; of a bonded joint from 0, since nothing states what its faces take.
     """
     drive = case.pinned_drive
-    if case.linkage.joints[joint].bonded:
+    if case.linkage.joints[joint].fixed:
         return Band(value=abs(moment), low=0.0, high=abs(moment), sources=TWIST)
     if drive is None or drive.joint != joint or not _turns(case, drive):
         return Band.exact(0.0)
@@ -142,7 +141,7 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
     drive = case.pinned_drive
     if drive is None or case.pose.equilibrium or not _turns(case, drive):
         return
-    if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].bonded:
+    if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].fixed:
         why = reason("torque_by_flat_faces")
         yield Caveat(topic=Topic.SHAFT, what=reason("drive_shaft", joint=drive.joint), why=why)
 
@@ -439,7 +438,7 @@ def _shear_stress(force: float, diameter: float, poisson: float) -> float:
 
 
 def pin_outcome(
-    case: Case, load_case: str, name: str, check: PinCheck, joint: str, stress: PinStress, growth: Scatter | None = None
+    case: Case, load_case: str, one: Asked, stress: PinStress, growth: Scatter | None = None
 ) -> CheckOutcome:
     """Return the outcome of a joint's pin.
 
@@ -448,26 +447,17 @@ def pin_outcome(
     case : Case
     load_case : str
         Its name.
-    name : str
-        Of the check.
-    check : PinCheck
-    joint : str
+    one : Asked
+        Of the pin.
     stress : PinStress
-        Of its pin.
+        Of it.
     growth : Scatter, optional
         By which the joint's force grows beside scattered loads (``alula.fea.doubts.load_growth``).
 
     Returns
     -------
     CheckOutcome
-
-    Raises
-    ------
-    CaseError
-        Where neither check nor material states a limit.
     """
-    material, subject = case.pin_material(joint), Subject.pin(joint)
-    limit = least_safety_factor(name, check.minimum, material, str(subject))
+    material = case.pin_material(one.subject.name)
     equivalent = load_scatter(case, load_case).times(growth or Scatter()).on(stress.equivalent)
-    factor = strength_scatter(material).on(equivalent.inverse(material.allowable))
-    return CheckOutcome.of(name, subject, load_case, Quantity.SAFETY_FACTOR, factor, limit)
+    return one.outcome(load_case, strength_scatter(material).on(equivalent.inverse(material.allowable)))

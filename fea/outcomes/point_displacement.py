@@ -12,13 +12,14 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked, asked, place_of
 from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
-from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.frame.case_statics import locks_on_tight_pins
 from alula.fea.frame.displacement_band import OneModulus, point_bounds
 from alula.fea.frame.joint_forces import JointForces
@@ -184,7 +185,7 @@ class PointDisplacement:
     def _free_to_tilt(self) -> tuple[str, ...]:
         """Joints between layers that do not say in which links their pins are tight, which would narrow a band."""
         every = self.case.linkage.joints.items()
-        turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
+        turning = [name for name, joint in every if joint.pivots]
         return tuple(x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in)
 
     @cached_property
@@ -427,8 +428,7 @@ class PointDisplacement:
 
 def point_outcome(
     case: Case,
-    name: str,
-    check: DisplacementCheck,
+    one: Asked,
     load_case: str,
     moved: LargeDisplacement,
     links: Mapping[str, LinkResult],
@@ -440,10 +440,8 @@ def point_outcome(
     Parameters
     ----------
     case : Case
-    name : str
-        Of the check.
-    check : DisplacementCheck
-        One that names a point.
+    one : Asked
+        Of a point.
     load_case : str
         Its name.
     moved : LargeDisplacement
@@ -458,18 +456,16 @@ def point_outcome(
     -------
     CheckOutcome
     """
-    at = case.displaced_point(name, check)
-    told = PointDisplacement.of(case, at, load_case, moved, links, free, forces)
-    subject = Subject.point(told.point, told.link)
-    found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why or "")
+    told = PointDisplacement.of(case, place_of(case, one.name), load_case, moved, links, free, forces)
+    found = one.outcome(load_case, told.value, told.why or "")
     if told.why:
         return found
     notes: list[Reason | str | None] = [told.no_end, *(() if moved.frame is None else moved.frame.notes)]
     if told.sinking > WORTH_TELLING * told.value.value:
-        beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
+        beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > one.limit
         notes.append(reason("pins_may_sink_beyond_limit" if beyond else "pins_may_sink", most=told.sinking))
     if told.play is not None or told.tilting is not None:
-        alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), check.maximum)
+        alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), one.limit)
         loose, tilting = 0.0 if told.play is None else told.play.free_motion(told.link, told.point), told.tilting
         notes.append(
             reason(
@@ -481,7 +477,7 @@ def point_outcome(
         )
         notes += unknown_lengths(case) if tilting is not None else ()
     if found.verdict is Verdict.UNDECIDED:
-        notes += _remedies(told, check.maximum, links)
+        notes += _remedies(told, one.limit, links)
     by_model = reason(
         "displacement_on_deformed_shape" if moved.followed else "displacement_by_linear_theory",
         model=told.shares.model,
@@ -511,11 +507,10 @@ def meshes_to_refine(
         As of ``PointDisplacement.meshes_to_refine``.
     """
     found: dict[str, float] = {}
-    for name, check in case.checks.items():
-        if isinstance(check, DisplacementCheck) and check.at is not None:
-            told = PointDisplacement.of(case, case.displaced_point(name, check), load_case, moved, links, free, forces)
-            for link, error in told.meshes_to_refine(check.maximum, links).items():
-                found[link] = min(error, found.get(link, math.inf))
+    for one in asked(case, DisplacementCheck, quantity=Quantity.DISPLACEMENT):
+        told = PointDisplacement.of(case, place_of(case, one.name), load_case, moved, links, free, forces)
+        for link, error in told.meshes_to_refine(one.limit, links).items():
+            found[link] = min(error, found.get(link, math.inf))
     return found
 
 

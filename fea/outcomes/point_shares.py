@@ -204,7 +204,7 @@ def condensable(case: Case, link: str) -> bool:
     """
     if clamped_end(case.body(link)) is not None:
         return False
-    carries = any(joint.type != "revolute" and joint.links[0] == link for joint in case.joints.values())
+    carries = any(joint.carrier == link for joint in case.joints.values())
     meshable = case.material_of(link).poissons_ratio <= LARGEST_POISSON_RATIO
     return not carries and meshable and len(case.links[link].points) > 1
 

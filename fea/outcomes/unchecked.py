@@ -5,9 +5,10 @@ Every feature tells its own, in its own file; here they are gathered.
 
 from collections.abc import Iterator
 
+from alula.fea.asked.asked import asked_of, asks
+from alula.fea.asked.at_temperature import as_if_cold, temperature_caveats
+from alula.fea.asked.lasting import creep_caveats, fatigue_caveats
 from alula.fea.buckling.wall import wall_caveats
-from alula.fea.common.at_temperature import as_if_cold, temperature_caveats
-from alula.fea.common.lasting import creep_caveats, fatigue_caveats
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.outcomes.limits import layer_caveats, limit_caveats
 from alula.fea.outcomes.pins import shaft_caveats
@@ -68,17 +69,12 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
     for link in case.linkage.moving:
         if link not in case.checked_links:
             yield Caveat(topic=Topic.PART, what=link, why=reason("no_part"))
-    stressed: set[str] = set()
-    pinned: set[str] = set()
-    for check in case.all_checks.values():
-        if isinstance(check, PinCheck):
-            pinned.update(check.joints or case.pinned_joints)
-        elif isinstance(check, SafetyFactorCheck) or (isinstance(check, SustainedCheck) and not over_motion):
-            stressed.update(check.links or case.checked_links)
+    stressed = asked_of(case, SafetyFactorCheck, *(() if over_motion else (SustainedCheck,)))
+    pinned = asked_of(case, PinCheck)
     left = [link for link in case.checked_links if link not in stressed]
     if left:
         yield Caveat(topic=Topic.STRESS, what=reason("stress_of", links=left), why=reason("no_check"))
-    pins = [name for name, joint in case.joints.items() if joint.type != "slider" and not joint.clamped]
+    pins = [name for name, joint in case.joints.items() if joint.kind.has_pin and not joint.clamped]
     loose = [name for name in pins if name not in pinned]
     if loose:
         which = reason("pins") if loose == pins else reason("pins_of", joints=loose)
@@ -87,16 +83,14 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
 
 def _vibration(case: Case, harmonic: Reason | None) -> Iterator[Caveat]:
     """Yield vibration where the drive has a speed and no check asks for frequencies."""
-    asked = any(isinstance(check, FrequencyCheck) for check in case.checks.values())
-    if not asked and any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
+    if not asks(case, FrequencyCheck) and any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
         why = together(reason("no_frequency_check"), harmonic)
         yield Caveat(topic=Topic.VIBRATION, what=reason("vibration"), why=why)
 
 
 def _pins(case: Case) -> Iterator[Caveat]:
     """Yield the material of pins that are checked and state none."""
-    asked = [check.joints or case.pinned_joints for check in case.all_checks.values() if isinstance(check, PinCheck)]
-    silent = dict.fromkeys(x for names in asked for x in names if "pin_material" not in case.joints[x].model_fields_set)
+    silent = [x for x in asked_of(case, PinCheck) if "pin_material" not in case.joints[x].model_fields_set]
     for material in dict.fromkeys(case.joints[name].pin_material for name in silent):
         own = [name for name in silent if case.joints[name].pin_material == material]
         which = () if len(own) == len(case.pinned_joints) else tuple(own)
@@ -120,9 +114,7 @@ def unusual_materials(case: Case) -> list[Reason | str]:
     list of Reason or str
     """
     used = [case.part_of(link).material for link in case.checked_links]
-    for check in case.all_checks.values():
-        if isinstance(check, PinCheck):
-            used += [case.joints[name].pin_material for name in check.joints or case.pinned_joints]
+    used += [case.joints[name].pin_material for name in asked_of(case, PinCheck)]
     cards = {name: case.all_materials[name] for name in dict.fromkeys(used)}
     found = [said for name, card in cards.items() for said in (*unusual(name, card), *untold(name, card))]
     return [*found, *as_if_cold(case)]

@@ -11,16 +11,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import asked
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
-from alula.fea.outcomes.limits import least_safety_factor
+from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.loads.acting.acting import loads_of
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from alula.loads.records.check_spec import SafetyFactorCheck
-from alula.loads.states.actions import stated_loads
-from alula.loads.states.springs import spring_loads
+from alula.loads.states.actions import lasting, stated_loads
 
 Real = NDArray[np.float64]
 
@@ -162,7 +162,7 @@ def undecided(
     for outcome in outcomes:
         borne = outcome.subject.kind == "pin" and outcome.subject.name in bearing
         moved = outcome.quantity is Quantity.DRIVE_POWER and bearing
-        if borne or moved or outcome.quantity in UNLOADED_QUANTITIES:
+        if borne or moved or outcome.quantity.unloaded:
             yield outcome
         else:
             yield outcome.left_open(nothing_acts(title, size))
@@ -181,12 +181,7 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
     ------
     CheckOutcome
     """
-    for name, check in case.all_checks.items():
-        if not isinstance(check, SafetyFactorCheck):
-            continue
-        for link in check.links or case.checked_links:
-            limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
-            yield CheckOutcome.of(name, Subject.link(link), title, Quantity.SAFETY_FACTOR, Band.unknown(), limit)
+    yield from (one.outcome(title, Band.unknown()) for one in asked(case, SafetyFactorCheck))
 
 
 def stated_size(case: Case, title: str) -> float:
@@ -203,5 +198,5 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    springs = spring_loads(case, case.stated_pose.placement)
+    springs = loads_of(lasting(case), case.stated_pose.placement)
     return load_size((*stated_loads(case, case.load_cases[title]), *springs), case.linkage.longest)

@@ -57,7 +57,7 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
     linkage, found = frame.pose.linkage, []
     for name in frame.pin_beams:
         joint = linkage.joints[name]
-        if joint.type != "revolute" or name in frame.bonded:
+        if joint.slides or name in frame.bonded:
             continue
         sits = linkage.pin_holes(name)
         if sits.shared is not None:

@@ -25,7 +25,7 @@ from alula.loads.case.heights import thickness
 
 Real = NDArray[np.float64]
 NOTHING = 1e-9
-"""Stiffness at rims, over 12 of which are that of a pin by itself, below which there is none but by rounding."""
+"""Share of what a pin by itself bears below which there is nothing but by rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,12 +85,11 @@ class RimFrame:
     g: Real
 
     @property
-    def borne_alone(self) -> bool:
-        """True where tilts make no couples but by rounding, as of an open chain: pins bear what equilibrium says."""
+    def noise(self) -> float:
+        """Couple by a unit at a rim below which there is none but by rounding, as in an open chain [N]."""
         model = self.frame.model
         every = [(model.elements[i], model.length(i)) for i in self.frame.pin_beams.values()]
-        bends = [pin.young * pin.section.i_y / length**3 for pin, length in every]
-        return float(np.abs(self.K).max(initial=0.0)) <= NOTHING * max(bends)
+        return NOTHING * max(pin.young * pin.section.i_y / length**2 for pin, length in every)
 
     @classmethod
     def of(cls, frame: LinkageFrame, rims: Mapping[tuple[str, str], tuple[float, float]]) -> "RimFrame":

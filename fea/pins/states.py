@@ -40,7 +40,7 @@ FLAT = 1e-6
 ROUGH = 1e-8
 """Residual at which the states of the search end."""
 NOTHING = 1e-9
-"""Share of the largest couple, or of the stiffness of a pin, below which there is none but by rounding."""
+"""Share of the largest couple below which there is none but by rounding."""
 LEAST_RADIUS = 1e-7
 """Of a disc, in place of none, so that what a wider hole would make can be told [mm]."""
 
@@ -143,10 +143,10 @@ class PinStates:
         ndarray, shape (n, k)
         """
         value = self.radii.value
-        if not len(value):
-            return value[None]
-        aims = self._by_rims[np.abs(self._by_rims).max(axis=1) > 0.0]
+        aims = self._by_rims[np.abs(self._by_rims).max(axis=1) > self.rims.noise]
         aims = np.vstack([aims, -aims])
+        if not len(value) or not len(aims):
+            return value[None]
         starts = np.vstack([value, *np.outer(LEVELS, np.ones(len(value))), _drawn(DRAWS, len(value))])
         reached = self._stands(starts)[1].v @ aims.T
         order = np.argsort(-reached, axis=0)[:ASCENTS]
@@ -220,8 +220,6 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
     if not open_holes:
         return None
     rims = RimFrame.of(frame, {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes})
-    if rims.borne_alone:
-        return None
     names = [[(joint, hole.link) for joint in hole.joints] for hole in rims.holes]
     return PinStates(rims=rims, radii=radii_of(open_holes, names))
 

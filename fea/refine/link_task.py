@@ -6,23 +6,22 @@ from dataclasses import dataclass, field, replace
 
 from alula.fea.buckling.solid_holding import SolidHolding
 from alula.fea.common.link_loads import LinkLoads
-from alula.fea.elements.mouth import Mouth
+from alula.fea.elements.mouth import Mouth, reference_surfaces
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS, Measure
 from alula.fea.solid.layers import Layers
+from alula.geometry.materials.material import Material
 from alula.geometry.parts.part import Body
 
 
 @dataclass(frozen=True, kw_only=True)
-class LinkTask:
-    """A link to be solved.
+class ElasticLink:
+    """A link as an elastic solid.
 
     Attributes
     ----------
     body : Body
         Geometry of the link.
-    loads : tuple of LinkLoads
-        One per load case.
     E : float
         Young's modulus [MPa].
     nu : float
@@ -33,13 +32,56 @@ class LinkTask:
         Surfaces that displacements refer to (``solve_solid``).
     brittle : bool
         True where the principal stress decides, False where von Mises does.
+    layers : Layers or None
+        Of a printed part whose layers are checked.
+    """
+
+    body: Body
+    E: float
+    nu: float
+    density: float
+    line: tuple[str, str] | Mouth
+    brittle: bool
+    layers: Layers | None = None
+
+    @classmethod
+    def of(cls, body: Body, material: Material, layers: Layers | None = None) -> "ElasticLink":
+        """Return a link of a material.
+
+        Parameters
+        ----------
+        body : Body
+        material : Material
+        layers : Layers, optional
+
+        Returns
+        -------
+        ElasticLink
+        """
+        return cls(
+            body=body,
+            E=material.youngs_modulus,
+            nu=material.poissons_ratio,
+            density=material.density,
+            line=reference_surfaces(body),
+            brittle=material.brittle,
+            layers=layers,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkTask(ElasticLink):
+    """A link to be solved.
+
+    Attributes
+    ----------
+    loads : tuple of LinkLoads
+        One per load case.
     stress_limits : tuple of tuple of 2 float
         On the deciding stress [MPa]: from the least to the largest that stated scatter makes of each, within which
         nothing is decided.
     displacement_limits : tuple of tuple of 2 float
         The same on the displacement [mm].
-    layers : Layers or None
-        Of a printed part whose layers are checked.
     layer_limits : tuple of tuple of 2 float
         As ``stress_limits``, on the stress on the layers.
     displacement_error : float
@@ -51,16 +93,9 @@ class LinkTask:
         meshes are made finer all the same.
     """
 
-    body: Body
     loads: tuple[LinkLoads, ...]
-    E: float
-    nu: float
-    density: float
-    line: tuple[str, str] | Mouth
-    brittle: bool
     stress_limits: tuple[tuple[float, float], ...]
     displacement_limits: tuple[tuple[float, float], ...]
-    layers: Layers | None = None
     layer_limits: tuple[tuple[float, float], ...] = ()
     displacement_error: float = math.inf
     holding: SolidHolding | None = None

@@ -1,23 +1,26 @@
-"""Largest stress of a link under each of many loads, found among all nodes from the stresses of a few modes.
+"""Largest number of a link under each of many loads, found among all nodes from those of a few modes.
 
-The von Mises stress is the length of five numbers that are linear in the stress, the largest principal stress at most
-the mean stress plus 2/3 of it. Both are convex and grow in proportion to the load, hence f(A + B) ≤ f(A) + f(B). Loads
-of a motion change little from pose to pose. So they are taken in short runs: each load of a run is a mean of the loads
-at its ends plus a rest, and its stress at most the larger of theirs plus that of the rest, which is at most the sum of
-the modes' own stresses times their coefficients. Only nodes that by this bound may bear the peak are looked at under
-every load of a run.
+The von Mises stress is the length of five numbers that are linear in the stress, a displacement of three, the stress on
+layers at most the length of three, the largest principal stress at most the mean stress plus 2/3 of the von Mises
+stress. All are convex and grow in proportion to the load, hence f(A + B) ≤ f(A) + f(B). Loads of a motion change little
+from pose to pose. So they are taken in short runs: each load of a run is a mean of the loads at its ends plus a rest,
+and its number at most the larger of theirs plus that of the rest, which is at most the sum of the modes' own numbers
+times their coefficients. Only nodes that by this bound may bear the peak are looked at under every load of a run.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.solid.layers import Layers
-from alula.fea.solid.stress import principal, von_mises
+from alula.fea.solid.stress import extreme_principal, principal
 
 Real = NDArray[np.float64]
+Nodes = NDArray[np.int64]
 
 _BLOCK = 1_000_000
 """Numbers in a block of products: 8 MB."""
@@ -29,18 +32,188 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Peaks:
-    """Largest stress of all nodes under each of N loads.
+    """The largest number of all nodes under each of N loads.
 
     Attributes
     ----------
     value : ndarray, shape (N,)
-        [MPa]
+        [MPa or mm]
     node : ndarray of int, shape (N,)
         Where it is.
     """
 
     value: Real
-    node: NDArray[np.int64]
+    node: Nodes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ModeMeasures:
+    """A number of every node under sums of m modes: the length of a few numbers that are linear in them.
+
+    Such are the displacement, and the von Mises stress (``deviator``).
+
+    Attributes
+    ----------
+    parts : ndarray, shape (nodes, k, m)
+        The numbers whose length it is [MPa or mm].
+    """
+
+    parts: Real
+
+    @cached_property
+    def sizes(self) -> Real:
+        """What neither a mode by itself nor its opposite exceeds (nodes, m)."""
+        return np.asarray(np.sqrt(np.einsum("kim,kim->km", self.parts, self.parts)))
+
+    def bounds(self, nodes: Nodes, combination: Real) -> Real:
+        """Return what the numbers of some nodes do not exceed.
+
+        Parameters
+        ----------
+        nodes : ndarray of int, shape (k,)
+        combination : ndarray, shape (m, n)
+            Of the modes under n loads.
+
+        Returns
+        -------
+        ndarray, shape (k, n)
+        """
+        products = _products(self.parts[nodes], combination)
+        return np.asarray(np.sqrt(np.einsum("kin,kin->kn", products, products)))
+
+    def at(self, nodes: Nodes, combination: Real) -> Real:
+        """Return the numbers of some nodes.
+
+        Parameters
+        ----------
+        nodes, combination
+            As of ``bounds``.
+
+        Returns
+        -------
+        ndarray, shape (k, n)
+        """
+        return self.bounds(nodes, combination)
+
+    def largest(self, nodes: Nodes, combination: Real) -> Peaks:
+        """Return the largest of some nodes under a few loads.
+
+        Parameters
+        ----------
+        nodes, combination
+            As of ``bounds``.
+
+        Returns
+        -------
+        Peaks
+        """
+        found = self.at(nodes, combination)
+        best = np.argmax(found, axis=0)
+        return Peaks(value=np.take_along_axis(found, best[None], axis=0)[0], node=nodes[best])
+
+    def most(self, combination: Real) -> Real:
+        """Return the largest number of all nodes, which are few, under any number of loads.
+
+        Parameters
+        ----------
+        combination : ndarray, shape (m, n)
+            Of the modes under n loads.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        nodes, count = np.arange(len(self.parts)), combination.shape[1]
+        step = max(1, 2 * _BLOCK // (self.parts.shape[1] * len(nodes)))
+        blocks = [combination[:, first : first + step] for first in range(0, count, step)]
+        return np.concatenate([self.at(nodes, block).max(axis=0) for block in blocks])
+
+    def near(self, combination: Real, share: float) -> Self:
+        """Return the numbers of the nodes alone that come near to the peak under one of the loads.
+
+        Parameters
+        ----------
+        combination : ndarray, shape (m, n)
+            Of the modes under n loads.
+        share : float
+            Of the peak by which they may lie below it.
+
+        Returns
+        -------
+        ModeMeasures
+        """
+        nodes = np.arange(len(self.parts))
+        blocks = _blocks(nodes, self.parts.shape[1] * combination.shape[1])
+        values = np.concatenate([self.at(block, combination) for block in blocks])
+        hot = (values >= (1.0 - share) * values.max(axis=0)).any(axis=1)
+        return replace(self, **{name: part[hot] for name, part in vars(self).items() if name in ("parts", "stress")})
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TensionMeasures(ModeMeasures):
+    """The largest principal stress; the parts are those of the von Mises stress.
+
+    Attributes
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Components [MPa].
+    """
+
+    stress: Real
+
+    @cached_property
+    def mean(self) -> Real:
+        """Mean of the direct stresses (nodes, m) [MPa]."""
+        return np.asarray(self.stress[:, :3].mean(axis=1))
+
+    @cached_property
+    def sizes(self) -> Real:
+        """What neither a mode by itself nor its opposite exceeds (nodes, m)."""
+        return np.asarray(np.abs(self.mean) + 2.0 / 3.0 * ModeMeasures(parts=self.parts).sizes)
+
+    def bounds(self, nodes: Nodes, combination: Real) -> Real:
+        """Return the mean stress plus 2/3 of the von Mises stress."""
+        return np.asarray(self.mean[nodes] @ combination + 2.0 / 3.0 * super().bounds(nodes, combination))
+
+    def at(self, nodes: Nodes, combination: Real) -> Real:
+        """Return the largest principal stress, to about 1e-8."""
+        return extreme_principal(_products(self.stress[nodes], combination).swapaxes(1, 2))[0]
+
+    def largest(self, nodes: Nodes, combination: Real) -> Peaks:
+        """Return the largest of some nodes, exact where it is."""
+        node = super().largest(nodes, combination).node
+        return Peaks(value=principal(np.einsum("nim,mn->ni", self.stress[node], combination))[:, 0], node=node)
+
+
+class LayerMeasures(ModeMeasures):
+    """The stress on layers: the length of shear along them and of tension across them; compression counts as none."""
+
+    def at(self, nodes: Nodes, combination: Real) -> Real:
+        """Return the stress on the layers."""
+        tension, *shear = np.moveaxis(_products(self.parts[nodes], combination), 1, 0)
+        return np.asarray(np.sqrt(np.maximum(tension, 0.0) ** 2 + sum(part**2 for part in shear)))
+
+
+def of_stress(stress: Real, *, brittle: bool, layers: Layers | None = None) -> ModeMeasures:
+    """Return the numbers of the stress of modes.
+
+    Parameters
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Components [MPa].
+    brittle : bool
+        True for the largest principal stress, False for the von Mises stress.
+    layers : Layers, optional
+        For the stress on them in place of either.
+
+    Returns
+    -------
+    ModeMeasures
+    """
+    if layers is not None:
+        return LayerMeasures(parts=layers.parts(stress))
+    parts = deviator(stress)
+    return TensionMeasures(parts=parts, stress=stress) if brittle else ModeMeasures(parts=parts)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,7 +228,7 @@ class _Runs:
         Largest coefficients, by size, of what a run's loads differ by from means of its ends.
     """
 
-    ends: NDArray[np.int64]
+    ends: Nodes
     rest: Real
 
     @classmethod
@@ -97,145 +270,60 @@ def deviator(stress: Real) -> Real:
     return np.stack([root / 2.0 * (xx - yy), (xx + yy) / 2.0 - zz, root * xy, root * yz, root * xz], axis=1)
 
 
-def largest_stress(modes: "ModeMeasures", combination: Real, *, brittle: bool, layers: Layers | None = None) -> Peaks:
-    """Return the largest stress of all nodes under each load.
+def largest(modes: ModeMeasures, combination: Real) -> Peaks:
+    """Return the largest number of all nodes under each load.
 
     Parameters
     ----------
     modes : ModeMeasures
     combination : ndarray, shape (m, N)
         Of the modes under N loads.
-    brittle : bool
-        True for the largest principal stress, False for the von Mises stress.
-    layers : Layers, optional
-        For the stress on them in place of either; the modes' parts are theirs then.
 
     Returns
     -------
     Peaks
     """
-    runs, search = _Runs.of(combination), _Search(modes.stress, combination, brittle=brittle, layers=layers)
-    length = 2.0 / 3.0 if brittle else 1.0
-    own = (np.abs(modes.mean) if brittle else 0.0) + length * modes.sizes
+    runs, count = _Runs.of(combination), combination.shape[1]
     ends, least = combination[:, runs.ends], None
-    order = np.argsort(-(own @ np.abs(combination).max(axis=1)))
-    left: list[list[NDArray[np.int64]]] = [[] for _ in runs.ends[1:]]
-    for block in _blocks(order, 5 * len(runs.ends)):
-        at_ends = length * np.sqrt(_squares(modes.parts[block], ends))
-        if brittle:
-            at_ends += modes.mean[block] @ ends
-        if least is None:
-            search.begin(runs, block[np.argmax(at_ends, axis=0)])
-            least = np.array([search.value[runs.loads(run)].min() for run in range(len(left))])
+    value, node = np.full(count, -np.inf), np.zeros(count, dtype=np.int64)
+
+    def look(nodes: Nodes, loads: slice) -> None:
+        found = modes.largest(nodes, combination[:, loads])
+        better = found.value > value[loads]
+        value[loads][better], node[loads][better] = found.value[better], found.node[better]
+
+    order = np.argsort(-(modes.sizes @ np.abs(combination).max(axis=1)))
+    left: list[list[Nodes]] = [[] for _ in runs.ends[1:]]
+    for block in _blocks(order, modes.parts.shape[1] * len(runs.ends)):
+        at_ends = modes.bounds(block, ends)
+        if least is None:  # the nodes that are hottest at the ends of each run
+            hottest = block[np.argmax(at_ends, axis=0)]
+            for run in range(len(left)):
+                look(np.unique(hottest[run : run + 2]), runs.loads(run))
+            least = np.array([value[runs.loads(run)].min() for run in range(len(left))])
             least -= _ROUNDING * np.abs(least)
-        may = runs.bounds(at_ends, own[block]) >= least
+        may = runs.bounds(at_ends, modes.sizes[block]) >= least
         for run in np.flatnonzero(may.any(axis=0)).tolist():
             left[run].append(block[may[:, run]])
     for run, nodes in enumerate(left):
-        search.look(np.concatenate([order[:1], *nodes]), runs.loads(run))
-    return Peaks(value=search.value, node=search.node)
+        look(np.concatenate([order[:1], *nodes]), runs.loads(run))
+    return Peaks(value=value, node=node)
 
 
-class _Search:
-    """The largest stress found so far under each load."""
-
-    def __init__(self, stress: Real, combination: Real, *, brittle: bool, layers: Layers | None) -> None:
-        self._stress, self._combination, self._brittle, self._layers = stress, combination, brittle, layers
-        count = combination.shape[1]
-        self.value, self.node = np.full(count, -np.inf), np.zeros(count, dtype=np.int64)
-
-    def begin(self, runs: _Runs, hottest: NDArray[np.int64]) -> None:
-        """Look at the nodes that are hottest at the ends of each run."""
-        for run in range(len(runs.ends) - 1):
-            self.look(np.unique(hottest[run : run + 2]), runs.loads(run))
-
-    def look(self, nodes: NDArray[np.int64], loads: slice) -> None:
-        """Evaluate the stress of nodes (k,) under some loads."""
-        k, m = len(nodes), self._stress.shape[2]
-        sigma = (self._stress[nodes].reshape(6 * k, m) @ self._combination[:, loads]).reshape(k, 6, -1).swapaxes(1, 2)
-        found = von_mises(sigma) if self._layers is None else self._layers.stress(sigma)
-        if self._brittle:
-            bound = sigma[..., :3].mean(axis=-1) + 2.0 / 3.0 * found
-            near = bound + _ROUNDING * np.abs(bound) >= self.value[loads]
-            found = np.full(near.shape, -np.inf)
-            found[near] = principal(sigma[near])[:, 0]
-        best = np.argmax(found, axis=0)
-        largest = np.take_along_axis(found, best[None], axis=0)[0]
-        better = largest > self.value[loads]
-        self.value[loads][better], self.node[loads][better] = largest[better], nodes[best[better]]
-
-
-def _blocks(nodes: NDArray[np.int64], width: int) -> Iterator[NDArray[np.int64]]:
-    """Parts of the nodes whose products, of some numbers for each, are not too large."""
+def _blocks(numbers: Nodes, width: int) -> Iterator[Nodes]:
+    """Parts of nodes or loads whose products, of some numbers for each, are not too large."""
     step = max(1, _BLOCK // width)
-    for start in range(0, len(nodes), step):
-        yield nodes[start : start + step]
+    for start in range(0, len(numbers), step):
+        yield numbers[start : start + step]
 
 
-def _squares(parts: Real, combination: Real) -> Real:
-    """Squared von Mises stresses (nodes, N) from the deviators (nodes, 5, m) of modes."""
-    nodes, count, m = parts.shape
-    products = (parts.reshape(nodes * count, m) @ combination).reshape(nodes, count, -1)
-    return np.asarray(np.einsum("kin,kin->kn", products, products))
+def _products(linear: Real, combination: Real) -> Real:
+    """Sums (nodes, k, n) of what is linear in modes (nodes, k, m)."""
+    nodes, k, m = linear.shape
+    return np.asarray((linear.reshape(nodes * k, m) @ combination).reshape(nodes, k, -1))
 
 
-def mode_sizes(parts: Real) -> Real:
-    """Return the von Mises stress of each mode by itself.
-
-    Parameters
-    ----------
-    parts : ndarray, shape (nodes, 5, m)
-        From ``deviator`` [MPa].
-
-    Returns
-    -------
-    ndarray, shape (nodes, m)
-        [MPa]
-    """
-    return np.asarray(np.sqrt(np.einsum("kim,kim->km", parts, parts)))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ModeMeasures:
-    """Numbers of m modes from which bounds on their sums' stresses follow.
-
-    Attributes
-    ----------
-    stress : ndarray, shape (nodes, 6, m)
-        Components [MPa].
-    parts : ndarray, shape (nodes, 5, m)
-        From ``deviator`` [MPa].
-    sizes : ndarray, shape (nodes, m)
-        Von Mises stress of each mode by itself [MPa].
-    mean : ndarray, shape (nodes, m)
-        Mean of the direct stresses [MPa].
-    """
-
-    stress: Real
-    parts: Real
-    sizes: Real
-    mean: Real
-
-    @classmethod
-    def of(cls, stress: Real, layers: Layers | None = None) -> "ModeMeasures":
-        """Return the numbers of modes.
-
-        Parameters
-        ----------
-        stress : ndarray, shape (nodes, 6, m)
-            Components [MPa].
-        layers : Layers, optional
-            For the stress on them in place of the von Mises stress.
-
-        Returns
-        -------
-        ModeMeasures
-        """
-        parts = deviator(stress) if layers is None else layers.parts(stress)
-        return cls(stress=stress, parts=parts, sizes=mode_sizes(parts), mean=stress[:, :3].mean(axis=1))
-
-
-def signed_bounds(modes: ModeMeasures, combination: Real, *, brittle: bool) -> tuple[Real, Real]:
+def signed_bounds(modes: ModeMeasures, combination: Real) -> tuple[Real, Real]:
     """Return bounds between which the signed stress of each node stays under all loads.
 
     It is at most the largest principal stress and at least the smallest one, for ductile materials of the size of the
@@ -244,27 +332,21 @@ def signed_bounds(modes: ModeMeasures, combination: Real, *, brittle: bool) -> t
     Parameters
     ----------
     modes : ModeMeasures
+        Of the largest principal or the von Mises stress.
     combination : ndarray, shape (m, N)
         Of the modes under N loads.
-    brittle : bool
-        As for ``alula.fea.motion.fatigue.signed_stress``.
 
     Returns
     -------
     tuple of 2 ndarray, shape (nodes,)
         The lower and the upper bound [MPa].
     """
-    runs = _Runs.of(combination)
+    runs, count = _Runs.of(combination), len(modes.parts)
     ends = combination[:, runs.ends]
-    low, high = np.empty((2, len(modes.parts)))
-    for block in _blocks(np.arange(len(low)), 5 * len(runs.ends)):
-        size, own = np.sqrt(_squares(modes.parts[block], ends)), modes.sizes[block]
-        if brittle:
-            mean, own = modes.mean[block] @ ends, np.abs(modes.mean[block]) + 2.0 / 3.0 * own
-            low[block], high[block] = (
-                sign * runs.bounds(sign * mean + 2.0 / 3.0 * size, own).max(axis=1) for sign in (-1.0, 1.0)
-            )
-        else:
-            high[block] = runs.bounds(size, own).max(axis=1)
-            low[block] = -high[block]
+    low, high = np.empty((2, count))
+    for block in _blocks(np.arange(count), modes.parts.shape[1] * len(runs.ends)):
+        own = modes.sizes[block]
+        high[block] = runs.bounds(modes.bounds(block, ends), own).max(axis=1)
+        signed = isinstance(modes, TensionMeasures)
+        low[block] = -(runs.bounds(modes.bounds(block, -ends), own).max(axis=1) if signed else high[block])
     return low, high

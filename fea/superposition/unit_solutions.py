@@ -1,13 +1,14 @@
-"""Displacement and stress of everything that a link undergoes over a motion, from as few solutions as span it.
+"""Displacement and stress of all that a link undergoes, in many states, from as few solutions as span it.
 
-All loads lie in the span of the unit loads. Those of one motion span a smaller part of it, since the force on an eye
-follows one curve. Singular value decompositions of the coefficients find that part. The pressure fields, which have no
-resultant, have one of their own, truncated by ``TRUNCATION``; that of all other unit loads is kept whole.
-One factorisation and one solution per mode then serve every pose.
+Where the states are those of a motion or of samples, loads are sums of unit loads, of which they span a small part,
+since the force on an eye follows one curve. Singular value decompositions of the coefficients find that part. The
+pressure fields, which have no resultant, have one of their own, truncated by ``TRUNCATION``; that of all other unit
+loads is kept whole. Where they are some single states, their load vectors themselves are taken, without the error of a
+series; most are sums of a few, which their Gram matrix tells. Either way one factorisation and one solution per mode
+serve every state.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +17,17 @@ from alula.fea.common import memory
 from alula.fea.common.reason import Reason
 from alula.fea.elements.elasticity import jacobians, lame_constants, reference_basis
 from alula.fea.elements.space import DisplacementSpace, upper_half
+from alula.fea.elements.supports import rigid_motions
 from alula.fea.solid.solution import FreeSolution, solve_free
 from alula.fea.solid.stress import PAIRS, carry_to_nodes
-from alula.fea.solvers.solve import Method
-from alula.fea.superposition.peaks import ModeMeasures
 from alula.fea.tractions.link_tractions import LinkTractions
 
 Real = NDArray[np.float64]
 
 TRUNCATION = 1e-3
 """Part of a load's pressure fields that may be left out, by the norm of their nodal forces."""
+LEFT_OUT = 1e-5
+"""Norm of the nodal forces that a mode left out may have in loads, over that of the largest mode."""
 _EXACT = 1e-11
 _CHUNK = 128
 """Elements whose stresses are recovered at once: their numbers stay in the cache, at half the time of 1024."""
@@ -53,8 +55,6 @@ class UnitSolutions:
         Resultant of the load vectors relative to the load.
     projection : ndarray, shape (modes, unit loads)
         Turns coefficients of the unit loads into a combination of the modes, of these loads and of any other.
-    units : int
-        Number of unit loads that the modes are made of.
     solver : str
     solver_reason : Reason
         Its name, and why it was chosen.
@@ -70,15 +70,9 @@ class UnitSolutions:
     reaction: Real
     imbalance: Real
     projection: Real
-    units: int
     solver: str
     solver_reason: Reason
     solver_error: float
-
-    @cached_property
-    def measures(self) -> ModeMeasures:
-        """Numbers of the modes from which peaks are found."""
-        return ModeMeasures.of(self.stress)
 
     def field(self, load: int) -> Real:
         """Return the displacements under one of the loads.
@@ -97,16 +91,9 @@ class UnitSolutions:
 
 
 def solve_units(
-    units: LinkTractions,
-    coefficients: Real,
-    scale: Real,
-    *,
-    E: float,
-    nu: float,
-    method: Method | None = None,
-    threads: int | None = None,
+    units: LinkTractions, coefficients: Real, scale: Real, *, E: float, nu: float, threads: int | None = None
 ) -> UnitSolutions:
-    """Solve for the modes of N loads.
+    """Solve for the modes of N loads that are sums of unit loads.
 
     Parameters
     ----------
@@ -117,8 +104,6 @@ def solve_units(
         What resultants are compared with [N].
     E, nu : float
         Of the material [MPa, -].
-    method : {"pardiso", "superlu", "two-level"}, optional
-        The solver; chosen by size and memory when left out.
     threads : int, optional
 
     Returns
@@ -132,21 +117,69 @@ def solve_units(
     """
     space = units.space
     modes, projection = _modes(units, coefficients, scale)
-    combination = projection @ coefficients
-    count = modes.shape[1]
-    memory.require(
-        8.0 * count * (2.0 * space.unknowns + 6.0 * len(space.nodes)),
-        f"the stress of {count} unit loads at {len(space.nodes):,} nodes",
-        None,
-    )
-    size = np.linalg.norm(np.ptp(space.nodes, axis=0))
-    whole = units.wrenches @ coefficients
-    whole[3:] -= np.cross(space.nodes.mean(axis=0), whole[:3].T).T
-    imbalance = np.maximum(np.linalg.norm(whole[:3], axis=0), np.linalg.norm(whole[3:], axis=0) / size) / scale
-    F = np.empty((space.unknowns, count), order="F")  # as solvers take it
+    _require_memory(space, modes.shape[1], 2.0)
+    F = np.empty((space.unknowns, modes.shape[1]), order="F")  # as solvers take it
     for mode, column in zip(modes.T, F.T, strict=True):
         column[:] = units.vectors @ mode
-    free = solve_free(space, F, E=E, nu=nu, method=method, threads=threads)
+    return _solved(space, F, projection, projection @ coefficients, scale, E=E, nu=nu, threads=threads)
+
+
+def solve_loads(
+    space: DisplacementSpace, loads: Real, scale: Real, *, E: float, nu: float, threads: int | None = None
+) -> UnitSolutions:
+    """Solve for the modes of N loads; each is a unit load of its own.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Of the link's mesh.
+    loads : ndarray, shape (N, 3 nodes)
+        Consistent nodal forces [N].
+    scale, E, nu, threads
+        As of ``solve_units``.
+
+    Returns
+    -------
+    UnitSolutions
+
+    Raises
+    ------
+    CannotRunError
+        Where memory does not suffice or a solver fails.
+    """
+    _require_memory(space, len(loads), 4.0)
+    size = np.linalg.norm(loads, axis=1)
+    values, vectors = np.linalg.eigh(loads @ loads.T / np.outer(size, size))
+    kept = vectors[:, values > LEFT_OUT**2 * values[-1]]  # the loads are sums of the eigenvectors' sums of loads
+    combination = (size[:, None] * kept).T
+    return _solved(
+        space, ((kept / size[:, None]).T @ loads).T, combination, combination, scale, E=E, nu=nu, threads=threads
+    )
+
+
+def _require_memory(space: DisplacementSpace, count: int, fields: float) -> None:
+    memory.require(
+        8.0 * count * (fields * space.unknowns + 6.0 * len(space.nodes)),
+        f"the stress of {count} loads at {len(space.nodes):,} nodes",
+        None,
+    )
+
+
+def _solved(
+    space: DisplacementSpace,
+    F: Real,
+    projection: Real,
+    combination: Real,
+    scale: Real,
+    *,
+    E: float,
+    nu: float,
+    threads: int | None,
+) -> UnitSolutions:
+    """Solve for modes (3 nodes, m), which loads are combinations of."""
+    size = np.linalg.norm(np.ptp(space.nodes, axis=0))
+    whole = rigid_motions(space.nodes, space.nodes.mean(axis=0)).reshape(6, -1) @ F @ combination
+    free = solve_free(space, F, E=E, nu=nu, threads=threads)
     nodes, stress = _stress(space, free, E=E, nu=nu)
     return UnitSolutions(
         space=space,
@@ -155,9 +188,8 @@ def solve_units(
         stress=stress,
         combination=combination,
         reaction=np.abs(free.reactions @ combination).max(axis=0) / scale,
-        imbalance=imbalance,
+        imbalance=np.maximum(np.linalg.norm(whole[:3], axis=0), np.linalg.norm(whole[3:], axis=0) / size) / scale,
         projection=projection,
-        units=units.count,
         solver=free.solver,
         solver_reason=free.reason,
         solver_error=free.error,

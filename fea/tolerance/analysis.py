@@ -9,7 +9,6 @@ from alula.fea.check.run import check_case
 from alula.fea.common.clock import Clock
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded_run
-from alula.fea.common.verdict import CheckOutcome
 from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
 from alula.fea.frame.rubbing import presses_of
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
@@ -112,11 +111,7 @@ def tolerance_case(
     clock("Sobol' indices")
     numbers = _numbers(check, found, first, total)
     left_out = _left_out(result)
-    decided = [number for number in numbers if number.certain is not None]
-    fell = found.apart | found.dead
-    every = [_kept(number.low, number.high, number.limit, at_least=number.at_least) for number in decided]
-    for (certain, _), outcome in zip(every, check.outcomes, strict=True):
-        certain &= not _left_open(outcome)
+    certain, possible = map(np.logical_and.reduce, zip(*_counted(check, found), strict=True))
     return ToleranceResult(
         nominal=result,
         tolerances=groups,
@@ -126,8 +121,8 @@ def tolerance_case(
         numbers=numbers,
         apart=Probability.of(found.apart),
         dead=Probability.of(found.dead),
-        certain=Probability.of(np.logical_and.reduce([~fell, *(certain for certain, _ in every)])),
-        possible=Probability.of(np.logical_and.reduce([~fell, *(possible for _, possible in every)])),
+        certain=Probability.of(certain),
+        possible=Probability.of(possible),
         corner=_corner(check, variables, numbers, deviations),
         left_out=left_out,
         notes=_notes(result, found, left_out),
@@ -242,22 +237,22 @@ def _used(check: SampledCheck, found: Numbers) -> Real:
     return np.vstack([used, found.torque])
 
 
-def _kept(low: Real, high: Real, limit: float, *, at_least: bool) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Tell which samples keep the limit over their whole band, and which do not miss it over their whole band."""
-    return (low >= limit, ~(high < limit)) if at_least else (high <= limit, ~(low > limit))
-
-
-def _left_open(outcome: CheckOutcome) -> bool:
-    """True for a check that was left open whatever its band says, such as layers without strength in shear."""
-    return outcome.verdict is not outcome.quantity.sense.verdict(outcome.value, outcome.limit)
+def _counted(check: SampledCheck, found: Numbers) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+    """Yield which samples stand, and for each outcome which pass it for certain, and which possibly."""
+    stands = ~(found.apart | found.dead)
+    yield stands, stands
+    for outcome, low, high in zip(check.outcomes, found.low, found.high, strict=True):
+        sense = outcome.quantity.sense
+        kept, missed = sense.sides(low, high, outcome.limit)
+        # Some are left open whatever their band says, such as layers without strength in shear.
+        left_open = outcome.verdict is not sense.verdict(outcome.value, outcome.limit)
+        yield stands & kept & (not left_open), stands & ~np.asarray(missed)
 
 
 def _numbers(check: SampledCheck, found: Numbers, first: Real, total: Real) -> tuple[ToleranceNumber, ...]:
     """Return the numbers of the checks, then the drive's torque under each load case."""
-    fell, numbers = found.apart | found.dead, []
-    for row, outcome in enumerate(check.outcomes):
-        low, high = found.low[row], found.high[row]
-        certain, possible = _kept(low, high, outcome.limit, at_least=outcome.at_least)
+    numbers, (_, *counted) = list[ToleranceNumber](), _counted(check, found)
+    for row, (outcome, (certain, possible)) in enumerate(zip(check.outcomes, counted, strict=True)):
         numbers.append(
             ToleranceNumber(
                 check=outcome.name,
@@ -269,10 +264,10 @@ def _numbers(check: SampledCheck, found: Numbers, first: Real, total: Real) -> t
                 at_least=outcome.at_least,
                 nominal=(outcome.value.value, outcome.value.low, outcome.value.high),
                 values=found.value[row],
-                low=low,
-                high=high,
-                certain=Probability.of(certain & ~fell & (not _left_open(outcome))),
-                possible=Probability.of(possible & ~fell),
+                low=found.low[row],
+                high=found.high[row],
+                certain=Probability.of(certain),
+                possible=Probability.of(possible),
                 first=first[row],
                 total=total[row],
             )

@@ -7,7 +7,7 @@ that are evaluated at all nodes.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,32 +16,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.link_loads import LinkLoads
-from alula.fea.elements.mouth import reference_surfaces
-from alula.fea.elements.supports import LineReference
+from alula.fea.refine.link_series import PeakQuantity
+from alula.fea.refine.link_task import ElasticLink
 from alula.fea.solid.layers import Layers
 from alula.fea.solid.solution import SolidSolution
-from alula.fea.solid.stress import extreme_principal
-from alula.fea.superposition.peaks import deviator
-from alula.fea.superposition.unit_solutions import UnitSolutions, solve_units
-from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.superposition.link_measure import LinkMeasure, LoadVariant
+from alula.fea.superposition.peaks import ModeMeasures
 from alula.fea.tractions.pin_pressure import PinPressure
 from alula.fea.tractions.torque import Torque
 from alula.fea.tractions.traction import Transfer
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import Body
 from alula.geometry.materials.material import Material
-from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
+from alula.loads.records.bearing import PressureLaw
 
 Real = NDArray[np.float64]
-Variant = tuple[PressureLaw, Transfer | None]
-Measure = Callable[[Real], Real]
 
 NEAR = 0.03
 """Share of the peak by which a node may lie below it in every pilot and still bear it in no sample."""
 _STEP = math.radians(1.0)
 """Between the directions of a pin's spline; the error of a cubic one is (16 step)⁴/384 of the 16th order's part."""
-_BLOCK = 2_000_000
-"""Numbers in a block of stresses."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,93 +56,29 @@ class PeakShares:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Field:
-    """What is largest at some node: linear components of the modes, and the number that they make."""
-
-    components: Real
-    """(nodes, components, modes)"""
-    measure: Measure
-    """Of (nodes, components, n) -> (nodes, n)."""
-
-    def at(self, nodes: NDArray[np.int64] | slice, combination: Real) -> Real:
-        parts = self.components[nodes]
-        k, c, m = parts.shape
-        return self.measure((parts.reshape(k * c, m) @ combination).reshape(k, c, -1))
-
-    def hot(self, combination: Real) -> NDArray[np.int64]:
-        """Return the nodes that come near to the peak under one of the loads of a combination."""
-        step = max(1, _BLOCK // (self.components.shape[1] * combination.shape[1]))
-        blocks = [slice(i, i + step) for i in range(0, len(self.components), step)]
-        values = np.concatenate([self.at(block, combination) for block in blocks])
-        return np.flatnonzero((values >= (1.0 - NEAR) * values.max(axis=0)).any(axis=1))
-
-    def peak(self, nodes: NDArray[np.int64], combination: Real) -> Real:
-        step = max(1, _BLOCK // (self.components.shape[1] * len(nodes)))
-        count = combination.shape[1]
-        return np.concatenate([self.at(nodes, combination[:, i : i + step]).max(axis=0) for i in range(0, count, step)])
-
-
-def _length(parts: Real) -> Real:
-    return np.asarray(np.sqrt(np.einsum("kcn,kcn->kn", parts, parts)))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class LinkResponse:
     """A link's unit solutions, ready for any samples near to its pilots.
 
     Attributes
     ----------
-    body : Body
-    material : Material
-    units : LinkTractions
-    solved : UnitSolutions
-    variants : mapping of str to tuple of (PressureLaw, Transfer or None)
-        Load case -> the variants of its nominal solution.
+    measure : LinkMeasure
+        Of the pilots: for each load case samples that the modes were made for, the first the nominal one.
     stated : Transfer
         How the drive torque enters by the case.
     pilots : mapping of str to LinkLoads
-        Load case -> the samples that the modes were made for; the first is the nominal one.
-    layers : Layers or None
+        Load case -> these samples.
     """
 
-    body: Body
-    material: Material
-    units: LinkTractions
-    solved: UnitSolutions
-    variants: Mapping[str, tuple[Variant, ...]]
+    measure: LinkMeasure
     stated: Transfer
     pilots: Mapping[str, LinkLoads]
-    layers: Layers | None = None
 
     @cached_property
     def _splines(self) -> dict[tuple[str, float], Any]:
         return {}
 
     @cached_property
-    def _fields(self) -> dict[str, _Field]:
-        stress = self.solved.stress
-        if self.material.brittle:
-            own = _Field(components=stress, measure=lambda s: extreme_principal(s.swapaxes(1, 2))[0])
-        else:
-            own = _Field(components=deviator(stress), measure=_length)
-        found = {"stress": own}
-        if self.layers is not None:
-            layers = self.layers
-            found["layers"] = _Field(components=stress, measure=lambda s: layers.stress(s.swapaxes(1, 2)))
-        return found
-
-    @cached_property
-    def _displacement(self) -> _Field:
-        line = LineReference(self.solved.space, reference_surfaces(self.body))
-        modes = self.solved.displacement.T
-        fields = np.stack([line.relative(mode.reshape(-1, 3)) for mode in modes], axis=-1)
-        return _Field(components=fields, measure=_length)
-
-    def _field(self, which: str) -> _Field:
-        return self._displacement if which == "displacement" else self._fields[which]
-
-    @cached_property
-    def _hot(self) -> dict[tuple[str, str], NDArray[np.int64]]:
+    def _hot(self) -> dict[tuple[PeakQuantity, int], list[ModeMeasures]]:
         return {}
 
     def combination(self, loads: LinkLoads, law: PressureLaw, transfer: Transfer | None) -> Real:
@@ -165,9 +95,10 @@ class LinkResponse:
         -------
         ndarray, shape (modes, n)
         """
-        found = np.zeros((len(self.solved.projection), loads.poses))
-        for load, numbers in zip(self.units.loads, self.units.numbers, strict=True):
-            projection = self.solved.projection[:, numbers]
+        units, every = self.measure.units, self.measure.solved.projection
+        found = np.zeros((len(every), loads.poses))
+        for load, numbers in zip(units.loads, units.numbers, strict=True):
+            projection = every[:, numbers]
             if isinstance(load, PinPressure) and not load.tilts:
                 wrench = load.wrench(loads)
                 size = np.hypot(wrench[:, 0], wrench[:, 1])
@@ -203,14 +134,13 @@ class LinkResponse:
             return -math.pi, math.pi + _STEP
         return middle - reach, middle + reach
 
-    def shares(self, which: str, loads: LinkLoads) -> PeakShares | None:
+    def shares(self, which: PeakQuantity, loads: LinkLoads) -> PeakShares | None:
         """Return the peaks of samples over the nominal one.
 
         Parameters
         ----------
-        which : {"stress", "layers", "displacement"}
-            The stress that the strength is set against, that on the layers, or the largest displacement from the line
-            through the pins.
+        which : {"von_mises", "principal", "layers", "displacement"}
+            As of ``LinkMeasure.measures``.
         loads : LinkLoads
             Of n samples.
 
@@ -223,7 +153,7 @@ class LinkResponse:
         if min(nominal.values()) <= 0.0:
             return None
         each = {variant: peaks[variant] / nominal[variant] for variant in peaks}
-        own = [variant for variant in peaks if variant[1] in (None, self.stated)]
+        own = [variant for variant in peaks if variant.transfer in (None, self.stated)]
         every = np.array(list(each.values()))
         return PeakShares(
             value=np.max([peaks[variant] for variant in own], axis=0) / max(nominal[variant] for variant in own),
@@ -231,12 +161,12 @@ class LinkResponse:
             high=every.max(axis=0),
         )
 
-    def _nominal(self, which: str, load_case: str) -> dict[Variant, float]:
+    def _nominal(self, which: PeakQuantity, load_case: str) -> dict[LoadVariant, float]:
         first = self.pilots[load_case].chosen(slice(0, 1))
         return {variant: float(peak[0]) for variant, peak in self.peaks(which, first).items()}
 
-    def peaks(self, which: str, loads: LinkLoads) -> dict[Variant, Real]:
-        """Return the largest of a field under samples, for every variant.
+    def peaks(self, which: PeakQuantity, loads: LinkLoads) -> dict[LoadVariant, Real]:
+        """Return the largest of a number under samples, for every variant.
 
         Parameters
         ----------
@@ -245,16 +175,22 @@ class LinkResponse:
 
         Returns
         -------
-        dict of Variant to ndarray, shape (n,)
+        dict of LoadVariant to ndarray, shape (n,)
             [MPa or mm]
         """
-        field, found = self._field(which), {}
-        for law, transfer in self.variants[loads.name]:
-            key = (which, f"{loads.name}/{law.span}/{transfer}")
+        found = {}
+        for variant in self._variants(loads.name):
+            key = which, variant.loads.start
             if key not in self._hot:
-                self._hot[key] = field.hot(self.combination(self.pilots[loads.name], law, transfer))
-            found[law, transfer] = field.peak(self._hot[key], self.combination(loads, law, transfer))
+                pilots = self.measure.solved.combination[:, variant.loads]
+                self._hot[key] = [side.near(pilots, NEAR) for side in self.measure.measures(which)]
+            here = self.combination(loads, variant.law, variant.transfer)
+            found[variant] = np.max([side.most(here) for side in self._hot[key]], axis=0)
         return found
+
+    def _variants(self, load_case: str) -> list[LoadVariant]:
+        number = list(self.pilots).index(load_case)
+        return [variant for variant in self.measure.variants if variant.record == number]
 
     def work(self, virtual: LinkLoads, loads: LinkLoads) -> Real:
         """Return the work of virtual loads on the displacements under loads, which both balance.
@@ -276,23 +212,25 @@ class LinkResponse:
         CannotRunError
             For a virtual torque about a pin where no load turns the link.
         """
-        law, transfer = self.variants[loads.name][0]
+        units, variant = self.measure.units, self._variants(loads.name)[0]
         turned = [(pin.name, pin.torque) for pin in virtual.pins if not pin.slotted]
         turned += [(couple.pin, couple.torque) for couple in virtual.couples]
-        known = {load.place for load in self.units.loads if isinstance(load, Torque)}
+        known = {load.place for load in units.loads if isinstance(load, Torque)}
         if any(np.any(torque) and name not in known for name, torque in turned):
             raise CannotRunError(f"no load turns link '{virtual.link}' as the displacement wanted of it would take")
-        mean = np.zeros((self.units.count, virtual.poses))
-        for load, numbers in zip(self.units.loads, self.units.numbers, strict=True):
+        mean = np.zeros((units.count, virtual.poses))
+        for load, numbers in zip(units.loads, units.numbers, strict=True):
             if isinstance(load, PinPressure):
                 mean[numbers.start + load.local : numbers.stop] = load.tractions(load.wrench(virtual))
             else:
-                mean[numbers] = load.coefficients(virtual, law, transfer)
-        return np.asarray(np.einsum("un,un->n", mean, self._compliance @ self.combination(loads, law, transfer)))
+                mean[numbers] = load.coefficients(virtual, variant.law, variant.transfer)
+        return np.asarray(
+            np.einsum("un,un->n", mean, self._compliance @ self.combination(loads, variant.law, variant.transfer))
+        )
 
     @cached_property
     def _compliance(self) -> Real:
-        return np.asarray(self.units.vectors.T @ self.solved.displacement)
+        return np.asarray(self.measure.units.vectors.T @ self.measure.solved.displacement)
 
 
 def link_response(
@@ -324,33 +262,6 @@ def link_response(
     -------
     LinkResponse
     """
-    space = solution.space
-    units = LinkTractions.of(space, pilots, density=material.density)
-    size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
-    variants: dict[str, tuple[Variant, ...]] = {}
-    columns, scales = [], []
-    for loads in pilots:
-        transfers = units.transfers(loads.chosen(slice(0, 1)))
-        variants[loads.name] = tuple((law, transfer) for law in (WIDE, NARROW) for transfer in transfers)
-        scale = loads.size(size)
-        for law, transfer in variants[loads.name]:
-            columns.append(units.coefficients(loads, law, transfer))
-            scales.append(np.where(scale > 0.0, scale, max(float(scale.max()), 1e-300)))
-    solved = solve_units(
-        units,
-        np.hstack(columns),
-        np.concatenate(scales),
-        E=material.youngs_modulus,
-        nu=material.poissons_ratio,
-        threads=threads,
-    )
-    return LinkResponse(
-        body=body,
-        material=material,
-        units=units,
-        solved=solved,
-        variants=variants,
-        stated=stated,
-        pilots={loads.name: loads for loads in pilots},
-        layers=layers,
-    )
+    link = ElasticLink.of(body, material, layers)
+    measure = LinkMeasure.of_units(link, solution.space, pilots, as_first=True, threads=threads)
+    return LinkResponse(measure=measure, stated=stated, pilots={loads.name: loads for loads in pilots})

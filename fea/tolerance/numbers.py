@@ -11,7 +11,7 @@ from alula.fea.outcomes.result import CheckResult
 from alula.fea.refine.refinement import Effort
 from alula.fea.tolerance.sizes import SizedCheck, SizeEnds, resized, sized_check
 from alula.fea.tolerance.states import Sampler, States
-from alula.fea.tolerance.told import STRESS, SolvedCheck, Told
+from alula.fea.tolerance.told import PEAKS, SolvedCheck, Told
 from alula.loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -182,5 +182,5 @@ def covered(case: Case, outcome: CheckOutcome) -> bool:
     """
     if outcome.quantity is Quantity.BUCKLING_FACTOR:
         return outcome.subject.kind == "link" and case.part_of(outcome.subject.name).is_beam  # others buckle as solids
-    known = (*STRESS, Quantity.LAYERS, Quantity.DISPLACEMENT)
+    known = (Quantity.SAFETY_FACTOR, Quantity.SUSTAINED_STRESS, *PEAKS, Quantity.DISPLACEMENT)
     return outcome.quantity in known

@@ -11,44 +11,23 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
 from alula.geometry.linkage.driven import DrivenClosure
-from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.linkage.sampled import SampledPlacement, assemble_samples
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.case.toleranced import Variable
-from alula.loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
+from alula.loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad, at_poses, chosen
 from alula.loads.records.load_case import LoadCase
-from alula.loads.states.actions import acting_loads
-from alula.loads.states.rubbing import WAYS, is_of
-from alula.loads.states.springs import spring_loads
-from alula.loads.statics.friction import Presses, solve_friction
-from alula.loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
+from alula.loads.states.actions import acting_on
+from alula.loads.states.rubbing import WAYS, friction_at, is_of
+from alula.loads.statics.friction import NOTHING_MORE, Presses
+from alula.loads.statics.statics import Balance, balance
 
 Real = NDArray[np.float64]
 
 Reach = tuple[float, Mapping[str, PartMass], Mapping[str, PartMass]]
 """How far the ends of a size are from its nominal value [mm], and the masses of links at the low and the high end."""
-SUSPECT = 30.0
-"""Growth of the largest joint force beyond the nominal one from which the distance to a dead point is looked at."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class SampledForces(Equilibrium):
-    """Joint forces of n samples.
-
-    Attributes
-    ----------
-    place : SampledPlacement
-    """
-
-    place: SampledPlacement
-
-    @property
-    def placement(self) -> Placement:
-        """Where the links of each sample stand."""
-        return self.place
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,7 +42,7 @@ class States:
         By how much the branch of such a sample ends at a dead point before the pose [rad, mm]; NaN where it does not.
     dead : ndarray of bool, shape (N,)
         Those at a dead point of the drive or locked by friction, where joint forces grow without limit.
-    forces : mapping of str to SampledForces
+    forces : mapping of str to Balance
         Load case -> joint forces of the n others.
     loads : mapping of str to tuple of Load
         Load case -> all that acts on their links.
@@ -72,7 +51,7 @@ class States:
     apart: NDArray[np.bool_]
     short: Real
     dead: NDArray[np.bool_]
-    forces: Mapping[str, SampledForces]
+    forces: Mapping[str, Balance]
     loads: Mapping[str, tuple[Load, ...]]
 
     @property
@@ -165,63 +144,36 @@ class Sampler:
             np.zeros(len(deviations)),
         )
         place, assembled, short = assemble_samples(self.pose, self.shifts(deviations), angle)
-        dead = np.zeros(len(deviations), dtype=np.bool_)
-        drive = self.case.pinned_drive
-        systems: dict[str, Any] = {}
-        kept = assembled.copy()
-        for _ in range(3):  # once more without those at a dead point, and without those that friction locks
-            here, own = _chosen(place, kept), deviations[kept]
-            systems = {}
-            for name, load_case in self.case.load_cases.items():
-                loads = self._loads(name, load_case, here, own)
-                systems[name] = loads, assemble(here, drive, loads)
-            lost = ~_holds([system for _, system in systems.values()])
-            if rubbing_joints(self.case) and not lost.any():
-                systems, lost = self._rubbing(here, systems)
-            if not lost.any():
-                break
-            dead[np.flatnonzero(kept)[lost]] = True
-            kept = assembled & ~dead
-        forces = {}
-        for name, (_, system) in systems.items():
-            unknowns, residual = system.solved()
-            value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
-            forces[name] = SampledForces(
-                drive=drive,
-                joints=joint_reactions(here, drive, value),
-                drive_torque=value.get("T", np.zeros(len(unknowns))),
-                drive_force=value.get("P", np.zeros(len(unknowns))),
-                residual=residual,
-                place=here,
-            )
-        return States(
-            apart=~assembled,
-            short=short,
-            dead=dead,
-            forces=forces,
-            loads={name: loads for name, (loads, _) in systems.items()},
-        )
-
-    def _rubbing(self, here: SampledPlacement, systems: Mapping[str, Any]) -> tuple[dict[str, Any], NDArray[np.bool_]]:
-        """Add friction to the loads of every load case; also tell which samples it locks."""
-        drive, locked, found = self.case.pinned_drive, np.zeros(len(here.q), dtype=np.bool_), {}
-        assert self.pose.coordinate is not None
-        driven = DrivenClosure(here.closure, self.pose.coordinate)
-        moving = replace(here, qdot=driven.coefficients(here.q)[0])
-        for name, (loads, _) in systems.items():
-            way, presses = WAYS[self.case.load_cases[name].direction], self.presses.get(name, {})
-            friction = solve_friction(moving, drive, loads, way, presses=presses)
-            locked |= friction.locked
-            found[name] = (*loads, *friction.loads), assemble(here, drive, (*loads, *friction.loads))
-        return found, locked
+        here, own, drive = place.chosen(assembled), deviations[assembled], self.case.pinned_drive
+        loads = {name: self._loads(name, load_case, here, own) for name, load_case in self.case.load_cases.items()}
+        locked = np.zeros(here.shape, dtype=np.bool_)
+        if rubbing_joints(self.case):
+            assert self.pose.coordinate is not None
+            driven = DrivenClosure(here.closure, self.pose.coordinate)
+            for name, acting in loads.items():
+                way, presses = WAYS[self.case.load_cases[name].direction], self.presses.get(name, NOTHING_MORE)
+                friction, locks = friction_at(driven, here, drive, acting, way, presses)
+                loads[name], locked = (*acting, *friction), locked | locks
+        forces = {name: balance(here, drive, acting) for name, acting in loads.items()}
+        good = ~locked & next(iter(forces.values())).sound
+        if not good.all():
+            loads = {n: tuple(chosen(at_poses(one, here.shape), good) for one in own) for n, own in loads.items()}
+            forces = {name: balance(here.chosen(good), drive, acting) for name, acting in loads.items()}
+        dead = assembled.copy()
+        dead[assembled] = ~good
+        return States(apart=~assembled, short=short, dead=dead, forces=forces, loads=loads)
 
     def _loads(self, name: str, load_case: LoadCase, place: SampledPlacement, deviations: Real) -> tuple[Load, ...]:
         if load_case.speed != 0.0:
             assert self.pose.coordinate is not None
             first, second = DrivenClosure(place.closure, self.pose.coordinate).coefficients(place.q)
             place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
-        found = list(acting_loads(self.case, load_case, place, self.masses))
-        stated = len(found) - len(spring_loads(self.case, place))  # springs belong to no load case
+        acting = acting_on(self.case, load_case, self.masses, inert=place.qddot is not None)
+        found: list[Load] = []
+        stated = 0
+        for one in acting:
+            found += (at_poses(load, place.shape) for load in one.loads(place))
+            stated = stated if one.lasting else len(found)
         for variable, column in zip(self.variables, deviations.T, strict=True):
             if variable.kind in ("load", "force") and is_of(name, str(variable.target[0])):
                 number = int(variable.target[1])
@@ -279,23 +231,6 @@ def _moved(wrench: Real, shift: Any) -> Real:
         return wrench
     found = wrench.copy()
     found[..., 5] += shift.real * wrench[..., 1] - shift.imag * wrench[..., 0]
-    return found
-
-
-def _chosen(place: SampledPlacement, kept: NDArray[np.bool_]) -> SampledPlacement:
-    return SampledPlacement(closure=place.closure.chosen(kept), q=place.q[kept])
-
-
-def _holds(systems: Sequence[Any]) -> NDArray[np.bool_]:
-    """Tell which samples are no dead points, by the smallest singular value where the determinant is small."""
-    matrix = systems[0].scaled
-    if not len(matrix):
-        return np.ones(0, dtype=np.bool_)
-    sign, size = np.linalg.slogdet(matrix)
-    suspect = (sign == 0.0) | ~np.isfinite(size) | (size < np.median(size) - np.log(SUSPECT))
-    found = np.ones(len(matrix), dtype=np.bool_)
-    if suspect.any():
-        found[suspect] = np.linalg.svd(matrix[suspect], compute_uv=False)[:, -1] >= NEARLY_SINGULAR
     return found
 
 

@@ -12,29 +12,28 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import place_of
 from alula.fea.buckling.buckling import link_factors
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.motion.buckling_history import axial_compression
 from alula.fea.outcomes.limits import layers_of
 from alula.fea.outcomes.result import CheckResult, SolidResult
+from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.tolerance.link_response import LinkResponse, PeakShares, link_response
-from alula.fea.tolerance.states import SampledForces, Sampler, States
+from alula.fea.tolerance.states import Sampler, States
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.materials.material import Material
 from alula.loads.records.applied import PointLoad, at_poses
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck
-from alula.loads.statics.statics import assemble, joint_reactions
+from alula.loads.records.check_spec import BearingCheck
+from alula.loads.statics.statics import balance
 
 Real = NDArray[np.float64]
 
 _STEP = 1e-4
 """Share of the compression by which it is changed for derivatives."""
-STRESS = {
-    Quantity.SAFETY_FACTOR: "stress",
-    Quantity.SUSTAINED_STRESS: "stress",
-    Quantity.DEFLECTION: "displacement",
-}
+PEAKS: dict[Quantity, PeakQuantity] = {Quantity.LAYERS: "layers", Quantity.DEFLECTION: "displacement"}
+"""What links are checked by, besides the stress that their strength is set against."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -219,20 +218,19 @@ class Told:
             return self._point(outcome)
         if outcome.quantity is Quantity.BUCKLING_FACTOR:
             return self._column(outcome.load_case, name)
-        layered = outcome.quantity is Quantity.LAYERS
-        shares = self._shares(name, "layers" if layered else STRESS[outcome.quantity], outcome.load_case)
+        material, own = case.material_of(name), PEAKS.get(outcome.quantity)
+        shares = self._shares(name, own or STRESS[material.brittle], outcome.load_case)
         if shares is None:
             return None
-        material = case.material_of(name)
         if outcome.quantity is Quantity.DEFLECTION:
             return _times(shares, 1.0 / self._factor(name, "youngs_modulus"))
         if outcome.quantity is Quantity.SUSTAINED_STRESS:
             return shares
-        entry = "strength_across_layers" if layered else _strength(material)
+        entry = "strength_across_layers" if own == "layers" else _strength(material)
         inverse = PeakShares(value=1.0 / shares.value, low=1.0 / shares.high, high=1.0 / shares.low)
         return _times(inverse, self._factor(name, entry))
 
-    def _shares(self, link: str, which: str, load_case: str) -> PeakShares | None:
+    def _shares(self, link: str, which: PeakQuantity, load_case: str) -> PeakShares | None:
         response = self.check.responses.get(link)
         if response is None or load_case not in response.pilots:
             return None
@@ -302,14 +300,14 @@ class Told:
             link
             for link, response in self.check.responses.items()
             for load_case in response.pilots
-            if response.body.part.is_beam and (load_case, link) not in told and self._compression(link, load_case).any()
+            if response.measure.link.body.part.is_beam
+            and (load_case, link) not in told
+            and self._compression(link, load_case).any()
         )
 
     def _point(self, outcome: CheckOutcome) -> PeakShares | None:
         case = self.check.result.case
-        asked = case.checks[outcome.name]
-        assert isinstance(asked, DisplacementCheck)
-        link, point = case.displaced_point(outcome.name, asked)
+        link, point = place_of(case, outcome.name)
         check = self.check.reference or self.check
         nominal = Told(check=check, states=check.nominal, deviations=check.deviation)._moved(
             outcome.load_case, link, point
@@ -324,19 +322,9 @@ class Told:
         place, found = forces.place, []
         for unit in np.eye(6)[:2]:
             load = at_poses(PointLoad(link=link, point=point, wrench=unit), place.shape)
-            system = assemble(place, case.pinned_drive, (load,))
-            unknowns, residual = system.solved()
-            value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
-            virtual = SampledForces(
-                drive=case.pinned_drive,
-                joints=joint_reactions(place, case.pinned_drive, value),
-                drive_torque=value.get("T", np.zeros(len(unknowns))),
-                drive_force=value.get("P", np.zeros(len(unknowns))),
-                residual=residual,
-                place=place,
-            )
+            virtual = balance(place, case.pinned_drive, (load,))
             states = replace(self.states, forces={load_case: virtual}, loads={load_case: (load,)})
-            total = np.zeros(len(unknowns))
+            total = np.zeros(place.shape)
             for name, response in self.check.responses.items():
                 if load_case in response.pilots:
                     own = self.check.sampler.link_loads(states, self.deviations, load_case, name)

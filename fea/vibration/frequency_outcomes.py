@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from alula.fea.asked.asked import asked, asks
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from alula.fea.vibration.harmonics import HIGHEST, Meeting, meetings
 from alula.fea.vibration.link_modes import LinkModes, link_modes
 from alula.fea.vibration.linkage_modes import LinkageModes
@@ -38,7 +39,7 @@ def asked_frequencies(case: Case, *, solids: bool = False, threads: int = 2) -> 
     -------
     CaseFrequencies or None
     """
-    if not any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+    if not asks(case, FrequencyCheck):
         return None
     driven = {name: load_case for name, load_case in case.load_cases.items() if load_case.speed != 0.0}
     found = case_frequencies(case.model_copy(update={"load_cases": driven}), poses=POSES, threads=threads)
@@ -66,14 +67,13 @@ def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
     if found is None:
         return
     case = found.case
-    for name, check in case.checks.items():
-        if not isinstance(check, FrequencyCheck):
-            continue
-        for load_case, history in found.histories.items():
-            yield _linkage(case, name, check, load_case, history)
-        for link in check.links or case.checked_links:
-            for load_case, modes in _by_itself(found, link):
-                yield _link(case, name, check, load_case, modes, found.histories[load_case].driving)
+    for one in asked(case, FrequencyCheck):
+        if one.subject == LINKAGE:
+            for load_case, history in found.histories.items():
+                yield one.outcome(load_case, *_of_linkage(case, history))
+        else:
+            for load_case, modes in _by_itself(found, one.subject.name):
+                yield one.outcome(load_case, *_of_link(case, modes, found.histories[load_case].driving))
 
 
 def deciding_load_case(found: CaseFrequencies) -> str:
@@ -125,7 +125,7 @@ def least_at(history: FrequencyHistory) -> float:
     return float(history.at[lowest_pose(history.low[:, 0], history.frequencies[:, 0])])
 
 
-def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:
+def _of_linkage(case: Case, history: FrequencyHistory) -> tuple[Band, Reason]:
     ratio = least_frequency(history).times(1.0 / history.driving)
     why = reason(
         "frequency_of_linkage",
@@ -133,7 +133,7 @@ def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, histo
         harmonic=nearest_or_met(case, history),
         hinged=_hinged(case, None),
     )
-    return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, why)
+    return ratio, why
 
 
 def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkModes]]:
@@ -153,7 +153,7 @@ def _hinged(case: Case, link: str | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for name, _ in running_holes(case) if link in (None, *case.joints[name].links)))
 
 
-def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
+def _of_link(case: Case, own: LinkModes, driving: float) -> tuple[Band, Reason]:
     link, mode = own.link, own.modes[0]
     why = reason(
         "frequency_of_link",
@@ -164,8 +164,7 @@ def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: Lin
         driving=driving,
         hinged=_hinged(case, link),
     )
-    ratio = mode.frequency.times(1.0 / driving)
-    return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, why)
+    return mode.frequency.times(1.0 / driving), why
 
 
 def lowest_frequency(case: Case, history: FrequencyHistory) -> Reason:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import asks
 from alula.fea.common.reason import Reason, reason
 from alula.fea.vibration.over_motion import FrequencyHistory, pose_frequencies
 from alula.geometry.base.errors import CannotRunError, CaseError
@@ -113,7 +114,7 @@ def nearest_harmonic(case: Case) -> Reason | None:
         Of the load case in which one comes nearest; None where a check asks for frequencies, nothing drives, or no
         natural frequency is found.
     """
-    if any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+    if asks(case, FrequencyCheck):
         return None
     driven = {abs(one.speed): (name, one) for name, one in reversed(case.load_cases.items()) if one.speed != 0.0}
     if not driven:

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.reason import Reason, reason
+from alula.geometry.joints.joint_kinds import MOVES, TURNS
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 
@@ -112,7 +113,7 @@ def link_holding(case: Case, link: str, pose: Pose, *, running: Container[str] =
     else:
         for joint in case.linkage.joints_of(link):
             point = case.linkage.point_of(joint, link)
-            carries = case.joints[joint].type != "revolute" and case.joints[joint].links[0] == link
+            carries = case.joints[joint].carrier == link
             key = (point, joint if carries else "")
             moves, turns = found.setdefault(key, ([], []))
             more = _held(case, link, joint, pose)
@@ -138,14 +139,13 @@ def _held(case: Case, link: str, joint: str, pose: Pose) -> tuple[list[Real], li
     """Directions in which a joint holds a link, and axes about which it does, in the link's axes."""
     record, drive = case.linkage.joints[joint], case.pinned_drive
     driven = drive is not None and drive.joint == joint and not drive.idle
-    if record.type == "revolute":
-        return [X, Y, Z], [X, Y, Z] if record.bonded or driven else [X, Y]
-    angle = pose.angles[record.links[0]] + record.direction - pose.angles[link]
-    along = np.array([np.cos(angle), np.sin(angle), 0.0])
-    across = np.array([-along[1], along[0], 0.0])
-    if record.type == "slider":
-        return [across, Z, *([along] if driven else [])], [X, Y, Z]
-    return [across], [X, Y, Z] if driven else [along]
+    ways = record.bears | record.kind.driven if driven else record.bears
+    axes = [X, Y, Z]
+    if record.carrier is not None:
+        angle = pose.angles[record.carrier] + record.direction - pose.angles[link]
+        axes[:2] = [np.array([np.cos(at), np.sin(at), 0.0]) for at in (angle, angle + np.pi / 2.0)]
+    moves, turns = ([axis for way, axis in zip(every, axes, strict=True) if way in ways] for every in (MOVES, TURNS))
+    return moves, turns
 
 
 def _point(case: Case, link: str, point: str) -> Real:

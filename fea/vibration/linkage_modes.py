@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.build import ALONG_PINS, build_frame
 from alula.fea.frame.linear import FrameSolution, solve_frame
-from alula.fea.frame.linkage_frame import LinkageFrame, slot_normal
+from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import FrameModel, Guide
 from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
@@ -32,6 +32,7 @@ from alula.fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from alula.fea.vibration.modes import Mode, NaturalModes, lowest
 from alula.fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
 from alula.geometry.base.errors import CannotRunError
+from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.records.applied import PartMass
@@ -275,18 +276,18 @@ def _drive_way(frame: LinkageFrame, path: EquilibriumPath) -> Floats:
     assert frame.held is not None
     name, chain = frame.held.joint, path.chain
     first, second = frame.pins[name]
-    revolute = frame.pose.linkage.joints[name].type == "revolute"
+    slides = frame.pose.linkage.joints[name].slides
     if name in frame.pin_ends:
-        first, second = (frame.pin_ends[name], second) if revolute else (first, frame.pin_ends[name])
+        first, second = (first, frame.pin_ends[name]) if slides else (frame.pin_ends[name], second)
     way, axes = np.zeros(chain.count), chain.axes(path.state.rotations)
-    along = np.cross(slot_normal(frame.pose, name), ALONG_PINS) if not revolute else ALONG_PINS
+    along = vector(frame.pose.placement.along(name)) if slides else ALONG_PINS
     for node, sense in ((first, -1.0), (second, 1.0)):
         if node is None:
             continue
-        if revolute:
-            for step in chain.nodes[node]:
-                way[step.number] += sense * float(axes[step.number] @ along)
-        else:
+        if slides:
             places = chain.translations[node]
             np.add.at(way, places[places >= 0], sense * along[places >= 0])
+        else:
+            for step in chain.nodes[node]:
+                way[step.number] += sense * float(axes[step.number] @ along)
     return way

@@ -41,9 +41,8 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():
-        if joint.type != "slider" and linkage.rise(name) != 0.0:
-            ends = joint.links if joint.type == "revolute" else joint.links[1:]
-            found += [(name, link) for link in ends if linkage.pin_holes(name)[link].high > 0.0]
+        if joint.kind.has_pin and linkage.rise(name) != 0.0:
+            found += [(name, link) for link in joint.bored if linkage.pin_holes(name)[link].high > 0.0]
     return tuple(found)
 
 

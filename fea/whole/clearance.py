@@ -2,10 +2,11 @@
 
 import math
 
+from alula.fea.asked.asked import asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.fea.common.verdict import CheckOutcome
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import ClearanceCheck
 from alula.loads.states.clearance import Clearance
@@ -54,12 +55,8 @@ def clearance_outcomes(case: Case, found: Clearance | None) -> tuple[CheckOutcom
     """
     if found is None:
         return ()
-    value, load_case = clearance_band(found), next(iter(case.load_cases))
-    return tuple(
-        CheckOutcome.of(name, LINKAGE, load_case, Quantity.CLEARANCE, value, check.minimum, gap_reason(found))
-        for name, check in case.all_checks.items()
-        if isinstance(check, ClearanceCheck)
-    )
+    every = asked(case, ClearanceCheck)
+    return tuple(one.for_all(case, clearance_band(found), gap_reason(found)) for one in every)
 
 
 def gap_reason(found: Clearance) -> Reason:

@@ -16,10 +16,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.source import distinct, play_source
-from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.frame.displacement_band import compliance_range
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
@@ -284,13 +285,13 @@ def layer_gap_outcomes(
     CheckOutcome
         Against 0: washers may fill the gap, so that what a check asks for in the plane is no measure of it.
     """
-    checks = [name for name, check in case.all_checks.items() if isinstance(check, ClearanceCheck)]
-    if not checks or assembly is None or moved.frame is None or moved.solution is None:
+    every = [*asked(case, ClearanceCheck, quantity=Quantity.LAYER_GAP)]
+    if not every or assembly is None or moved.frame is None or moved.solution is None:
         return
     found = LayerGaps(case=case, load_case=load_case, moved=moved, assembly=assembly).least
     if found is None:
         return
     x, y = (0.0 if abs(end) < 1e-6 * case.linkage.longest else end for end in found.place)
     why = reason("layers_come_nearest", links=tuple(found.names), gap=found.gap, x=x, y=y)
-    for name in checks:
-        yield CheckOutcome.of(name, LINKAGE, load_case, Quantity.LAYER_GAP, found.left, 0.0, why)
+    for one in every:
+        yield one.outcome(load_case, found.left, why)

@@ -1,14 +1,12 @@
 """Whether a linkage weighs no more than it may."""
 
+from alula.fea.asked.asked import GRAMS, asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.fea.common.verdict import CheckOutcome
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import MassCheck
 from alula.loads.states.weighed import Weighed
-
-GRAMS = 1e6
-"""In a tonne."""
 
 
 def mass_outcomes(case: Case, found: Weighed | None) -> tuple[CheckOutcome, ...]:
@@ -24,20 +22,14 @@ def mass_outcomes(case: Case, found: Weighed | None) -> tuple[CheckOutcome, ...]
     -------
     tuple of CheckOutcome
     """
-    load_case = next(iter(case.load_cases))
-    return tuple(
-        CheckOutcome.of(
-            name,
-            LINKAGE,
-            load_case,
-            Quantity.MASS,
-            Band.exact(GRAMS * (found.total.total + (check.others or 0.0))),
-            GRAMS * check.maximum,
-            mass_reason(found, check.others),
-        )
-        for name, check in case.checks.items()
-        if isinstance(check, MassCheck) and found is not None
-    )
+    if found is None:
+        return ()
+    outcomes = []
+    for one in asked(case, MassCheck):
+        others = one.check.others if isinstance(one.check, MassCheck) else None
+        total = Band.exact(GRAMS * (found.total.total + (others or 0.0)))
+        outcomes.append(one.for_all(case, total, mass_reason(found, others)))
+    return tuple(outcomes)
 
 
 def mass_reason(found: Weighed, others: float | None = None) -> Reason:

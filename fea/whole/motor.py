@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked
 from alula.fea.common.alternatives import least_of_convex
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
@@ -196,7 +197,7 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
     torque, speed = solved.drive_torque, solved.motion.angular_speed(link)
 
     def outcome(quantity: Quantity, value: Band, limit: float, why: Reason) -> CheckOutcome:
-        return CheckOutcome.of(name, Subject.link(link), title, quantity, value, limit, why)
+        return Asked(name=name, subject=Subject.link(link), quantity=quantity, limit=limit).outcome(title, value, why)
 
     if check.no_load_speed is not None:
         rpm = 30.0 / math.pi
@@ -245,7 +246,8 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
         return asked.peak_power, asked.mean_power, asked.peak_power
 
     value = _band(laden, title, power)
-    outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)
+    driven = Subject.link(laden.drive.link)
+    outcome = Asked(name=name, subject=driven, quantity=Quantity.DRIVE_POWER, limit=limit).outcome(title, value)
     side = {
         Verdict.PASS: "covers_peak",
         Verdict.FAIL: "below_mean",

@@ -1,8 +1,9 @@
 """Every number and check of the linkage as a whole, in one place."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
+from alula.fea.asked.asked import asks, checks_of
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
 from alula.fea.vibration.over_motion import CaseFrequencies
@@ -10,9 +11,10 @@ from alula.fea.whole.clearance import clearance_outcomes
 from alula.fea.whole.mass import mass_outcomes
 from alula.fea.whole.motor import motor_outcomes
 from alula.fea.whole.size import size_outcomes
+from alula.geometry.base.model import CaseModel
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import MassCheck, MotorCheck, SizeCheck
+from alula.loads.records.check_spec import ClearanceCheck, FrequencyCheck, MassCheck, MotorCheck, SizeCheck
 from alula.loads.states.actions import needs_masses
 from alula.loads.states.clearance import Clearance, clearance
 from alula.loads.states.extent import Extent, extent
@@ -43,6 +45,15 @@ class WholeNumbers:
     frequencies: CaseFrequencies | None = None
 
 
+KINDS: dict[type[CaseModel], Callable[[WholeNumbers], Iterable[CheckOutcome]]] = {
+    ClearanceCheck: lambda found: clearance_outcomes(found.case, found.clearance),
+    MassCheck: lambda found: mass_outcomes(found.case, found.mass),
+    SizeCheck: lambda found: size_outcomes(found.case, found.size),
+    FrequencyCheck: lambda found: frequency_outcomes(found.frequencies),
+}
+"""Kind of check -> its outcomes; of those that do not come from loads, in a pose and over a motion alike."""
+
+
 def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False, threads: int = 2) -> WholeNumbers:
     """Return gaps, mass, size and frequencies of a linkage, as far as a check asks for them or they come at no cost.
 
@@ -67,18 +78,14 @@ def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False,
     """
     pose = pose or case.solve_pose()
     apart = clearance(case, pose)
-    measures = apart is not None or _asks(case, SizeCheck)
+    measures = apart is not None or asks(case, SizeCheck)
     return WholeNumbers(
         case=case,
         clearance=apart,
-        mass=weighed(case, pose) if needs_masses(case) or _asks(case, MassCheck) else None,
+        mass=weighed(case, pose) if needs_masses(case) or asks(case, MassCheck) else None,
         size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
         frequencies=asked_frequencies(case, solids=solids, threads=threads),
     )
-
-
-def _asks(case: Case, kind: type[MassCheck] | type[SizeCheck]) -> bool:
-    return any(isinstance(check, kind) for check in case.checks.values())
 
 
 def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
@@ -92,10 +99,8 @@ def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
     ------
     CheckOutcome
     """
-    yield from clearance_outcomes(found.case, found.clearance)
-    yield from mass_outcomes(found.case, found.mass)
-    yield from size_outcomes(found.case, found.size)
-    yield from frequency_outcomes(found.frequencies)
+    for outcomes in KINDS.values():
+        yield from outcomes(found)
 
 
 def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:
@@ -112,10 +117,9 @@ def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:
     """
     case = found.case
     outcomes: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in case.load_cases}
-    for name, check in case.checks.items():
-        if isinstance(check, MotorCheck):
-            for load_case, own in motor_outcomes(case, name, check).items():
-                outcomes[load_case] += own
+    for name, check in checks_of(case, MotorCheck):
+        for load_case, own in motor_outcomes(case, name, check).items():
+            outcomes[load_case] += own
     for outcome in unloaded_outcomes(found):
         outcomes[outcome.load_case].append(outcome)
     return {load_case: tuple(own) for load_case, own in outcomes.items()}

@@ -1,9 +1,10 @@
 """Whether a linkage fits into a box along the global axes."""
 
+from alula.fea.asked.asked import asked, checks_of
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, SIZES, CheckOutcome
+from alula.fea.common.verdict import SIZES, CheckOutcome
 from alula.geometry.clearance.reach import Outermost
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import SizeCheck
@@ -50,15 +51,10 @@ def size_outcomes(case: Case, found: Extent | None) -> tuple[CheckOutcome, ...]:
     tuple of CheckOutcome
         Along x, y and z.
     """
-    load_case = next(iter(case.load_cases))
-    return tuple(
-        CheckOutcome.of(
-            name, LINKAGE, load_case, quantity, size_band(found, axis), check.maximum[axis], size_reason(found, axis)
-        )
-        for name, check in case.checks.items()
-        if isinstance(check, SizeCheck) and found is not None
-        for axis, quantity in enumerate(SIZES)
-    )
+    if found is None:
+        return ()
+    every = [(one, SIZES.index(one.quantity)) for one in asked(case, SizeCheck)]
+    return tuple(one.for_all(case, size_band(found, axis), size_reason(found, axis)) for one, axis in every)
 
 
 def size_limits(case: Case) -> tuple[float, ...]:
@@ -73,7 +69,7 @@ def size_limits(case: Case) -> tuple[float, ...]:
     tuple of 3 float
         Along x, y and z [mm]; empty where no check of size is stated.
     """
-    stated = [check.maximum for check in case.checks.values() if isinstance(check, SizeCheck)]
+    stated = [check.maximum for _, check in checks_of(case, SizeCheck)]
     return tuple(min(lengths) for lengths in zip(*stated, strict=True))
 
 

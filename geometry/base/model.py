@@ -6,12 +6,14 @@ import unicodedata
 from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
+
+Record = TypeVar("Record", bound="CaseModel")
 
 
 class CaseModel(BaseModel):
@@ -53,6 +55,25 @@ def refusal(rule: str) -> PydanticCustomError:
         To be raised.
     """
     return PydanticCustomError("rule", "{rule}", {"rule": rule})
+
+
+def one_of(record: Record, one: str, other: str) -> Record:
+    """Require that exactly one of two entries is stated.
+
+    Parameters
+    ----------
+    record : CaseModel
+    one, other : str
+        The entries.
+
+    Returns
+    -------
+    CaseModel
+        The record.
+    """
+    if (getattr(record, one) is None) == (getattr(record, other) is None):
+        raise refusal(f"it needs either {one} or {other}; state one of the two, and not both")
+    return record
 
 
 def _name(text: str) -> str:

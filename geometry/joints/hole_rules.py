@@ -35,7 +35,7 @@ def check_holes(name: str, joint: Joint) -> None:
 
 def _check_table(entry: str, joint: Joint, stated: Mapping[str, object]) -> None:
     """Refuse a table of links where there are no two holes, and a link that the joint does not have."""
-    if joint.type != "revolute":
+    if joint.slides:
         raise CaseError(
             f"{entry}: a joint of type {joint.type} has no two holes; state one clearance for it, or leave it out"
         )
@@ -47,7 +47,7 @@ def _check_table(entry: str, joint: Joint, stated: Mapping[str, object]) -> None
 def _check_fits(entry: str, joint: Joint) -> None:
     """Refuse fits that there are not, and those of a joint without holes or without a pin's diameter."""
     first, second = joint.links
-    if joint.type != "revolute":
+    if joint.slides:
         raise CaseError(
             f"{entry}: a joint of type {joint.type} has no fit; leave it out, or state the clearance of a pin in a slot"
         )

@@ -101,12 +101,12 @@ def pin_holes(joint: Joint, slot: float = 0.0) -> PinHoles:
     PinHoles
         Of a bonded joint and of a slider, which has no pin, without play.
     """
-    if joint.bonded or joint.type == "slider":
-        known = Known.PRESSED if joint.bonded and not joint.clamped else Known.NO_PIN
+    if joint.fixed or not joint.kind.has_pin:
+        known = Known.PRESSED if joint.fixed and not joint.clamped else Known.NO_PIN
         first, second = (_hole(link, known, (0.0, 0.0)) for link in joint.links)
         return PinHoles(holes=(first, second))
     loose, own, plain = loose_links(joint), by_link(joint), _plain(joint)
-    if joint.type == "pin-in-slot":
+    if joint.slotted is not None:
         own = {joint.links[0]: (Known.SLOT, (slot, slot))}
     if plain is not None and len(loose) == 2:
         half = 0.5 * _middle(plain)
@@ -134,8 +134,7 @@ def loose_links(joint: Joint) -> list[str]:
     list of str
         Those in which the pin is not tight; of a pin in a slot, the slot's link is none of them.
     """
-    holes = joint.links[1:] if joint.type == "pin-in-slot" else joint.links
-    return [link for link in holes if not joint.is_tight_in(link)]
+    return [link for link in joint.bored if not joint.is_tight_in(link)]
 
 
 def _hole(link: str, known: Known, ends: Range) -> HolePlay:

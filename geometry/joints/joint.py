@@ -1,12 +1,14 @@
 """A joint between two links, as a case states it."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
+from pydantic_core import PydanticKnownError
 
 from alula.geometry.base.model import CaseModel, Name
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from alula.geometry.joints.joint_kinds import JOINT_KINDS, JointKind, Way, Ways
 from alula.geometry.joints.pin_entries import PRESS, PinClearance, PinFit
 
 
@@ -23,6 +25,15 @@ TightIn = Annotated[
 ]
 """One link, or both as a list."""
 
+
+def _kind_name(stated: object) -> str:
+    if isinstance(stated, str) and stated in JOINT_KINDS:
+        return stated
+    *first, last = map(repr, JOINT_KINDS)
+    raise PydanticKnownError("literal_error", {"expected": f"{', '.join(first)} or {last}"})
+
+
+KindName = Annotated[str, PlainValidator(_kind_name), WithJsonSchema({"type": "string", "enum": list(JOINT_KINDS)})]
 Coefficient = Annotated[float, Field(ge=0.0, le=2.0)]
 UNSTATED = 0.3
 """Share by which a coefficient of friction without a stated range may be off to either side."""
@@ -31,7 +42,7 @@ UNSTATED = 0.3
 class Joint(CaseModel):
     """A joint between two links."""
 
-    type: Literal["revolute", "pin-in-slot", "slider"] = "revolute"
+    type: KindName = "revolute"
     """revolute: the two points coincide. pin-in-slot: the second link's point lies on the line through the first link's
     point along ``direction`` (a half joint: it may turn and slide). slider: as pin-in-slot, and the second link keeps
     the angle ``angle`` to the first."""
@@ -106,9 +117,54 @@ class Joint(CaseModel):
         return self.friction_range or ((1.0 - UNSTATED) * self.friction, (1.0 + UNSTATED) * self.friction)
 
     @property
+    def kind(self) -> JointKind:
+        """Its kind."""
+        return JOINT_KINDS[self.type]
+
+    @property
+    def bears(self) -> Ways:
+        """The ways in which it holds its second link on its first."""
+        return self.kind.bears | {Way.ABOUT_PIN} if self.bonded else self.kind.bears
+
+    @property
     def fixes_angle(self) -> bool:
         """Whether the case states the angle between its links, which takes part in closing the loops."""
-        return self.type == "slider" or self.clamped or (self.bonded and "angle" in self.model_fields_set)
+        return self.kind.keeps_angle or self.clamped or (self.bonded and "angle" in self.model_fields_set)
+
+    @property
+    def slides(self) -> bool:
+        """Whether it has a slot or guide, with a travel along it."""
+        return self.kind.slides
+
+    @property
+    def pivots(self) -> bool:
+        """Whether its links turn about its pin, and do nothing else."""
+        return not (self.slides or self.bears_moment)
+
+    @property
+    def fixed(self) -> bool:
+        """Whether its links do not move against each other: it is bonded or clamped."""
+        return self.bears_moment and not self.slides
+
+    @property
+    def as_posed(self) -> bool:
+        """Whether its links are fixed at the angle that they have in the pose, since none is stated."""
+        return self.bears_moment and not self.fixes_angle
+
+    @property
+    def carrier(self) -> str | None:
+        """The link that carries its slot or guide; None where it does not slide."""
+        return self.links[0] if self.slides else None
+
+    @property
+    def slotted(self) -> str | None:
+        """The link in whose slot its pin runs; None where there is no pin in a slot."""
+        return self.carrier if self.kind.has_pin else None
+
+    @property
+    def bored(self) -> tuple[Name, ...]:
+        """The links that have its pin at the point that they state, in a round hole."""
+        return self.links[1:] if self.slides else self.links
 
     def is_tight_in(self, link: str) -> bool:
         """Return True if the pin is stated to be tight in one of the joint's links.
@@ -123,9 +179,9 @@ class Joint(CaseModel):
         bool
             False where nothing states it: the pin may run there. A bonded joint is tight in both links.
         """
-        return self.bonded or link in self.tight_in
+        return self.fixed or link in self.tight_in
 
     @property
     def bears_moment(self) -> bool:
         """Whether it bears a moment about z."""
-        return self.type == "slider" or self.bonded
+        return self.bonded or self.kind.keeps_angle

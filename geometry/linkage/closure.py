@@ -50,7 +50,7 @@ class LoopClosure:
     @cached_property
     def slots(self) -> tuple[str, ...]:
         """Names of the joints with a slot."""
-        return tuple(n for n, j in self.linkage.joints.items() if j.type != "revolute")
+        return tuple(n for n, j in self.linkage.joints.items() if j.slides)
 
     @cached_property
     def angles_fixed(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from alula.geometry.base.model import CaseModel, Name, refusal
 from alula.geometry.base.units import POSITIVE, Length
 from alula.geometry.joints.holes import PinHoles, pin_holes
 from alula.geometry.joints.joint import Joint
+from alula.geometry.joints.joint_kinds import IN_PLANE
 from alula.geometry.parts.part import EyeSizes, HoleRow, Slot
 
 Place = tuple[Length, Length]
@@ -81,7 +82,7 @@ def _check_clamp(name: str, joint: Joint) -> None:
         if joint.clamp_length is not None:
             raise CaseError(f"{entry}.clamp_length: joint {name} is not clamped; add clamped = true, or leave it out")
         return
-    if joint.type != "revolute":
+    if joint.slides:
         raise CaseError(
             f"{entry}.clamped: a joint of type {joint.type} slides, but a clamped one holds its links; leave clamped "
             "out, or remove the type"
@@ -159,7 +160,7 @@ class Linkage:
                 )
         if joint.links[0] == joint.links[1]:
             raise CaseError(f"joints.{name}: it joins link '{joint.links[0]}' to itself; name two different links")
-        if joint.bonded and not joint.clamped and joint.type != "revolute":
+        if joint.bonded and not joint.clamped and joint.slides:
             raise CaseError(
                 f"joints.{name}.bonded: a joint of type {joint.type} slides, and only a revolute joint can be bonded; "
                 "leave bonded out, or remove the type"
@@ -188,14 +189,18 @@ class Linkage:
 
     @cached_property
     def mobility(self) -> int:
-        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) - 2 J1 - J2, less one per stated angle of a bond.
+        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) less what joints bear, bonds with a stated angle.
 
         Norton, Design of Machinery, 5th ed., chapter 2. It counts, and can be wrong for special
         dimensions (parallelograms): there the rank of the Jacobian decides.
         """
-        half = sum(j.type == "pin-in-slot" for j in self.joints.values())
-        bonds = sum(j.bonded and j.fixes_angle for j in self.joints.values())
-        return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half - bonds
+        unstated = sum(joint.as_posed for joint in self.joints.values())
+        return 3 * len(self.moving) - self.borne + unstated
+
+    @cached_property
+    def borne(self) -> int:
+        """Number of the forces and moments in the plane that its joints bear."""
+        return sum(len(joint.bears & IN_PLANE) for joint in self.joints.values())
 
     def rise(self, name: str) -> float:
         """Return how far a joint's second link lies above its first, along z.

@@ -225,6 +225,24 @@ class Placement:
         """
         return np.asarray(self.origin(link) + self.arm(link, point))
 
+    def along(self, joint: str) -> Complex:
+        """Direction (...) of a joint's slot or guide, global axes.
+
+        Parameters
+        ----------
+        joint : str
+            Its name.
+
+        Returns
+        -------
+        complex array (...)
+            Unit vector; x for a joint that does not slide.
+        """
+        record = self.linkage.joints[joint]
+        if record.carrier is None:
+            return np.ones(self.shape, dtype=complex)
+        return np.asarray(self.direction(record.carrier) * np.exp(1j * record.direction))
+
     def axes(self, link: str) -> Real:
         """The link's x, y and z as columns (..., 3, 3) in global axes.
 

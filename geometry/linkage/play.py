@@ -145,7 +145,7 @@ class LooseJoints:
         tuple of complex
         """
         joint = self.place.linkage.joints[name]
-        return (1.0, 1j) if joint.type == "revolute" else (complex(1j * np.exp(1j * joint.direction)),)
+        return (complex(1j * np.exp(1j * joint.direction)),) if joint.slides else (1.0, 1j)
 
     @cached_property
     def _sizes(self) -> Real:

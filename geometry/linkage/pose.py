@@ -104,7 +104,7 @@ def solve_pose(
 
 def _by_angles(linkage: Linkage) -> str:
     """Return the further remedy of bonded joints whose angles are not stated."""
-    open_ones = [name for name, joint in linkage.joints.items() if joint.bonded and not joint.fixes_angle]
+    open_ones = [name for name, joint in linkage.joints.items() if joint.as_posed]
     return f", or the angle of a bonded joint, joints.{open_ones[0]}.angle" if open_ones else ""
 
 

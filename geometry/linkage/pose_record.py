@@ -194,8 +194,8 @@ def constraint_jacobian(pose: Pose, *, bonds: bool = True) -> Real:
     rows: list[Real] = []
     for name, joint in linkage.joints.items():
         along, across, turn = _joint_motion(pose, name)
-        rows += [along, across] if joint.type == "revolute" else [across]
-        if joint.type == "slider" or (joint.bonded and (bonds or joint.fixes_angle)):
+        rows += [across] if joint.slides else [along, across]
+        if joint.bears_moment and (bonds or joint.fixes_angle):
             rows.append(turn)
     return np.array(rows)
 
@@ -215,10 +215,8 @@ def _joint_motion(pose: Pose, name: str) -> tuple[Real, Real, Real]:
             relative[:, k : k + 2] = sign * np.eye(2)
             relative[:, k + 2] = sign * np.array([-arm[1], arm[0]]) / linkage.longest
             turn[k + 2] = sign
-    if joint.type == "revolute":
-        return relative[0], relative[1], turn
-    along = pose.angles[joint.links[0]] + joint.direction
-    c, s = math.cos(along), math.sin(along)
+    along = complex(pose.placement.along(name))
+    c, s = along.real, along.imag
     return np.array([c, s]) @ relative, np.array([-s, c]) @ relative, turn
 
 

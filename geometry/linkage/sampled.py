@@ -152,6 +152,22 @@ class SampledPlacement(Placement):
 
     closure: SampledClosure
 
+    def chosen(self, poses: Any) -> "SampledPlacement":
+        """Return the chosen samples alone.
+
+        Parameters
+        ----------
+        poses : mask or numbers (n,)
+            Which of the n samples.
+
+        Returns
+        -------
+        SampledPlacement
+            At these.
+        """
+        rates = {name: rate[poses] for name in ("qdot", "qddot") if (rate := getattr(self, name)) is not None}
+        return SampledPlacement(closure=self.closure.chosen(poses), q=self.q[poses], **rates)
+
     def arm(self, link: str, point: str) -> Complex:
         """Arm (n,) from the origin of a link's frame to one of its points as it is in each sample, global axes [mm].
 

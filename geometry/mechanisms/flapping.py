@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.dyad import FloatArray, close_dyad, triangle_angle, wrap
+from alula.geometry.mechanisms.dyad import FloatArray, close_dyad, triangle_angle, wrap
 from alula.geometry.mechanisms.fourbar import FourBar
 from alula.geometry.mechanisms.grashof import Grashof
 from alula.geometry.mechanisms.periodic import periodic_maximum, periodic_minimum

@@ -14,7 +14,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.dyad import CLOSURE_TOLERANCE, BoolArray, Dyad, FloatArray, close_dyad, triangle_angle, wrap
+from alula.geometry.mechanisms.dyad import (
+    CLOSURE_TOLERANCE,
+    BoolArray,
+    Dyad,
+    FloatArray,
+    close_dyad,
+    triangle_angle,
+    wrap,
+)
 from alula.geometry.mechanisms.grashof import EQUALITY_TOLERANCE, Grashof, classify
 
 Branch = Literal["open", "crossed"]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from alula.geometry.linkage.dyad import FloatArray
+from alula.geometry.mechanisms.dyad import FloatArray
 
 
 def periodic_maximum(values: FloatArray) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.dyad import FloatArray, wrap
+from alula.geometry.mechanisms.dyad import FloatArray, wrap
 from alula.geometry.mechanisms.fourbar import Branch, FourBar
 
 Drive = Literal["a", "b", "c"]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.dyad import FloatArray
+from alula.geometry.mechanisms.dyad import FloatArray
 from alula.geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
 
 _SAMPLES = 3600

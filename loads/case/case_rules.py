@@ -29,7 +29,6 @@ from alula.loads.records.check_spec import (
     MotorCheck,
     PinCheck,
     SafetyFactorCheck,
-    SizeCheck,
     SustainedCheck,
 )
 from alula.loads.records.conditions import Conditions
@@ -113,15 +112,15 @@ def check_rules(case: CoreCase) -> None:
 def _check_drive(case: CoreCase) -> None:
     check_drive(case.linkage, case.pinned_drive)
     if case.drive is not None and case.drive.stiffness is not None:
-        slides = case.joints[case.drive.joint].type == "slider"
-        if (case.drive.stiffness.measure is Measure.TRAVEL) != slides:
-            kind, unit = ("slider", "20 N/mm") if slides else ("revolute joint", "2 N*m/rad")
+        pushed = case.joints[case.drive.joint].kind.guided
+        if (case.drive.stiffness.measure is Measure.TRAVEL) != pushed:
+            kind, unit = ("slider", "20 N/mm") if pushed else ("revolute joint", "2 N*m/rad")
             raise CaseError(
                 f"drive.stiffness: joint '{case.drive.joint}' is a {kind}, whose drive has a stiffness such as "
                 f'"{unit}"; state that'
             )
     mobility = case.linkage.mobility
-    if case.drive is not None and case.joints[case.drive.joint].bonded:
+    if case.drive is not None and case.joints[case.drive.joint].fixed:
         held_as = "clamped" if case.joints[case.drive.joint].clamped else "bonded"
         raise CaseError(
             f"drive.joint: joint '{case.drive.joint}' is {held_as}, so it bears the moment that a drive would; drive "
@@ -129,7 +128,7 @@ def _check_drive(case: CoreCase) -> None:
         )
     let_go = case.pose.equilibrium
     drives = 1 if case.drive or let_go else 0
-    held = sum(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
+    held = sum(joint.as_posed for joint in case.linkage.joints.values())
     clamped = any(joint.clamped for joint in case.joints.values())
     if mobility <= drives + held and (held or clamped):
         return  # the pose tells whether clamps fit together, and statics whether these bonds hold the linkage
@@ -203,7 +202,7 @@ def _check_pose(case: CoreCase) -> None:
 
 
 def _check_slides(case: CoreCase, entry: str, name: str | None) -> None:
-    slots = [joint for joint, record in case.joints.items() if record.type != "revolute"]
+    slots = [joint for joint, record in case.joints.items() if record.slides]
     require(entry, name, slots, "is no slider or slot, but a travel is stated")
 
 
@@ -254,7 +253,7 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
-    elif not isinstance(check, SizeCheck):
+    elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
                 f"checks.{name}: a check of sustained load needs the duration of the load; "
@@ -389,8 +388,7 @@ def _check_slots(case: CoreCase, link: str) -> None:
         raise CaseError(
             f"links.{link}.arms.{next(iter(record.arms))}: a part of shape {part.shape} takes no arms; leave them out"
         )
-    sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)
-               if linkage.joints[name].type == "pin-in-slot" and linkage.joints[name].links[0] == link}  # fmt: skip
+    sliding = {linkage.point_of(name, link): name for name, joint in linkage.joints.items() if joint.slotted == link}
     for point in record.slots:
         joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
         if point not in sliding or len(joints) != 1:

@@ -19,6 +19,8 @@ from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
 from alula.geometry.placement.fit import Wanted
 from alula.geometry.placement.placed_body import faces_of, placed_body
+from alula.loads.acting.springs import Spring, Tendon
+from alula.loads.acting.stop import Stop
 from alula.loads.case.eyes import with_eye
 from alula.loads.case.heights import heights
 from alula.loads.case.places import check_point
@@ -37,7 +39,6 @@ from alula.loads.records.flapping import Wing
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
-from alula.loads.records.springs import Spring, Stop, Tendon
 from alula.loads.records.tolerances import TolerancesTable
 from alula.loads.statics.statics import Drive
 
@@ -149,7 +150,7 @@ class CoreCase(Revisable):
         """The links and joints as one linkage; with joint_model = bonded, every revolute joint is."""
         joints, bond = self.joints, {"bonded": True}
         if self.joint_model == "bonded":
-            joints = {n: j.model_copy(update=bond) if j.type == "revolute" else j for n, j in joints.items()}
+            joints = {n: j if j.slides else j.model_copy(update=bond) for n, j in joints.items()}
         return Linkage(self.links, joints, self.heights)
 
     @cached_property
@@ -275,7 +276,7 @@ class CoreCase(Revisable):
         pinned = {
             link
             for joint, record in self.joints.items()
-            if record.type == "revolute" and set(self.linkage.joint_points(joint)) == {point}
+            if not record.slides and set(self.linkage.joint_points(joint)) == {point}
             for link in record.links
         }
         if len(owners) > 1 and not set(owners) <= pinned:
@@ -310,17 +311,13 @@ class CoreCase(Revisable):
         return tuple(
             name
             for name, joint in self.joints.items()
-            if joint.type == "revolute" and not joint.clamped and set(joint.links) & set(self.checked_links)
+            if not joint.slides and not joint.clamped and set(joint.links) & set(self.checked_links)
         )
 
     @property
     def bearing_joints(self) -> tuple[str, ...]:
         """The joints whose pin bears on a part: those of ``pinned_joints``, and pins in slots of links with a part."""
-        slotted = [
-            name
-            for name, joint in self.joints.items()
-            if joint.type == "pin-in-slot" and joint.links[0] in self.checked_links
-        ]
+        slotted = [name for name, joint in self.joints.items() if joint.slotted in self.checked_links]
         return (*self.pinned_joints, *slotted)
 
     def part_of(self, link: str) -> PartKind:

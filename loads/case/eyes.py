@@ -102,7 +102,7 @@ def joint_of_fork(linkage: Linkage, link: str, point: str) -> str:
             f"{entry}: a fork takes the eye of one link in its gap, but joints {', '.join(here)} are there; leave fork "
             "out, or join the other links elsewhere"
         )
-    if linkage.joints[here[0]].type != "revolute":
+    if linkage.joints[here[0]].slides:
         raise CaseError(f"{entry}: joint '{here[0]}' slides, but a fork has a revolute joint; leave fork out")
     return here[0]
 

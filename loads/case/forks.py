@@ -209,7 +209,7 @@ def _check_between(case: CoreCase, joint: str) -> None:
     """Check that the eyes of a joint with a pair of plates do not run into each other."""
     links = case.joints[joint].links
     pairs = [link for link in links if case.links[link].count == 2]
-    if not pairs or case.joints[joint].type == "slider" or not all(case.links[link].part for link in links):
+    if not pairs or not case.joints[joint].kind.has_pin or not all(case.links[link].part for link in links):
         return
     pair = outer_link(case, joint) or pairs[0]
     mate = other_link(case.linkage, joint, pair)

@@ -8,6 +8,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.joints.fits import RUNNING
 from alula.geometry.joints.hole_rules import check_holes
 from alula.geometry.joints.holes import Known, largest_clearance
+from alula.geometry.joints.joint_kinds import Surface
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
@@ -29,6 +30,22 @@ def rubbing_joints(case: CoreCase) -> tuple[str, ...]:
     tuple of str
     """
     return tuple(name for name, joint in case.joints.items() if joint.friction > 0.0)
+
+
+def guides_without_length(case: CoreCase) -> tuple[str, ...]:
+    """Return the guides with friction of which nothing says over which length they hold, so that moments add none.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    tuple of str
+    """
+    joints = case.joints
+    guides = (name for name in rubbing_joints(case) if joints[name].kind.rubs is Surface.GUIDE)
+    return tuple(name for name in guides if joints[name].guide_length is None)
 
 
 def friction_ranges(case: CoreCase) -> dict[str, tuple[float, float]]:
@@ -58,7 +75,7 @@ def check_friction(case: CoreCase) -> None:
         For the first rule that is broken.
     """
     for name, joint in case.joints.items():
-        if joint.guide_length is not None and joint.type != "slider":
+        if joint.guide_length is not None and joint.kind.rubs is not Surface.GUIDE:
             raise CaseError(f"joints.{name}.guide_length: joint {name} is no slider and has no guide; leave it out")
     rubbing = rubbing_joints(case)
     for name in rubbing:
@@ -69,11 +86,11 @@ def check_friction(case: CoreCase) -> None:
                 f"joints.{name}.friction_range: it goes from {low:g} to {high:g}, but friction is {joint.friction:g}; "
                 "state the least and the largest coefficient about it"
             )
-        if joint.type == "revolute" and joint.pin_diameter is None:
+        if joint.kind.rubs is Surface.BORE and joint.pin_diameter is None:
             raise CaseError(
                 f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"
             )
-        if joint.bonded or (case.joint_model == "bonded" and joint.type == "revolute"):
+        if case.linkage.joints[name].fixed:
             raise CaseError(f"{entry}, but a bonded joint does not turn; leave friction out, or do not bond it")
         if case.pose.equilibrium:
             raise CaseError(
@@ -159,13 +176,13 @@ def check_clearances(case: CoreCase) -> None:
         if widest == 0.0:
             continue
         entry = f"joints.{name}.{'fit' if joint.clearance is None else 'clearance'}"
-        if joint.type == "slider":
+        if not joint.kind.has_pin:
             raise CaseError(
                 f"{entry}: a slider has no pin with play, and play of its guide is not modelled; leave it out"
             )
-        if joint.clearance is None and (case.linkage.joints[name].bonded or not _follows_play(case)):
+        if joint.clearance is None and (case.linkage.joints[name].fixed or not _follows_play(case)):
             continue  # the pin sits as stated, but has no play that is followed; ``joint_caveats`` tells it
-        if case.linkage.joints[name].bonded:
+        if case.linkage.joints[name].fixed:
             raise CaseError(f"{entry}: a bonded joint has no play; leave it out, or let the joint turn")
         if _redundant(case):
             raise CaseError(
@@ -199,8 +216,7 @@ def _follows_play(case: CoreCase) -> bool:
 
 def _redundant(case: CoreCase) -> bool:
     """Whether equilibrium has fewer equations than unknowns."""
-    unknowns = sum(1 if j.type == "pin-in-slot" else 2 + j.bonded for j in case.linkage.joints.values())
-    return unknowns + bool(case.drive) > 3 * len(case.linkage.moving)
+    return case.linkage.borne + bool(case.drive) > 3 * len(case.linkage.moving)
 
 
 def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
@@ -215,12 +231,10 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
     Caveat
     """
     for kind, clamped in (("bonds", False), ("clamps", True)):
-        held = [name for name, joint in case.linkage.joints.items() if joint.bonded and joint.clamped == clamped]
+        held = [name for name, joint in case.linkage.joints.items() if joint.fixed and joint.clamped == clamped]
         if held:
             yield Caveat(topic=Topic.BONDS, what=reason(kind, joints=held), why=reason("not_judged_what_holds"))
-    short = [name for name in rubbing_joints(case) if case.joints[name].type == "slider"]
-    short = [name for name in short if case.joints[name].guide_length is None]
-    if short:
+    if short := guides_without_length(case):
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.FRICTION,

@@ -47,8 +47,7 @@ def on_one_axis(case: CoreCase) -> tuple[tuple[str, ...], ...]:
     """
     groups: list[tuple[set[tuple[str, str]], tuple[str, ...]]] = []
     for name, joint in case.joints.items():
-        ends = list(zip(joint.links, case.linkage.joint_points(name), strict=True))
-        axis = set(ends if joint.type == "revolute" else ends[1:])  # a slot's own point is not where the pin is
+        axis = {(link, case.linkage.point_of(name, link)) for link in joint.bored}
         names: tuple[str, ...] = ()
         for group in [group for group in groups if group[0] & axis]:
             groups.remove(group)
@@ -75,7 +74,7 @@ def pin_masses(case: CoreCase) -> dict[str, CarriedBody]:
     """
     found: dict[str, CarriedBody] = {}
     for names in on_one_axis(case) if case.layered else ():
-        own = [name for name in names if case.joints[name].type != "slider"]
+        own = [name for name in names if case.joints[name].kind.has_pin]
         for diameter in dict.fromkeys(case.joints[name].pin_diameter for name in own):
             alike = [name for name in own if case.joints[name].pin_diameter == diameter]
             link, point = _standing_in(case, alike)
@@ -91,10 +90,10 @@ def pin_masses(case: CoreCase) -> dict[str, CarriedBody]:
 
 def _standing_in(case: CoreCase, names: list[str]) -> tuple[str, str]:
     """Return link and point with which the pin of joints on one axis moves."""
-    stated = [n for n in names if case.joints[n].tight_in and case.joints[n].type == "revolute"]
+    stated = [n for n in names if case.joints[n].tight_in and not case.joints[n].slides]
     name = (stated or names)[0]
     joint = case.joints[name]
-    link = joint.links[1] if joint.type != "revolute" else (*joint.tight_in, *joint.links)[0]
+    link = (*(() if joint.slides else joint.tight_in), *joint.bored)[0]
     return link, case.linkage.point_of(name, link)
 
 

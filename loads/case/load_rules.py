@@ -178,9 +178,9 @@ def _check_torque(case: CoreCase, entry: str, load: PointMoment) -> None:
     """A pin that turns freely passes no torque about its own axis; only the drive's does."""
     linkage = case.linkage
     pins = [name for name in linkage.joints_of(load.link)
-            if linkage.point_of(name, load.link) == load.at and linkage.joints[name].type == "revolute"]  # fmt: skip
+            if linkage.point_of(name, load.link) == load.at and not linkage.joints[name].slides]  # fmt: skip
     driven = case.drive is not None and case.drive.joint in pins
-    if pins and not driven and not any(linkage.joints[name].bonded for name in pins):
+    if pins and not driven and not any(linkage.joints[name].fixed for name in pins):
         raise CaseError(
             f"{entry}: the pin at '{load.at}' turns freely and nothing drives it, so no torque about z enters link "
             f"'{load.link}' there; name a point of the link without pin, drive that joint, or write "

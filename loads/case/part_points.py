@@ -183,7 +183,7 @@ def pinned(name: str, points: object, slots: object, joints: object) -> tuple[Wa
                 side = record.links.index(name)
                 point = record.points[side] if record.points else joint
                 wanted = Wanted(name=point, place=places[point], diameter=record.pin_diameter)
-                if record.type == "pin-in-slot" and side == 0:
+                if record.slotted == name:
                     wanted = _slotted(wanted, Slot.model_validate(slots[point]))
                 found.setdefault(point, wanted)
         except (ValidationError, KeyError):

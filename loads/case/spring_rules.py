@@ -5,8 +5,8 @@ import math
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.coordinate import Measure
+from alula.loads.acting.sprung import Attachment
 from alula.loads.case.core import CoreCase
-from alula.loads.records.springs import Attachment, LineSpring
 from alula.loads.text.explain import require
 
 
@@ -22,19 +22,17 @@ def check_springs(case: CoreCase) -> None:
     CaseError
         For the first point, or joint, that is not there or cannot take their force.
     """
-    for name, spring in case.springs.items():
-        if isinstance(spring, LineSpring):
-            for i, place in enumerate(spring.between):
-                _check_attachment(case, f"springs.{name}.between.{i}", place)
-        else:
-            require(f"springs.{name}.joint", spring.joint, _turning(case), "is no revolute joint that turns")
+    for table, records in (("springs", case.springs), ("tendons", case.tendons)):
+        for name, one in records.items():
+            for where, place in one.fastened.items():
+                _check_attachment(case, f"{table}.{name}.{where}", place)
+            if one.hinge is not None:
+                require(f"{table}.{name}.joint", one.hinge, _turning(case), "is no revolute joint that turns")
     for name, tendon in case.tendons.items():
-        for i, place in enumerate(tendon.through):
-            _check_attachment(case, f"tendons.{name}.through.{i}", place)
-        for one, other in itertools.pairwise(tendon.through):
-            if one == other:
+        for first, other in itertools.pairwise(tendon.through):
+            if first == other:
                 raise CaseError(
-                    f"tendons.{name}.through: point '{one.at}' of link '{one.link}' stands there twice in a row; "
+                    f"tendons.{name}.through: point '{first.at}' of link '{first.link}' stands there twice in a row; "
                     "remove one of the two"
                 )
 
@@ -57,7 +55,7 @@ def _check_attachment(case: CoreCase, entry: str, place: Attachment) -> None:
 
 def _turning(case: CoreCase) -> list[str]:
     """Return the joints whose links turn against each other, and do not slide."""
-    return [name for name, joint in case.linkage.joints.items() if joint.type == "revolute" and not joint.bonded]
+    return [name for name, joint in case.linkage.joints.items() if joint.pivots]
 
 
 def check_stops(case: CoreCase) -> None:
@@ -74,9 +72,9 @@ def check_stops(case: CoreCase) -> None:
     """
     ranges: dict[str, dict[float, float]] = {}
     for name, stop in case.stops.items():
-        sliders = [joint for joint, record in case.joints.items() if record.type == "slider"]
+        sliders = [joint for joint, record in case.joints.items() if record.kind.guided]
         require(f"stops.{name}.joint", stop.joint, [*_turning(case), *sliders], "is no joint that turns, and no slider")
-        slides = case.joints[stop.joint].type == "slider"
+        slides = case.joints[stop.joint].kind.guided
         entry = f"stops.{name}.{'at_least' if stop.at_least is not None else 'at_most'}"
         if slides != (stop.limit.measure is Measure.TRAVEL):
             kind = 'a slider, so it needs a travel: "5 mm"' if slides else 'revolute, so it needs an angle: "30 deg"'
@@ -114,7 +112,7 @@ def check_equilibrium(case: CoreCase) -> None:
             "pose.coordinate with an angle or travel to start from"
         )
     for name, joint in case.linkage.joints.items():
-        if joint.bonded and not joint.fixes_angle:
+        if joint.as_posed:
             raise CaseError(
                 f"pose.equilibrium: joint '{name}' is bonded, so the linkage keeps the stated pose; remove one of the "
                 "two, or state the angle of the bond"

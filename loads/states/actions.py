@@ -9,16 +9,21 @@ from numpy.typing import NDArray
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import FlatFace
 from alula.geometry.linkage.motion import solve_motion
-from alula.geometry.linkage.placement import Placement, vector
+from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.acting import Acting, loads_of
+from alula.loads.acting.dead_load import DeadLoad
+from alula.loads.acting.sprung import Sprung
+from alula.loads.acting.stop import Bound
+from alula.loads.acting.weight import Weight
 from alula.loads.case.case import Case
+from alula.loads.case.core import CoreCase
 from alula.loads.records.aero import air_loads
-from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
-from alula.loads.records.carried import Carried, CarriedSpread, mass_of
+from alula.loads.records.applied import LineLoad, Load, PartMass, PointLoad, at_poses, shifted
+from alula.loads.records.carried import mass_of
 from alula.loads.records.load_case import LoadCase, gravity, vector3
-from alula.loads.states.flapping import flapping_loads
+from alula.loads.states.flapping import FlappingAir
 from alula.loads.states.masses import all_carried
-from alula.loads.states.springs import spring_loads
 
 Real = NDArray[np.float64]
 
@@ -84,7 +89,7 @@ def refuse_turning_bonds(place: Placement) -> None:
     most = float(np.max(rates)) / linkage.longest
     for name, joint in linkage.joints.items():
         first, second = (place.spin(link) for link in joint.links)
-        if joint.bonded and np.any(np.abs(second - first) > _SAME_SPEED * most):
+        if joint.fixed and np.any(np.abs(second - first) > _SAME_SPEED * most):
             raise CaseError(
                 f"joints.{name}.bonded: links '{joint.links[0]}' and '{joint.links[1]}' are bonded there, but they "
                 "would turn against each other as the linkage moves; leave out the motion or speed, leave bonded out, "
@@ -92,10 +97,78 @@ def refuse_turning_bonds(place: Placement) -> None:
             )
 
 
-def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
-    """Return all that acts on the links but the joint forces: stated loads, air, weight, inertia, springs, tendons.
+def lasting(case: CoreCase) -> tuple[Sprung, ...]:
+    """Return springs and tendons, which act in every load case.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    tuple of Sprung
+        Springs first, as the case states them; a case without any needs no pose.
+    """
+    return tuple(
+        one.acting(name, case.stated_pose.placement)
+        for table in (case.springs, case.tendons)
+        for name, one in table.items()
+    )
+
+
+def bounds(case: CoreCase) -> dict[str, Bound]:
+    """Return the stops of a case.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict of str to Bound
+    """
+    return {
+        name: stop.acting(
+            name, case.stated_pose.placement, [other for other in case.stops.values() if other.joint == stop.joint]
+        )
+        for name, stop in case.stops.items()
+    }
+
+
+def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *, inert: bool) -> tuple[Acting, ...]:
+    """Return all that acts on the links but stops and joint forces.
 
     In layers pins weigh too (``alula.loads.case.layers.pin_masses``), in the mid-plane of the link that they stand in.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : LoadCase
+        One of the case's.
+    masses : mapping of str to PartMass
+        Of the parts alone, by link; what links carry comes from the case.
+    inert : bool
+        True where masses act without weight too, by their inertia.
+
+    Returns
+    -------
+    tuple of Acting
+        Stated loads first, then weights, wings that flap, springs and tendons.
+    """
+    found: list[Acting] = [DeadLoad(load) for load in stated_loads(case, load_case)]
+    if load_case.own_weight or inert:
+        pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
+        found += [Weight(link=link, mass=mass, gravity=pull) for link, mass in masses.items()]
+        for one in all_carried(case, stated=load_case.carried):
+            mass = mass_of(one, case.links[one.link].points)
+            found.append(Weight(link=one.link, mass=mass, gravity=pull, carried=one))
+    if load_case.flapping is not None:
+        found.append(FlappingAir(case, load_case))
+    return (*found, *lasting(case))
+
+
+def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
+    """Return the loads of all that acts on the links but stops and joint forces.
 
     Parameters
     ----------
@@ -112,17 +185,11 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
     tuple of Load
         At the poses of ``place``.
     """
-    loads = stated_loads(case, load_case)
-    if load_case.own_weight or place.qddot is not None:
-        pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
-        loads += inertia_loads(place, masses, pull)
-        carried = all_carried(case, stated=load_case.carried)
-        loads += tuple(_carried_load(place, mass, pull) for mass in carried)
-    loads += (*flapping_loads(case, load_case, place), *spring_loads(case, place))
-    return tuple(at_poses(load, place.shape) for load in loads)
+    acting = acting_on(case, load_case, masses, inert=place.qddot is not None)
+    return tuple(at_poses(load, place.shape) for load in loads_of(acting, place))
 
 
-def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
+def stated_loads(case: Case, load_case: LoadCase) -> tuple[PointLoad | LineLoad, ...]:
     """Return the forces, moments, spread loads and air of a load case, the same at every pose.
 
     Parameters
@@ -133,9 +200,9 @@ def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
 
     Returns
     -------
-    tuple of Load
+    tuple of PointLoad or LineLoad
     """
-    loads: list[Load] = []
+    loads: list[PointLoad | LineLoad] = []
     for force in load_case.forces:
         push, face = vector3(force.force), case.face(force.link, force.at)
         wrench = np.concatenate([push, np.zeros(3)]) if face is None else on_face(face, push)
@@ -176,52 +243,3 @@ def on_face(face: FlatFace, force: Real) -> Real:
         [N, N mm]; z is that of both the linkage and the link, so that the axes of the plane do not matter.
     """
     return shifted(np.concatenate([force, np.zeros(3)]), np.array([0.0, 0.0, face.centre[2]]))
-
-
-def inertia_loads(place: Placement, masses: Mapping[str, PartMass], gravity: Real) -> tuple[BodyForce, ...]:
-    """Return weight and inertia as loads on the links, after D'Alembert.
-
-    Every mass element dm of a link loads it with (g - a) dm, where a is its acceleration.
-
-    Parameters
-    ----------
-    place : Placement
-        Where the links stand and how they move; at rest there is weight alone.
-    masses : mapping of str to PartMass
-        By link.
-    gravity : array (3,)
-        Weight per mass g, global axes [mm/s²].
-
-    Returns
-    -------
-    tuple of BodyForce
-        One per mass.
-
-    References
-    ----------
-    Norton, Design of Machinery, 5th ed., chapters 10 and 11.
-    """
-    return tuple(
-        BodyForce(
-            link=link,
-            mass=own,
-            specific_force=gravity - vector(place.acceleration(link)),
-            angular_acceleration=place.spin_rate(link),
-            angular_speed_squared=place.spin(link) ** 2,
-        )
-        for link, own in masses.items()
-    )
-
-
-def _carried_load(place: Placement, carried: Carried, gravity: Real) -> Load:
-    """Return weight and inertia of a carried mass as a load on its link."""
-    link, points = carried.link, place.linkage.links[carried.link].points
-    own, turn = mass_of(carried, points), place.direction(carried.link)
-    [force] = inertia_loads(place, {link: own}, gravity)
-    if isinstance(carried, CarriedSpread):
-        start, end = sorted((points[carried.start][0], points[carried.end][0]))
-        first, last = (own.mass / (end - start) * force.per_mass(vector(x * turn)) for x in (start, end))
-        return LineLoad(link=link, start=start, end=end, at_start=first, at_end=last)
-    wrench = force.at_centroid(vector(turn * complex(*own.centroid)))
-    arm = vector(turn * complex(*(own.centroid - np.array(points[carried.at]))))
-    return PointLoad(link=link, point=carried.at, wrench=shifted(wrench, arm), arm=arm)

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.motion import Motion, refuse_slot_ends, solve_motion
 from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.acting import loads_of
+from alula.loads.acting.weight import Weight
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, PartMass
-from alula.loads.records.load_case import LoadCase, gravity
-from alula.loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
+from alula.loads.records.load_case import LoadCase
+from alula.loads.states.actions import acting_loads, acting_on, needs_masses, refuse_turning_bonds
 from alula.loads.states.drive_work import DriveWork, drive_work
-from alula.loads.states.flapping import flapping_loads
 from alula.loads.states.kinetostatics import (
     Kinetostatics,
     Power,
@@ -29,7 +30,6 @@ from alula.loads.states.kinetostatics import (
 )
 from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
-from alula.loads.states.springs import spring_loads
 from alula.loads.states.standing import refuse_stops
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.friction import Presses
@@ -272,14 +272,13 @@ def _weighed(case: Case) -> bool:
 
 
 def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass], friction: Sequence[Load]) -> Power:
-    """Return the energies of a load case, where each link's part and what it carries count as one mass."""
+    """Return the energies of a load case, where each link's part and what it carries move as one mass."""
     load_case, place = case.load_cases[name], motion.placement
-    laden = laden_masses(case, masses, stated=load_case.carried)
-    weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
-    moves = with_inertia(case, name)
-    air = flapping_loads(case, load_case, place) if moves else ()
-    others = (*stated_loads(case, load_case), *spring_loads(case, place), *air)
-    return energies(place, (*others, *weights, *friction), laden if moves else {})
+    acting, moves = acting_on(case, load_case, masses, inert=False), with_inertia(case, name)
+    weights = [one for one in acting if isinstance(one, Weight)]
+    others = loads_of((one for one in acting if not isinstance(one, Weight)), place if moves else place.at_rest)
+    laden = laden_masses(case, masses, stated=load_case.carried) if moves else {}
+    return energies(place, weights, (*others, *friction), laden)
 
 
 def with_inertia(case: Case, load_case: str) -> bool:

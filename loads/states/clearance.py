@@ -105,7 +105,7 @@ def assembly(case: Case) -> Assembly:
     slabs = {link: slab(case, link) for link in case.links}
     pins = {}
     for name, joint in case.joints.items():
-        if joint.pin_diameter is not None and joint.type != "slider":
+        if joint.pin_diameter is not None and joint.kind.has_pin:
             ends = [z for link in joint.links for z in slabs[link]]
             pins[name] = pin_shape(f"pin {name}", joint.pin_diameter, min(ends), max(ends))
     links = {link: link_shape(f"link {link}", case.body(link), list(levels(case, link))) for link in case.checked_links}

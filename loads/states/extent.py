@@ -15,6 +15,7 @@ from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.layers import slab
 from alula.loads.records.check_spec import SizeCheck
+from alula.loads.states.actions import lasting
 from alula.loads.states.clearance import Assembly, along, assembly, start_of, way_of
 from alula.loads.states.flapping import wing_span
 from alula.loads.text.caveat import Caveat, Topic
@@ -141,8 +142,7 @@ def unmeasured(case: Case) -> tuple[Reason, ...]:
     winged = {wing.link for wing in case.wings}
     carrying = [link for link in dict.fromkeys(carried.link for carried in case.carried) if link not in winged]
     found += [reason("what_links_carry", links=carrying)] if carrying else []
-    kinds = (("spring", case.springs), ("tendon", case.tendons))
-    return (*found, *(reason("spring_or_tendon", kind=kind, name=name) for kind, records in kinds for name in records))
+    return (*found, *(reason("spring_or_tendon", kind=one.kind, name=one.name) for one in lasting(case)))
 
 
 def size_caveats(case: Case) -> Iterator[Caveat]:

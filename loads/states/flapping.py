@@ -19,13 +19,15 @@ along the span, the wing's own bending and twist, its wake that it meets again, 
 """
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.linkage.placement import Placement
+from alula.loads.acting.acting import Acting
 from alula.loads.case.case import Case
-from alula.loads.records.applied import LineLoad, PointLoad
+from alula.loads.records.applied import LineLoad, Load, PointLoad
 from alula.loads.records.flapping import VISCOSITY, Flapping, Wing
 from alula.loads.records.load_case import LoadCase
 
@@ -60,6 +62,25 @@ def wing_span(wing: Wing, case: Case) -> tuple[float, float, tuple[float, float]
         assert wing.end is not None
         first, last = points[wing.start][0], points[wing.end][0]
     return (first, last, wing.chord) if first < last else (last, first, wing.chord[::-1])
+
+
+@dataclass(frozen=True)
+class FlappingAir(Acting):
+    """Air on the wings of a case, which follows from how they move: it has neither energy nor tangent.
+
+    Attributes
+    ----------
+    case : Case
+    load_case : LoadCase
+        One of the case's.
+    """
+
+    case: Case
+    load_case: LoadCase
+
+    def loads(self, place: Placement) -> tuple[Load, ...]:
+        """As ``Acting.loads``: what the air does to the wings; nothing at rest."""
+        return flapping_loads(self.case, self.load_case, place)
 
 
 def flapping_loads(case: Case, load_case: LoadCase, place: Placement) -> tuple[PointLoad | LineLoad, ...]:

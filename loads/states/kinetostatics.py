@@ -3,7 +3,6 @@
 Inertia is among the loads, after D'Alembert (Norton, Design of Machinery, 5th ed., chapter 11).
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,23 +14,14 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.placement import Placement
-from alula.loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
+from alula.loads.acting.acting import loads_of
+from alula.loads.acting.weight import Weight
+from alula.loads.records.applied import Load, PartMass
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.momentum import centroid_motion
-from alula.loads.statics.statics import (
-    NEARLY_SINGULAR,
-    Drive,
-    Equilibrium,
-    assemble,
-    check_drive,
-    joint_reactions,
-)
-from alula.loads.statics.system import require_determinate
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, Equilibrium, balance, check_drive
 
 Real = NDArray[np.float64]
-
-_BLOCK = 1024
-"""Poses solved at once, so that the matrices stay in the processor's cache."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,8 +49,7 @@ class Power:
 class Kinetostatics(Equilibrium):
     """Joint forces, drive torque and power at the n poses of a motion under one set of loads.
 
-    Forces and torque grow without bound at a dead point. They are NaN where the leverage is below ``NEARLY_SINGULAR``
-    of ``alula.loads.statics.statics``.
+    Forces and torque grow without bound at a dead point, and are NaN there (``balance``).
 
     Attributes
     ----------
@@ -133,35 +122,24 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
         Where equilibrium alone does not give the joint forces, or where the driven link does not turn during the
         whole motion.
     """
-    linkage, place = motion.linkage, motion.placement
-    check_drive(linkage, drive)
+    check_drive(motion.linkage, drive)
     if drive is None:
         raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
     moving = leverage(motion, drive)
-    solvable = np.flatnonzero(moving >= NEARLY_SINGULAR)
-    if not solvable.size:
+    if not np.any(moving >= NEARLY_SINGULAR):
         raise CaseError(
             f"drive.link: '{drive.link}' does not move at joint '{drive.joint}' during this motion, "
             "so nothing there can drive it; drive a link that moves"
         )
-    acting = [at_poses(load, place.shape) for load in loads]
-    value: dict[str, Real] = {}
-    residual = np.full(place.shape, np.nan)
-    for poses in np.array_split(solvable, math.ceil(len(solvable) / _BLOCK)):
-        system = assemble(place.chosen(poses), drive, [chosen(load, poses) for load in acting])
-        require_determinate(linkage, system)
-        unknowns, residual[poses] = system.solved()
-        for name, found in zip(system.columns, unknowns.T, strict=True):
-            value.setdefault(name, np.full(place.shape, np.nan))[poses] = found
-    still = np.where(moving >= NEARLY_SINGULAR, 0.0, np.nan)
+    found = balance(motion.placement, drive, loads)
     return Kinetostatics(
         motion=motion,
         drive=drive,
-        joints=joint_reactions(place, drive, value),
-        drive_torque=value.get("T", still),
-        drive_force=value.get("P", still),
+        joints=found.joints,
+        drive_torque=found.drive_torque,
+        drive_force=found.drive_force,
         leverage=moving,
-        residual=residual,
+        residual=found.residual,
         power=power,
     )
 
@@ -204,8 +182,7 @@ def is_determinate(linkage: Linkage) -> bool:
     -------
     bool
     """
-    unknowns = sum(1 if joint.type == "pin-in-slot" else 2 + joint.bonded for joint in linkage.joints.values()) + 1
-    return unknowns == 3 * len(linkage.moving)
+    return linkage.borne + 1 == 3 * len(linkage.moving)
 
 
 def _counterpart(linkage: Linkage, drive: Drive) -> str:
@@ -300,15 +277,18 @@ def work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:
     return total
 
 
-def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartMass]) -> Power:
+def energies(
+    place: Placement, weights: Sequence[Weight], applied: Sequence[Load], masses: Mapping[str, PartMass]
+) -> Power:
     """Return the energies of moving masses and the power of the loads on them.
 
     Parameters
     ----------
     place : Placement
         The n poses with their rates.
-    loads : sequence of Load
-        Body forces among them are weights; the others are applied.
+    weights : sequence of Weight
+    applied : sequence of Load
+        All others.
     masses : mapping of str to PartMass
         Of the links with inertia.
 
@@ -316,22 +296,16 @@ def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartM
     -------
     Power
     """
-    kinetic, kinetic_rate, potential, potential_rate = (np.zeros(place.shape) for _ in range(4))
+    kinetic, kinetic_rate = np.zeros(place.shape), np.zeros(place.shape)
     for link, own in masses.items():
         spin, rate = place.spin(link), place.spin_rate(link)
         _, velocity, acceleration = centroid_motion(place, link, own)
         kinetic += 0.5 * own.mass * np.abs(velocity) ** 2 + 0.5 * own.inertia * spin**2
         kinetic_rate += own.mass * (np.conj(velocity) * acceleration).real + own.inertia * spin * rate
-    for load in loads:
-        if isinstance(load, BodyForce):
-            pull = load.mass.mass * in_axes(load, "global", place).specific_force
-            at, velocity, _ = centroid_motion(place, load.link, load.mass)
-            potential -= pull[..., 0] * at.real + pull[..., 1] * at.imag
-            potential_rate -= pull[..., 0] * velocity.real + pull[..., 1] * velocity.imag
     return Power(
         kinetic=kinetic,
         kinetic_rate=kinetic_rate,
-        potential=potential,
-        potential_rate=potential_rate,
-        applied=work([load for load in loads if not isinstance(load, BodyForce)], place, place),
+        potential=sum((one.potential(place) for one in weights), np.zeros(place.shape)),
+        potential_rate=-work(loads_of(weights, place.at_rest), place, place),
+        applied=work(applied, place, place),
     )

@@ -27,7 +27,7 @@ from alula.loads.states.kinetostatics import is_determinate
 from alula.loads.states.rubbing import WAYS, friction_at
 from alula.loads.statics.friction import NOTHING_MORE, Presses
 from alula.loads.statics.joint_reaction import JointReaction
-from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_reactions
+from alula.loads.statics.statics import Drive, balance
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -170,21 +170,16 @@ class Play:
         loads = acting_loads(self.case, self.case.load_cases[self.load_case], place, self.masses)
         rubbed, locked = self.friction(place, loads)
         loads += rubbed
-        system = assemble(place, self.drive, loads)
-        distance = system.singular_values[..., -1]
-        sound = closed & (distance >= NEARLY_SINGULAR) & ~locked
-        regular = np.where(sound[..., None, None], system.matrix, np.eye(*system.matrix.shape[-2:]))
-        unknowns, _ = replace(system, matrix=regular).solved()
-        value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
-        found = Displaced(
+        found = balance(place, self.drive, loads)
+        there = Displaced(
             offsets=offsets,
             place=place,
             loads=loads,
-            joints=joint_reactions(place, self.drive, value),
-            effort=np.asarray(value.get("T", value.get("P", np.zeros(place.shape)))),
-            distance=distance,
+            joints=found.joints,
+            effort=np.asarray(found.effort),
+            distance=found.system.singular_values[..., -1],
         )
-        return found, sound
+        return there, closed & found.sound & ~locked
 
     @cached_property
     def nominal(self) -> Displaced | None:
@@ -481,7 +476,7 @@ def held_rows(place: Placement, drive: Drive | None) -> Real:
         Factors of the unknowns, a travel's over the longest link.
     """
     closure, linkage = place.closure, place.linkage
-    rows = [_turning(place, *j.links) for j in linkage.joints.values() if j.bonded and not j.fixes_angle]
+    rows = [_turning(place, *j.links) for j in linkage.joints.values() if j.as_posed]
     if drive is not None and (held := drive.coordinate(linkage)).slides:
         row = np.zeros(closure.unknowns)
         row[held.column(closure)] = 1.0 / linkage.longest

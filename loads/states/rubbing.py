@@ -17,14 +17,13 @@ from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, at_poses, chosen
 from alula.loads.records.load_case import LoadCase
-from alula.loads.states.kinetostatics import is_determinate, leverage
-from alula.loads.statics.friction import NOTHING_MORE, Friction, Presses, friction_loads, solve_friction
-from alula.loads.statics.statics import NEARLY_SINGULAR, Drive
+from alula.loads.states.kinetostatics import is_determinate
+from alula.loads.statics.friction import NOTHING_MORE, Presses, solve_friction
+from alula.loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
 
 WAYS = {"forward": 1.0, "backward": -1.0}
-_BLOCK = 1024
 _BEYOND = 8.0
 """Share of the friction up to which poses beside a locked one are followed, to find where the locking begins."""
 
@@ -132,7 +131,7 @@ def pose_friction(
             f"bound; with less than {_percent(found.lock[0])} of joints.*.friction it would move. Change the friction, "
             "the pose or the drive, or state the direction of the load case if it never moves that way"
         )
-    return tuple(chosen(load, 0) for load in found.loads)
+    return tuple(chosen(load, 0) for load in found.loads(place))
 
 
 def friction_at(
@@ -166,10 +165,9 @@ def friction_at(
     """
     poses = place.q.reshape(-1, place.q.shape[-1])
     moved = replace(place, q=poses, qdot=driven.coefficients(poses)[0], qddot=None)
-    acting = [at_poses(load, moved.shape) for load in loads]
-    found = solve_friction(moved, drive, acting, sense, presses=presses)
-    loads = found.loads if place.shape else tuple(chosen(load, 0) for load in found.loads)
-    return loads, np.reshape(found.locked, place.shape)
+    found = solve_friction(moved, drive, loads, sense, presses=presses)
+    rubbed: tuple[Load, ...] = found.loads(moved)
+    return rubbed if place.shape else tuple(chosen(load, 0) for load in rubbed), np.reshape(found.locked, place.shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -227,27 +225,15 @@ def motion_friction(
             "that friction depends on do not follow from equilibrium; leave friction out, or check single poses"
         )
     way = case.load_cases[load_case].direction
-    solvable = np.flatnonzero(leverage(motion, drive) >= NEARLY_SINGULAR)
-    lock = np.full(len(motion.angles), np.inf)
-    wrenches: dict[str, Real] = {name: np.zeros((len(lock), 6)) for name in rubbing_joints(case)}
-
-    def solved(poses: NDArray[np.intp], most: float) -> Friction:
-        acting = [chosen(load, poses) for load in loads]
-        here = {name: found[poses] for name, found in presses.items()}
-        return solve_friction(motion.virtual.chosen(poses), drive, acting, WAYS[way], most=most, presses=here)
-
-    for poses in np.array_split(solvable, max(1, math.ceil(len(solvable) / _BLOCK))):
-        found = solved(poses, 1.0)
-        lock[poses] = found.lock
-        for name, wrench in found.wrenches.items():
-            wrenches[name][poses] = wrench
-    locked = np.isfinite(lock)
+    found = solve_friction(motion.virtual, drive, loads, WAYS[way], presses=presses)
+    locked, lock = found.locked, found.lock.copy()
     beside = np.flatnonzero(~locked & (np.roll(locked, 1) | np.roll(locked, -1)))
-    beside = beside[np.isin(beside, solvable)]
     if len(beside):
-        lock[beside] = solved(beside, _BEYOND).lock
-    acting = friction_loads(motion.placement, wrenches)
-    return Rubbing(way=way, loads=acting, locked=locked, spans=_spans(motion, locked, lock))
+        acting = [chosen(at_poses(load, locked.shape), beside) for load in loads]
+        own = {name: ratio[beside] for name, ratio in presses.items()}
+        place = motion.virtual.chosen(beside)
+        lock[beside] = solve_friction(place, drive, acting, WAYS[way], most=_BEYOND, presses=own).lock
+    return Rubbing(way=way, loads=found.loads(motion.virtual), locked=locked, spans=_spans(motion, locked, lock))
 
 
 def _spans(motion: Motion, locked: NDArray[np.bool_], lock: Real) -> tuple[tuple[float, float], ...]:

@@ -21,15 +21,15 @@ from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.motion import Motion, solve_motion
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.acting import loads_of
+from alula.loads.acting.sprung import SpringState
 from alula.loads.case.case import Case
 from alula.loads.records.applied import PartMass
 from alula.loads.records.check_spec import FrequencyCheck
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.settings import DriveSpec
-from alula.loads.records.springs import LineSpring, Spring
-from alula.loads.states.actions import acting_loads
+from alula.loads.states.actions import acting_on, bounds, lasting
 from alula.loads.states.kinetostatics import work
-from alula.loads.states.springs import SpringState, joint_value, spring_states, stop_gaps, touching
 from alula.loads.statics.statics import Drive
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.reason import reason
@@ -108,9 +108,12 @@ def stand(case: Case, load_case: str, masses: Mapping[str, PartMass]) -> Standin
     _refuse_beyond(case, pose)
     if case.pose.equilibrium:
         return _let_go(_Way(case, case.load_cases[load_case], masses), load_case)
-    found = Standing(case=case, pose=pose, springs=spring_states(case, pose.placement), stops=_values(case, pose))
-    reached = [n for n, gap in stop_gaps(case, pose.placement).items() if gap <= touching(case, case.stops[n])]
-    keeps = any(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
+    place, stops = pose.placement, bounds(case)
+    springs = tuple(one.state(place) for one in lasting(case))
+    values = {name: float(stop.value(place)) for name, stop in stops.items()}
+    found = Standing(case=case, pose=pose, springs=springs, stops=values)
+    reached = [name for name, stop in stops.items() if stop.gap(place) <= stop.touching]
+    keeps = any(joint.as_posed for joint in case.linkage.joints.values())
     if not reached or pose.coordinate is None or keeps:
         return found
     way = _Way(case, case.load_cases[load_case], masses)
@@ -121,15 +124,11 @@ def stand(case: Case, load_case: str, masses: Mapping[str, PartMass]) -> Standin
     return replace(found, case=_with_pose(_held(case, stop), pose), stop=stop, contact=contact)
 
 
-def _values(case: Case, pose: Pose) -> dict[str, float]:
-    return {name: float(joint_value(case, stop, pose.placement)) for name, stop in case.stops.items()}
-
-
 def _refuse_beyond(case: Case, pose: Pose) -> None:
     """Refuse a stated pose beyond a stop."""
-    for name, gap in stop_gaps(case, pose.placement).items():
-        if gap < -touching(case, case.stops[name]):
-            value = float(joint_value(case, case.stops[name], pose.placement))
+    for name, stop in bounds(case).items():
+        if stop.gap(pose.placement) < -stop.touching:
+            value = float(stop.value(pose.placement))
             raise CaseError(
                 f"stops.{name}: in the stated pose {_told(case, name, value)}, beyond this stop, which lets it be "
                 f"{_rule(case, name)}; change the pose or the stop"
@@ -154,8 +153,8 @@ class _Way:
     """The way of a linkage from its stated pose along its coordinate, as far as it is followed."""
 
     def __init__(self, case: Case, load_case: LoadCase, masses: Mapping[str, PartMass]) -> None:
-        self.case, self.load_case, self.masses = case, load_case, masses
-        self.pose = case.stated_pose
+        self.case, self.pose, self.stops = case, case.stated_pose, bounds(case)
+        self.acting = acting_on(case, load_case, masses, inert=False)
         assert self.pose.coordinate is not None
         self.driven = DrivenClosure(self.pose.closure, self.pose.coordinate)
         self.size = self.driven.size
@@ -193,12 +192,13 @@ class _Way:
         """Return the work (n,) of all loads per unit of the coordinate, and the sum of its sizes load by load."""
         place, first = self.place(values)
         moved = replace(place, qdot=first)
-        works = [work([load], place, moved)[1:] for load in acting_loads(self.case, self.load_case, place, self.masses)]
+        works = [work([load], place, moved)[1:] for load in loads_of(self.acting, place)]
         return np.sum([np.zeros(len(values)), *works], axis=0), np.sum(np.abs([np.zeros(len(values)), *works]), axis=0)
 
     def gaps(self, values: Real) -> dict[str, Real]:
         """Return the gap (n,) of every stop."""
-        return {name: gap[1:] for name, gap in stop_gaps(self.case, self.place(values)[0]).items()}
+        place, _ = self.place(values)
+        return {name: stop.gap(place)[1:] for name, stop in self.stops.items()}
 
     def gap(self, name: str, values: Real) -> Real:
         """Return the gap (n,) of one stop."""
@@ -211,7 +211,7 @@ class _Way:
         for name in reached:
             low, high = self.gaps(np.array([at - step, at + step]))[name]
             rate = (high - low) / (2.0 * step)
-            if abs(rate) > _NEUTRAL * touching(self.case, self.case.stops[name]) / self.size:
+            if abs(rate) > _NEUTRAL * self.stops[name].touching / self.size:
                 bears = -push / rate
                 if bears * abs(rate) > _NOTHING * size:
                     return name, self.case.stops[name].sense * bears
@@ -227,9 +227,9 @@ class _Way:
 
 def _let_go(way: _Way, load_case: str) -> Standing:
     """Return where a linkage goes that is let go in its stated pose."""
-    case, start = way.case, way.pose.held
+    start = way.pose.held
     [push], [size] = way.push(np.array([start]))
-    touched = [name for name, [gap] in way.gaps(np.array([start])).items() if gap <= touching(case, case.stops[name])]
+    touched = [name for name, [gap] in way.gaps(np.array([start])).items() if gap <= way.stops[name].touching]
     if (held := way.held_by(touched, start)) is not None:
         return _stopped(way, start, held)
     if abs(push) <= _NOTHING * size:
@@ -313,20 +313,17 @@ def _standing(way: _Way, at: float) -> Standing:
     """Return the case at a value of the coordinate; springs are told by what they do there."""
     pose, both = _at(way, at)
     states = tuple(
-        replace(state, size=state.size[1], effort=state.effort[1]) for state in spring_states(way.case, both)
+        replace(state, size=state.size[1], effort=state.effort[1])
+        for state in (one.state(both) for one in lasting(way.case))
     )
-    springs: dict[str, Spring] = {}
-    for state in states:
-        if state.kind == "spring":
-            spring = way.case.springs[state.name]
-            free = "free_length" if isinstance(spring, LineSpring) else "free_angle"
-            springs[state.name] = spring.model_copy(update={free: None, "preload": float(state.effort)})
+    efforts = {(state.kind, state.name): float(state.effort) for state in states}
+    springs = {name: spring.standing(efforts["spring", name]) for name, spring in way.case.springs.items()}
     coordinate = way.driven.coordinate
     moving = way.case.linkage.moving
     near = {link: angle for link, angle in pose.angles.items() if link in moving and link != coordinate.name}
     stated = way.case.pose.model_copy(update={"near": near, "equilibrium": False, coordinate.measure.word: pose.held})
     case = way.case.model_copy(update={"pose": stated, "springs": springs})
-    stops = {name: float(joint_value(way.case, stop, both)[1]) for name, stop in case.stops.items()}
+    stops = {name: float(stop.value(both)[1]) for name, stop in way.stops.items()}
     return Standing(case=case, pose=pose, springs=states, stops=stops)
 
 
@@ -356,7 +353,7 @@ def _holder(case: Case, pose: Pose) -> Drive:
     places = [
         Drive(link=link, joint=name)
         for name, joint in case.joints.items()
-        if joint.type != "pin-in-slot" and ground in joint.links
+        if (joint.kind.guided or not joint.slides) and ground in joint.links
         for link in joint.links
         if link != ground
     ]
@@ -378,8 +375,8 @@ def refuse_stops(case: Case, motion: Motion) -> None:
     CaseError
         With the pose at which the stop is reached.
     """
-    for name, gaps in stop_gaps(case, motion.placement).items():
-        slack = touching(case, case.stops[name])
+    for name, stop in bounds(case).items():
+        gaps, slack = stop.gap(motion.placement), stop.touching
         if not np.any(gaps < -slack):
             continue
         before = gaps[0] < -slack
@@ -419,7 +416,7 @@ def drive_caveats(case: Case) -> Iterator[Caveat]:
             why=reason("stiffness_for_frequencies"),
         )
     elif case.drive is not None and any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
-        usual = "20 N/mm" if case.joints[case.drive.joint].type == "slider" else "2 N*m/rad"
+        usual = "20 N/mm" if case.joints[case.drive.joint].kind.guided else "2 N*m/rad"
         yield Caveat(
             heading=Heading.ASSUMED,
             topic=Topic.DRIVE,

@@ -10,6 +10,7 @@ from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.layers import on_one_axis, pin_masses
 from alula.loads.records.check_spec import MassCheck
+from alula.loads.states.actions import lasting
 from alula.loads.states.masses import laden_masses, part_masses
 from alula.loads.text.caveat import Caveat, Topic
 from alula.loads.text.reason import Reason, reason
@@ -114,14 +115,13 @@ def unweighed(case: Case) -> tuple[Reason, ...]:
     found = [reason("link_without_part", link=link) for link in case.links if link not in told]
     found += [reason("wing_without_mass", link=wing.link) for wing in case.wings if wing.link not in carrying]
     found += _pins_left(case) if case.layered else [reason("pins_without_lengths")]
-    kinds = (("spring", case.springs), ("tendon", case.tendons))
-    return (*found, *(reason("spring_or_tendon", kind=kind, name=name) for kind, records in kinds for name in records))
+    return (*found, *(reason("spring_or_tendon", kind=one.kind, name=one.name) for one in lasting(case)))
 
 
 def _pins_left(case: Case) -> Iterator[Reason]:
     """Yield the pins of a layered case that ``pin_masses`` leaves out."""
     known, ground = pin_masses(case), case.linkage.ground
-    own = [[name for name in group if case.joints[name].type != "slider"] for group in on_one_axis(case)]
+    own = [[name for name in group if case.joints[name].kind.has_pin] for group in on_one_axis(case)]
     left = [group for group in own if not set(group) & set(known)]
     reasons = {True: reason("no_diameter"), False: reason("in_ground_without_part", ground=ground)}
     for unknown, why in reasons.items():

@@ -23,16 +23,20 @@ Qi and Sun (1993), A nonsmooth version of Newton's method, Mathematical Programm
 Allgower and Georg, Introduction to Numerical Continuation Methods, chapter 2.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.geometry.joints.joint import Joint
+from alula.geometry.joints.joint_kinds import Surface
 from alula.geometry.linkage.placement import Complex, Placement
+from alula.loads.acting.acting import Acting
 from alula.loads.records.applied import FrictionLoad, Load, shifted
 from alula.loads.statics.joint_reaction import travelled
-from alula.loads.statics.statics import Drive, along_joint, assemble, joint_column
+from alula.loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_column, unknowns_of
 from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
@@ -53,8 +57,12 @@ _ITERATIONS = 12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Friction:
+class Friction(Acting):
     """Friction at all joints at n poses, for one direction of the motion.
+
+    It acts, but follows from the joint forces, which all else that acts brings about: it is found after that, for the
+    poses at which it was solved. It is none at rest and turns with the sense of the motion, so that it has neither
+    energy nor tangent, and where the linkage stands does not depend on it.
 
     Attributes
     ----------
@@ -62,11 +70,11 @@ class Friction:
         The poses, with the derivatives by the coordinate for rates.
     wrenches : mapping of str to array (n, 6)
         Joint with friction -> what its first link exerts on its second by friction, about the second's point, global
-        axes [N, N mm]; NaN where the linkage is locked.
+        axes [N, N mm]; NaN where the linkage is locked, and zero at dead points of the drive.
     lock : array (n,)
         Share of all coefficients at which the linkage locks itself, at most the one asked for; infinite elsewhere.
     unknowns : array (n, columns)
-        Of ``assemble``, with friction [N, N mm].
+        Of ``assemble``, with friction [N, N mm]; NaN where it is locked, and at dead points.
     residual : array (n,)
         Largest of the scaled equations, as a share of the load.
     """
@@ -82,10 +90,9 @@ class Friction:
         """True (n,) where no drive moves the linkage."""
         return np.asarray(np.isfinite(self.lock))
 
-    @property
-    def loads(self) -> tuple[FrictionLoad, ...]:
-        """Friction as loads on the links."""
-        return friction_loads(self.place, self.wrenches)
+    def loads(self, place: Placement) -> tuple[FrictionLoad, ...]:
+        """As ``Acting.loads``: at the poses for which it was solved alone."""
+        return friction_loads(place, self.wrenches)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -129,7 +136,7 @@ def solve_friction(
     Parameters
     ----------
     place : Placement
-        The n poses, with the derivatives of the unknowns by the coordinate for rates. No dead points of the drive.
+        The n poses, with the derivatives of the unknowns by the coordinate for rates.
     drive : Drive or None
     loads : sequence of Load
         All else that acts on the links, at these poses.
@@ -145,19 +152,22 @@ def solve_friction(
     Friction
     """
     system = assemble(place, drive, loads)
+    sound = system.regular(NEARLY_SINGULAR)
+    matrix = np.where(sound[..., None, None], system.scaled, np.eye(len(system.columns)))
+    right = np.where(sound[..., None], system.rhs / system.row_scale, 0.0)  # no load has no friction
     contacts = _contacts(place, system, sense, presses)
     rubbed = [
         contact.against[:, None] * joint_column(place, contact.joint, contact.force, contact.moment) / system.row_scale
         for contact in contacts
     ]
-    scaled, lock = _followed(system.scaled, system.rhs / system.row_scale, contacts, rubbed, most)
-    left = _balance(system.scaled, contacts, rubbed, most, scaled)[0] - system.rhs / system.row_scale
-    load = np.maximum(np.abs(system.rhs / system.row_scale).max(axis=1), 1e-300)
+    scaled, lock = _followed(matrix, right, contacts, rubbed, most)
+    left = _balance(matrix, contacts, rubbed, most, scaled)[0] - right
+    load = np.maximum(np.abs(right).max(axis=1, initial=0.0), 1e-300)
     return Friction(
         place=place,
         wrenches=_wrenches(contacts, most * scaled),
         lock=lock,
-        unknowns=scaled * system.column_scale,
+        unknowns=np.where(sound[..., None], scaled * system.column_scale, np.nan),
         residual=np.abs(left).max(axis=1) / load,
     )
 
@@ -184,14 +194,7 @@ def friction_under(
     tuple of FrictionLoad
     """
     system = assemble(place, drive, ())
-    values = np.zeros((*place.shape, len(system.columns)))
-    for name, wrench in joints.items():
-        force = wrench[..., 0] + 1j * wrench[..., 1]
-        across = (np.conj(1j * along_joint(place, name)) * force).real
-        own = {f"R{name}x": force.real, f"R{name}y": force.imag, f"N{name}": across, f"M:{name}": wrench[..., 5]}
-        for column, value in own.items():
-            if column in system.columns:
-                values[..., system.columns.index(column)] = value
+    values = np.stack(list(unknowns_of(place, drive, joints).values()), axis=-1)
     return friction_loads(place, _wrenches(_contacts(place, system, sense, presses), values / system.column_scale))
 
 
@@ -248,67 +251,94 @@ def _wrenches(contacts: Sequence[_Contact], scaled: Real) -> dict[str, Real]:
     return found
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Rubbing:
+    """A joint that rubs, for the laws of surfaces."""
+
+    name: str
+    place: Placement
+    system: System
+
+    @property
+    def joint(self) -> Joint:
+        return self.place.linkage.joints[self.name]
+
+    @property
+    def radius(self) -> float:
+        """Of its pin [mm]."""
+        return (self.joint.pin_diameter or 0.0) / 2.0
+
+    @cached_property
+    def turn(self) -> Real:
+        """Speed (n,) of its second link's angle to the first."""
+        first, second = self.joint.links
+        return np.asarray(self.place.spin(second) - self.place.spin(first))
+
+    @cached_property
+    def slid(self) -> Real:
+        """Speed (n,) of its second link's point along its slot or guide [mm]."""
+        assert self.place.qdot is not None
+        column = len(self.place.linkage.moving) + self.place.closure.slots.index(self.name)
+        return np.asarray(self.place.qdot[..., column])
+
+    def form(self, unknown: str, factor: float = 1.0) -> Real:
+        """Return a multiple of one of its unknowns, as a row for the scaled ones."""
+        row, column = np.zeros(len(self.system.columns)), self.system.columns.index(unknown)
+        row[column] = factor * self.system.column_scale[column]
+        return row
+
+
+_Law = Iterator[tuple[Complex, float, list[Real], Real]]
+"""What each contact of a joint has: its unit of friction, force (n,) and moment; what presses it; its speed (n,)."""
+
+
+def _in_bore(own: _Rubbing) -> _Law:
+    forms = [own.form(f"R{own.name}{axis}") for axis in "xy"]
+    yield np.zeros(own.place.shape, dtype=complex), own.radius, forms, own.place.linkage.longest * own.turn
+
+
+def _on_flanks(own: _Rubbing) -> _Law:
+    for side in (1.0, -1.0):  # on the flank below the pin, which a positive force lifts, and on that above it
+        forms = [own.form(f"N{own.name}", side), np.zeros(len(own.system.columns))]
+        arm = side * own.radius
+        yield own.place.along(own.name), arm, forms, own.slid + arm * own.turn
+
+
+def _on_guide(own: _Rubbing) -> _Law:
+    forms, length = [own.form(f"N{own.name}", sign) for sign in (1.0, -1.0)], own.joint.guide_length
+    if length is not None:
+        forms += [own.form(f"M:{own.name}", sign * 2.0 / length) for sign in (1.0, -1.0)]
+    yield own.place.along(own.name), 0.0, forms, own.slid
+
+
+LAWS: Mapping[Surface, Callable[[_Rubbing], _Law]] = {
+    Surface.BORE: _in_bore,
+    Surface.FLANKS: _on_flanks,
+    Surface.GUIDE: _on_guide,
+}
+
+
 def _contacts(place: Placement, system: System, sense: float, presses: Presses) -> list[_Contact]:
     """Return every contact that rubs, with the signed coefficient (n,) that opposes the motion."""
     linkage, found = place.linkage, []
     speeds = [np.abs(place.velocity(n)) ** 2 + (linkage.longest * place.spin(n)) ** 2 for n in linkage.moving]
     least = STANDS_STILL * np.sqrt(np.sum(speeds, axis=0))
-    column = {name: i for i, name in enumerate(system.columns)}
-
-    def form(name: str, factor: float = 1.0) -> Real:
-        row = np.zeros(len(column))
-        row[column[name]] = factor * system.column_scale[column[name]]
-        return row
-
     for name, joint in linkage.joints.items():
         if joint.friction == 0.0:
             continue
-        coefficient = joint.friction * presses.get(name, 1.0)
-        turn = place.spin(joint.links[1]) - place.spin(joint.links[0])
-        radius = (joint.pin_diameter or 0.0) / 2.0
-        along = along_joint(place, name)
-
-        def contact(
-            force: Complex,
-            moment: float,
-            forms: list[Real],
-            speed: Real,
-            *,
-            of: str = name,
-            by: float | Real = coefficient,
-        ) -> _Contact:
+        coefficient, surface = joint.friction * presses.get(name, 1.0), joint.kind.rubs
+        for force, moment, forms, speed in LAWS[surface](_Rubbing(name=name, place=place, system=system)):
             way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
-            return _Contact(
-                joint=of,
+            contact = _Contact(
+                joint=name,
                 force=force,
                 moment=np.full(place.shape, moment),
                 forms=np.array(forms),
-                round=linkage.joints[of].type == "revolute",
-                against=sense * by * way,
+                round=surface is Surface.BORE,
+                against=sense * coefficient * way,
             )
-
-        if joint.type == "revolute":
-            forms = [form(f"R{name}x"), form(f"R{name}y")]
-            found.append(contact(0.0 * along, radius, forms, linkage.longest * turn))
-            continue
-        slides = _sliding(place, name)
-        normal = f"N{name}"
-        if joint.type == "slider":
-            forms = [form(normal), form(normal, -1.0)]
-            if joint.guide_length is not None:
-                forms += [form(f"M:{name}", sign * 2.0 / joint.guide_length) for sign in (1.0, -1.0)]
-            found.append(contact(along, 0.0, forms, slides))
-            continue
-        for side in (1.0, -1.0):  # on the flank below the pin, which a positive force lifts, and on that above it
-            forms = [form(normal, side), np.zeros(len(column))]
-            found.append(contact(along, side * radius, forms, slides + side * radius * turn))
+            found.append(contact)
     return found
-
-
-def _sliding(place: Placement, name: str) -> Real:
-    """Speed (n,) of the pin along its slot or of a slider along its guide [mm]."""
-    assert place.qdot is not None
-    return np.asarray(place.qdot[..., len(place.linkage.moving) + place.closure.slots.index(name)])
 
 
 def _balance(

@@ -59,7 +59,7 @@ def travelled(place: Placement, name: str) -> Real:
     """
     joint = place.linkage.joints[name]
     rise = np.array([0.0, 0.0, place.linkage.rise(name)])
-    if joint.type == "revolute":
+    if not joint.slides:
         return np.asarray(vector(np.full(place.shape, place.closure.offsets.get(name, 0.0), dtype=complex)) + rise)
     first, second = (place.position(*at) for at in zip(joint.links, place.linkage.joint_points(name), strict=True))
     return np.asarray(vector(second - first) + rise)

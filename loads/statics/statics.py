@@ -1,4 +1,4 @@
-"""Equilibrium of pinned links: three equations per moving link, assembled for one pose or for n of them.
+"""Equilibrium of pinned links: three equations per moving link, assembled and solved for one state or for n of them.
 
 Each link is cut free. With r the arm from the origin of the link's frame to a joint,
 
@@ -8,6 +8,9 @@ over joint forces, applied loads and the drive torque (Norton, Design of Machine
 among the loads, after D'Alembert). The unknown of a revolute joint is the force that the joint's first link exerts on
 its second, and where the joint is bonded a moment. A pin in a slot carries a normal force, and a slider a normal force
 and a moment. Friction is among the loads (``friction``).
+
+A state is a pose of a linkage with what acts on it: poses of a motion, samples, or a linkage at offsets of its pins.
+``balance`` solves n of them at once, and a state without solution leaves the others their numbers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -71,7 +74,7 @@ class Drive:
         DriveEffort
             A force at a slider, along its guide; else a torque.
         """
-        return DriveEffort.FORCE if linkage.joints[self.joint].type == "slider" else DriveEffort.TORQUE
+        return DriveEffort.FORCE if linkage.joints[self.joint].kind.guided else DriveEffort.TORQUE
 
     def coordinate(self, linkage: Linkage) -> Coordinate:
         """Return what the drive holds.
@@ -202,6 +205,32 @@ class Equilibrium:
         return -self.drive_torque if link in linkage.joints[self.drive.joint].links else 0.0
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Balance(Equilibrium):
+    """Equilibrium of n states; NaN where there is none.
+
+    Attributes
+    ----------
+    place : Placement
+    system : System
+        The equations.
+    sound : bool array (...)
+        Which states have a solution: those that are not at, or next to, a dead point of the drive.
+    unknowns : array (..., columns)
+        The solution [R] [N, N mm].
+    """
+
+    place: Placement
+    system: System
+    sound: NDArray[np.bool_]
+    unknowns: Real
+
+    @property
+    def placement(self) -> Placement:
+        """Where the links stand."""
+        return self.place
+
+
 @dataclass(frozen=True, kw_only=True)
 class Reactions(Equilibrium):
     """Joint reactions and drive torque of one pose, with the equations that they solve.
@@ -241,26 +270,10 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
     System
     """
     linkage = place.linkage
-    effort = None if drive is None else drive.effort(linkage)
-    turns = drive.joint if drive is not None and effort is DriveEffort.TORQUE else None
-    unknowns = [
-        (column, name, *unit)
-        for name in linkage.joints
-        for column, unit in _units(place, name).items()
-        if (column, name) != (f"M:{turns}", turns)  # the drive's torque is the moment of its joint
-    ]
-    if drive is not None and effort is DriveEffort.FORCE:
-        unknowns.append(("P", drive.joint, drive.sign(linkage) * along_joint(place, drive.joint), 0.0))
-    columns = tuple(column for column, *_ in unknowns)
-    turned = () if turns is None else linkage.joints[turns].links
-    columns += ("T",) if turned else ()
-    matrix = np.zeros((*place.shape, 3 * len(linkage.moving), len(columns)))
-    for c, (_, name, force, moment) in enumerate(unknowns):
-        matrix[..., c] = joint_column(place, name, force, moment)
-    for link in turned:
-        if link != linkage.ground:
-            assert drive is not None
-            matrix[..., 3 * linkage.moving.index(link) + 2, -1] = 1.0 if link == drive.link else -1.0
+    unknowns = _unknowns(place, drive)
+    matrix = np.zeros((*place.shape, 3 * len(linkage.moving), len(unknowns)))
+    for c, unit in enumerate(unknowns.values()):
+        matrix[..., c] = joint_column(place, *unit)
     rhs = np.zeros(matrix.shape[:-1])
     for load in loads:
         if load.link != linkage.ground:
@@ -270,7 +283,7 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
         matrix=matrix,
         rhs=rhs,
         rows=tuple((link, kind) for link in linkage.moving for kind in ("Fx", "Fy", "Mz")),
-        columns=columns,
+        columns=tuple(unknowns),
         scale=linkage.longest,
     )
 
@@ -306,34 +319,52 @@ def joint_column(place: Placement, name: str, force: Complex, moment: Real | flo
     return column
 
 
-def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
-    """Return, by unknown of a joint, force (...) and moment of the first link on the second at the pin for one unit."""
-    along, joint = along_joint(place, name), place.linkage.joints[name]
-    units = {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
-    if joint.type != "revolute":
-        units = {f"N{name}": (1j * along, 0.0)}
-    return units | ({f"M:{name}": (0.0 * along, 1.0)} if joint.bears_moment else {})
+def _unknowns(place: Placement, drive: Drive | None) -> dict[str, tuple[str, Complex, float]]:
+    """Return the unknowns by their columns, each a force or a moment.
+
+    Each has its joint, and for one unit the force (...) or the moment of that joint's first link on its second.
+    """
+    found: dict[str, tuple[str, Complex, float]] = {}
+    for name, joint in place.linkage.joints.items():
+        along = place.along(name)
+        if joint.slides:
+            found[f"N{name}"] = name, 1j * along, 0.0
+        else:
+            found |= {f"R{name}x": (name, along, 0.0), f"R{name}y": (name, 1j * along, 0.0)}
+        if joint.bears_moment:
+            found[f"M:{name}"] = name, 0.0 * along, 1.0
+    if drive is not None:
+        name, sign, along = drive.joint, drive.sign(place.linkage), place.along(drive.joint)
+        if drive.effort(place.linkage) is DriveEffort.FORCE:
+            return found | {"P": (name, sign * along, 0.0)}
+        found.pop(f"M:{name}", None)  # the drive's torque is the moment of its joint
+        found["T"] = name, 0.0 * along, sign
+    return found
 
 
-def along_joint(place: Placement, name: str) -> Complex:
-    """Return the direction of a joint's slot or guide.
+def unknowns_of(place: Placement, drive: Drive | None, wrenches: Mapping[str, Real]) -> dict[str, Any]:
+    """Return the unknowns that joints' wrenches stand for; ``joint_reactions`` goes the other way.
 
     Parameters
     ----------
     place : Placement
         Where the links stand.
-    name : str
-        The joint.
+    drive : Drive, optional
+    wrenches : mapping of str to array (..., 6)
+        Joint -> what its first link exerts on its second about the second's point, global axes, with what the drive
+        exerts there [N, N mm].
 
     Returns
     -------
-    complex array (...)
-        Unit vector in global axes; x for a revolute joint.
+    dict of str to array (...)
+        By ``System.columns`` [N, N mm].
     """
-    joint = place.linkage.joints[name]
-    if joint.type == "revolute":
-        return np.ones(place.shape, dtype=complex)
-    return np.asarray(place.direction(joint.links[0]) * np.exp(1j * joint.direction))
+    return {
+        column: moment * wrenches[name][..., 5]
+        if moment
+        else (np.conj(force) * (wrenches[name][..., 0] + 1j * wrenches[name][..., 1])).real
+        for column, (name, force, moment) in _unknowns(place, drive).items()
+    }
 
 
 def check_drive(linkage: Linkage, drive: Drive | None) -> None:
@@ -360,6 +391,45 @@ def check_drive(linkage: Linkage, drive: Drive | None) -> None:
         )
 
 
+def balance(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Balance:
+    """Solve the equilibrium of one state or of n for the joint reactions and the drive.
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    drive : Drive, optional
+    loads : sequence of Load
+        All that acts on the links, inertia and friction included: the same in all states, or n of each.
+
+    Returns
+    -------
+    Balance
+
+    Raises
+    ------
+    CaseError
+        Where equilibrium alone does not give the joint forces.
+    """
+    system = assemble(place, drive, loads)
+    require_determinate(place.linkage, system)
+    sound = system.regular(NEARLY_SINGULAR)
+    unknowns, residual = system.solved(sound)
+    value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
+    none = np.where(sound, 0.0, np.nan)
+    return Balance(
+        place=place,
+        drive=drive,
+        system=system,
+        sound=sound,
+        unknowns=unknowns,
+        joints=joint_reactions(place, drive, value),
+        drive_torque=value.get("T", none),
+        drive_force=value.get("P", none),
+        residual=residual,
+    )
+
+
 def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:
     """Solve the equilibrium of all links at one pose for the joint reactions and the drive torque.
 
@@ -381,20 +451,18 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
         dead point of the driven link.
     """
     check_drive(pose.linkage, drive)
-    system = assemble(pose.placement, drive, loads)
-    require_determinate(pose.linkage, system)
-    refuse_dead_point(system, drive)
-    unknowns, residual = system.solved()
-    value = dict(zip(system.columns, unknowns.tolist(), strict=True))
+    found = balance(pose.placement, drive, loads)
+    if not found.sound:
+        refuse_dead_point(found.system, drive)
     return Reactions(
         pose=pose,
         drive=drive,
-        system=system,
-        unknowns=unknowns,
-        joints=joint_reactions(pose.placement, drive, value),
-        drive_torque=value.get("T", 0.0),
-        drive_force=value.get("P", 0.0),
-        residual=float(residual),
+        system=found.system,
+        unknowns=found.unknowns,
+        joints=found.joints,
+        drive_torque=float(found.drive_torque),
+        drive_force=float(found.drive_force),
+        residual=float(found.residual),
     )
 
 
@@ -438,17 +506,18 @@ def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, A
     dict of str to JointReaction
         By joint.
     """
-    found = {}
-    for name, joint in place.linkage.joints.items():
-        wrench, along = np.zeros((*place.shape, 6)), along_joint(place, name)
-        if joint.type == "revolute":
-            wrench[..., 0], wrench[..., 1] = value[f"R{name}x"], value[f"R{name}y"]
-        else:
-            force = value[f"N{name}"] * 1j * along
-            if drive is not None and drive.joint == name:
-                force = force + drive.sign(place.linkage) * value.get("P", 0.0) * along
-            wrench[..., 0], wrench[..., 1] = force.real, force.imag
-        wrench[..., 5] = value.get(f"M:{name}", 0.0)
-        arm = travelled(place, name)
-        found[name] = JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=arm)
-    return found
+    joints = place.linkage.joints
+    wrenches = {name: np.zeros((*place.shape, 6)) for name in joints}
+    for column, (name, force, moment) in _unknowns(place, drive).items():
+        if not moment:
+            acting = value[column] * force
+            wrenches[name][..., 0] += acting.real
+            wrenches[name][..., 1] += acting.imag
+        elif column != "T":
+            wrenches[name][..., 5] = value[column]
+    return {
+        name: JointReaction(
+            joint=name, on=joint.links[1], by=joint.links[0], wrench=wrenches[name], arm=travelled(place, name)
+        )
+        for name, joint in joints.items()
+    }

@@ -60,16 +60,47 @@ class System:
         """Singular values (..., unknowns) of the scaled matrix, falling."""
         return np.asarray(np.linalg.svd(self.scaled, compute_uv=False), dtype=float)
 
+    def regular(self, least: float) -> NDArray[np.bool_]:
+        """Tell which states have a smallest singular value of at least a number.
+
+        The determinant is the product of all n singular values, and the n - 1 largest have at most the product
+        (|A|^2 / (n - 1))^((n - 1) / 2), since their squares sum to no more than |A|^2 (Frobenius). Singular values
+        are calculated where the bound that follows from these does not tell.
+
+        Parameters
+        ----------
+        least : float
+
+        Returns
+        -------
+        bool array (...)
+        """
+        found = np.zeros(self.matrix.shape[:-2], dtype=np.bool_)
+        rows, n = self.matrix.shape[-2:]
+        if rows == n:
+            squares = np.sum(self.scaled**2, axis=(-2, -1))
+            with np.errstate(divide="ignore"):
+                most = 0.5 * (n - 1) * np.log(np.maximum(squares, least**2) / (n - 1))
+                found = np.asarray(np.linalg.slogdet(self.scaled)[1] - most >= math.log(2.0 * least))
+        if not found.all():
+            found[~found] = np.linalg.svd(self.scaled[~found], compute_uv=False)[..., -1] >= least
+        return found
+
     @property
     def condition(self) -> float:
         """Condition number of the scaled matrix (2-norm)."""
         smallest = float(self.singular_values[-1])
         return float(self.singular_values[0]) / smallest if smallest > 0.0 else math.inf
 
-    def solved(self) -> tuple[Real, Real]:
-        """Solve the equations.
+    def solved(self, sound: NDArray[np.bool_]) -> tuple[Real, Real]:
+        """Solve the equations of the states that have a solution.
 
         An unknown below ``ROUNDING`` of the largest is set to zero, since as a load on a link it would not balance.
+
+        Parameters
+        ----------
+        sound : bool array (...)
+            Which states these are; numbers of the others are NaN.
 
         Returns
         -------
@@ -79,10 +110,11 @@ class System:
             The largest of the scaled equations, as a share of the load.
         """
         right = self.rhs / self.row_scale
-        unknowns = np.linalg.solve(self.scaled, right[..., None])[..., 0]
+        matrix = self.scaled if sound.all() else np.where(sound[..., None, None], self.scaled, np.eye(right.shape[-1]))
+        unknowns = np.where(sound[..., None], np.linalg.solve(matrix, right[..., None])[..., 0], np.nan)
         largest = np.abs(unknowns).max(axis=-1, keepdims=True, initial=0.0)
         unknowns = np.where(np.abs(unknowns) <= ROUNDING * largest, 0.0, unknowns)
-        left = (self.scaled @ unknowns[..., None])[..., 0] - right
+        left = (matrix @ unknowns[..., None])[..., 0] - right
         size = np.maximum(np.abs(right).max(axis=-1, initial=0.0), 1e-300)
         return unknowns * self.column_scale, np.abs(left).max(axis=-1) / size
 

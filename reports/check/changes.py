@@ -22,7 +22,7 @@ _NARROWED: dict[SourceKind, str] = {
     SourceKind.STRENGTH: "a narrower strength range on the material's card",
     SourceKind.MODULUS: "a narrower youngs_modulus range on the material's card",
     SourceKind.GROWTH: "a narrower scatter of load and modulus",
-    SourceKind.COUPLES: "tight_in of the joints, which says in which links a pin is tight",
+    SourceKind.COUPLES: "fits of the joints (fit, or clearance by link), which say how pins sit in their holes",
     SourceKind.PLAY: "a smaller clearance of the joints",
     SourceKind.AIR: "a narrower normal_coefficient_range of the load case's air",
     SourceKind.FRICTION: "a narrower friction_range of the joints",

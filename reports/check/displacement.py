@@ -141,7 +141,7 @@ def _model(result: CheckResult) -> str:
     bonded = " and ".join(
         f"{kind} joints ({', '.join(names)})"
         for kind, clamped in (("bonded", False), ("clamped", True))
-        if (names := [name for name, joint in joints.items() if joint.bonded and joint.clamped == clamped])
+        if (names := [name for name, joint in joints.items() if joint.fixed and joint.clamped == clamped])
     )
     pins = "The pins rotate freely about their own axis and transmit all other moments"
     pins += f", but for {bonded}, which transmit all." if bonded else "."

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
+from alula.fea.asked.asked import GRAMS
 from alula.fea.outcomes.result import CheckResult
-from alula.fea.whole.mass import GRAMS, mass_reason
+from alula.fea.whole.mass import mass_reason
 from alula.fea.whole.size import size_band, size_limits
 from alula.loads.records.check_spec import MassCheck, SizeCheck
 from alula.loads.states.extent import Extent, unmeasured

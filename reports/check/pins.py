@@ -6,7 +6,7 @@ from typing import Any
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.loads.case.case import Case
 from alula.loads.case.forks import forked_link
-from alula.loads.case.joint_rules import clearances, rubbing_joints
+from alula.loads.case.joint_rules import clearances, guides_without_length, rubbing_joints
 from alula.loads.statics.effort import DriveEffort
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Part, Section, Text
@@ -100,7 +100,7 @@ def pins_left_out(result: CheckResult) -> Section:
 def _transfer(case: Case) -> Iterator[tuple[str, str]]:
     joints = case.linkage.joints.items()
     held = [name for name, joint in joints if joint.clamped and joint.clamp_length is not None]
-    turned = [name for name, joint in joints if joint.type == "revolute" and joint.bonded and name not in held]
+    turned = [name for name, joint in joints if joint.fixed and name not in held]
     drive = case.pinned_drive
     if drive is not None and drive.effort(case.linkage) is DriveEffort.TORQUE:
         turned = [drive.joint, *turned]
@@ -111,7 +111,7 @@ def _transfer(case: Case) -> Iterator[tuple[str, str]]:
 
 
 def _slots(case: Case) -> Iterator[tuple[str, str]]:
-    slotted = [name for name, joint in case.joints.items() if joint.type == "pin-in-slot"]
+    slotted = [name for name, joint in case.joints.items() if joint.slotted is not None]
     if slotted:
         yield "Contact in slots", _LINES.format(joints=joined(slotted))
 
@@ -129,7 +129,6 @@ def _contact(result: CheckResult) -> str:
             f". The play at {joined(list(loose))} is in pose, forces and displacements, each pin standing anywhere in "
             "its hole; impact where a pin changes sides, and a narrower contact in a wider hole, are not modelled"
         )
-    guided = [name for name in rubbing if case.joints[name].type == "slider" and case.joints[name].guide_length is None]
-    if guided:
+    if guided := guides_without_length(case):
         found += f". The moments of {joined(guided)} add no friction, since no guide_length is stated"
     return f"{found}. Wear is not modelled. {own}."

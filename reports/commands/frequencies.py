@@ -30,7 +30,7 @@ def frequencies(
     threads: options.ThreadsOption = 2,
 ) -> None:
     """Natural frequencies over the motion and of each link, and the harmonics of the drive that meet them."""
-    from alula.fea.common.at_temperature import require_stiffness
+    from alula.fea.asked.at_temperature import require_stiffness
     from alula.fea.vibration.over_motion import case_frequencies
     from alula.reports.renderers.folder import write_sections
     from alula.reports.renderers.page import Page, page_footer

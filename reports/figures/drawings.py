@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
-from alula.geometry.linkage.coordinate import Measure
+from alula.geometry.linkage.placement import vector
+from alula.loads.acting.acting import ActingMark
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import LineLoad, PointLoad, in_axes
-from alula.loads.records.springs import LineSpring
-from alula.loads.states.actions import stated_loads
+from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.statics.rounding import without_rounding
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.labels import along, place_labels
@@ -219,13 +219,13 @@ class _Drawing:
             found.append(self._support((ground,), self.points[ground, held_at]))
         for name, joint in self.linkage.joints.items():
             at = self._joint(name)
-            if joint.type != "revolute":
+            if joint.slides:
                 found.append(self._guide(name, at))
             elif joint.clamped:
                 found += self._clamps(name)
             elif ground in joint.links and held_at is None:
                 found.append(self._support(joint.links, at))
-            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.bonded else "#ffffff", INK, 1.0)
+            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.fixed else "#ffffff", INK, 1.0)
             found.append(at[None])
         return found
 
@@ -253,34 +253,26 @@ class _Drawing:
 
     def _springs(self) -> list[tuple[str, Real]]:
         """(label, line) of every spring and tendon, and of every stop."""
-        case, standing, place = self.result.case, self.result.load_cases[self.name].standing, self.pose.placement
-        found = []
-        for state in standing.springs:
-            effort = float(state.effort)
-            if state.kind == "tendon":
-                route = [self.points[one.link, one.at] for one in case.tendons[state.name].through]
-                line = np.array(route)
-            elif isinstance(spring := case.springs[state.name], LineSpring):
-                start, end = (self.points[one.link, one.at] for one in spring.between)
-                line = coil(start, end, 0.016 * self.size)
-            else:
-                turned = self.pose.angles[case.joints[spring.joint].links[0]]
-                line = spiral(self._joint(spring.joint), turned, 0.035 * self.size)
-            told = f"{number(abs(effort), 3)} {'N·mm' if state.turns else 'N'}" if effort else "slack"
-            found.append((f"{state.name}: {told}", line))
-        for name, stop in case.stops.items():
-            first, second = case.joints[stop.joint].links
-            if stop.limit.measure is Measure.TRAVEL:
-                way = place.direction(first) * np.exp(1j * case.joints[stop.joint].direction)
-                zero = place.position(first, self.linkage.joint_points(stop.joint)[0])
-                middle, behind = zero + stop.limit.value * way, -stop.sense * way
-            else:
-                reach = complex(*max(self.linkage.links[second].points.values(), key=lambda point: math.hypot(*point)))
-                way = place.direction(first) * np.exp(1j * stop.limit.value) * reach / abs(reach)
-                middle, behind = complex(*self._joint(stop.joint)) + 0.14 * self.size * way, -1j * stop.sense * way
-            line = stop_mark(np.array([middle.real, middle.imag]), float(np.angle(behind)), 0.05 * self.size)
-            found.append((f"stop {name}", line))
+        case, place, found = self.result.load_cases[self.name].standing.case, self.pose.placement, []
+        for one in (*lasting(case), *bounds(case).values()):
+            for mark in one.marks(place):
+                told = "slack"
+                if mark.effort:
+                    told = f"{number(abs(mark.effort), 3)} {'N·mm' if mark.turns else 'N'}"
+                found.append((mark.name if mark.kind == "wall" else f"{mark.name}: {told}", self._mark(mark)))
         return found
+
+    def _mark(self, mark: ActingMark) -> Real:
+        """Line of something that acts."""
+        route = np.array([self.points[end] for end in mark.ends])
+        if mark.kind == "coil":
+            return coil(route[0], route[-1], 0.016 * self.size)
+        if mark.kind == "spiral":
+            return spiral(route[0], self.pose.angles[mark.ends[0][0]], 0.035 * self.size)
+        if mark.kind == "wall":
+            middle = mark.at + 0.14 * self.size * mark.aside
+            return stop_mark(np.array([middle.real, middle.imag]), float(np.angle(mark.behind)), 0.05 * self.size)
+        return route
 
     def _line(self, points: list[Real], width: float, dashes: tuple[float, float] | None = None) -> None:
         self.sheet.line(self.axes.at(points), GROUND, width, dashes)
@@ -320,9 +312,7 @@ class _Drawing:
 
     def _guide(self, name: str, at: Real) -> Real:
         """Draw the two sides of the slot or guide that a pin or slider runs in; returns their points."""
-        joint = self.linkage.joints[name]
-        along_angle = self.pose.angles[joint.links[0]] + joint.direction
-        way = np.array([math.cos(along_angle), math.sin(along_angle)])
+        way = vector(self.pose.placement.along(name))[:2]
         side = 0.016 * self.size * np.array([-way[1], way[0]])
         reach = 0.09 * self.size * way
         edges = [along(at - reach + s, at + reach + s) for s in (-side, side)]

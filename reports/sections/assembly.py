@@ -201,5 +201,5 @@ def _left_out(result: CheckResult) -> tuple[str, str]:
         return "Stacking", _STACKING
     linkage, loose = result.case.linkage, clearances(result.case)
     tilting = [name for name in linkage.joints if linkage.rise(name) != 0.0 and name not in loose]
-    tilts = any(not linkage.joints[name].bonded for name in tilting)
+    tilts = any(not linkage.joints[name].fixed for name in tilting)
     return "Layers", _LAYERS + _TILT if tilts else _LAYERS

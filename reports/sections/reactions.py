@@ -60,7 +60,7 @@ def reaction_parts(
     yield joint_table(told, shown, name)
     if "Mz" not in shown:
         for joint in told.joints.values():
-            if linkage.joints[joint.joint].type == "slider":
+            if linkage.joints[joint.joint].kind.guided:
                 moment = Number(float(joint.wrench[5]), "N·mm")
                 yield say(
                     "The guide {joint} also exerts a moment of {moment} ({turns}) on {on}",
@@ -146,8 +146,8 @@ def shown_components(reactions: Reactions) -> tuple[str, ...]:
     sizes = np.abs(wrenches).max(axis=0, initial=0.0)
     force, arm = sizes[:3].max(), reactions.pose.linkage.longest
     acts = sizes > _ROUNDING * np.array([force] * 3 + [force * arm] * 3)
-    revolute = [reactions.pose.linkage.joints[name].type == "revolute" for name in reactions.joints]
-    turned = np.abs(wrenches[revolute, 5]).max(initial=0.0) > _ROUNDING * force * arm
+    pinned = [not reactions.pose.linkage.joints[name].slides for name in reactions.joints]
+    turned = np.abs(wrenches[pinned, 5]).max(initial=0.0) > _ROUNDING * force * arm
     spatial = bool(acts[2:5].any())
     shown = {"Fx": True, "Fy": True, "Fz": spatial, "Mx": spatial, "My": spatial, "Mz": bool(turned)}
     return tuple(axis for axis in AXES if shown[axis])

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.linkage.coordinate import Measure
-from alula.loads.records.springs import TurnSpring
+from alula.loads.acting.sprung import SpringState
+from alula.loads.states.actions import lasting
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.springs import SpringState, spring_states
 from alula.loads.states.standing import Standing
 from alula.reports.words.numbers import number, turning
 
@@ -57,7 +57,7 @@ def spring_sentences(standing: Standing) -> Iterator[str]:
         Each without its full stop.
     """
     for state in standing.springs:
-        yield f"{state.kind.capitalize()} {state.name}: {_size(standing, state)}, {_effort(standing, state)}"
+        yield f"{state.kind.capitalize()} {state.name}: {_size(state)}, {_effort(standing, state)}"
     for name, value in standing.stops.items():
         stop = standing.case.stops[name]
         at, limit = _told(standing, name, value), _told(standing, name, stop.limit.value)
@@ -70,22 +70,16 @@ def _told(standing: Standing, stop: str, value: float) -> float:
     return float(standing.case.stops[stop].limit.measure.told(value))
 
 
-def _size(standing: Standing, state: SpringState) -> str:
+def _size(state: SpringState) -> str:
     if not state.turns:
         return f"{number(float(state.size))} mm long"
-    return f"joint {_turned(standing, state).joint} at {number(math.degrees(float(state.size)))} deg"
-
-
-def _turned(standing: Standing, state: SpringState) -> TurnSpring:
-    spring = standing.case.springs[state.name]
-    assert isinstance(spring, TurnSpring)
-    return spring
+    return f"joint {state.joint} at {number(math.degrees(float(state.size)))} deg"
 
 
 def _effort(standing: Standing, state: SpringState) -> str:
     effort = float(state.effort)
     if state.turns:
-        second = standing.case.joints[_turned(standing, state).joint].links[1]
+        second = standing.case.joints[state.joint].links[1]
         return f"{number(abs(effort))} N·mm {turning(effort)} on {second}" if effort else "not wound"
     if effort == 0.0:
         return "slack" if state.kind == "tendon" else "neither pulls nor pushes"
@@ -106,7 +100,7 @@ def motion_springs(result: CaseMotion) -> list[tuple[str, NDArray[np.float64]]]:
         Name with unit, and values.
     """
     found = []
-    for state in spring_states(result.case, result.motion.placement):
+    for state in (one.state(result.motion.placement) for one in lasting(result.case)):
         if state.turns:
             found.append((f"{state.name} angle [deg]", np.degrees(state.size)))
             found.append((f"{state.name} moment [N mm]", state.effort))

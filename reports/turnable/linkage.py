@@ -13,8 +13,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.forks import levels, outer_link
 from alula.loads.case.layers import on_one_axis, slab
 from alula.loads.records.applied import LineLoad, PointLoad
-from alula.loads.records.springs import Attachment, LineSpring
-from alula.loads.states.actions import stated_loads
+from alula.loads.states.actions import lasting, stated_loads
 from alula.reports.figures.figures import COLOURS
 from alula.reports.figures.outlines.assembly import LAYERS
 from alula.reports.turnable.bodies import PlateBody, plate_body
@@ -266,7 +265,7 @@ def _pins(case: Case, ranks: Mapping[str, Sequence[int]], size: float) -> list[d
     """Return the pins: cylinders from the lowest face to the highest of the links that each joins."""
     found = []
     for names in on_one_axis(case):
-        own = [name for name in names if case.joints[name].type != "slider"]
+        own = [name for name in names if case.joints[name].kind.has_pin]
         if not own:
             continue
         links = list(dict.fromkeys(link for name in own for link in case.joints[name].links))
@@ -335,22 +334,16 @@ def _drive(case: Case) -> dict[str, Any] | None:
 
 def _springs(case: Case) -> list[dict[str, Any]]:
     """Return springs and tendons: kind, and the points of links from one end to the other."""
-    found = []
-    for name, spring in case.springs.items():
-        if isinstance(spring, LineSpring):
-            found.append({"name": name, "kind": "coil", "route": [_fastened(case, one) for one in spring.between]})
-        else:
-            first = case.joints[spring.joint].links[0]
-            at = Attachment(link=first, at=case.linkage.point_of(spring.joint, first))
-            found.append({"name": name, "kind": "spiral", "route": [_fastened(case, at)]})
-    for name, tendon in case.tendons.items():
-        found.append({"name": name, "kind": "cord", "route": [_fastened(case, one) for one in tendon.through]})
-    return found
+    return [
+        {"name": mark.name, "kind": mark.kind, "route": [_fastened(case, *end) for end in mark.ends]}
+        for one in lasting(case)
+        for mark in one.marks(case.stated_pose.placement)
+    ]
 
 
-def _fastened(case: Case, at: Attachment) -> dict[str, Any]:
+def _fastened(case: Case, link: str, point: str) -> dict[str, Any]:
     """Return a point at which something is fastened, in the frame of its link."""
-    return {"link": at.link, "at": [_short(v) for v in case.links[at.link].points[at.at]]}
+    return {"link": link, "at": [_short(v) for v in case.links[link].points[point]]}
 
 
 def _motion(case: Case, poses: Poses) -> dict[str, Any]:

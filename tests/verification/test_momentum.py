@@ -26,8 +26,8 @@ from planar_linkages import joint, link
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import solve_motion
 from alula.geometry.linkage.pose import solve_pose
+from alula.loads.acting.weight import inertia_loads
 from alula.loads.records.applied import PartMass
-from alula.loads.states.actions import inertia_loads
 from alula.loads.statics.momentum import linkage_momentum, on_ground
 
 TURNING = {

@@ -13,7 +13,7 @@ from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.fea.common.plates import pair_forces, plates
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.linear import solve_frame
-from alula.fea.outcomes.bearing import pressing
+from alula.fea.judging.bearing import pressing
 from alula.fea.outcomes.pins import stress_at
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from alula.fea.check.linkage_numbers import left_stops
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.judging.linkage_numbers import left_stops
 from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, State
 from alula.fea.nonlinear.large_displacement import examine

@@ -7,7 +7,7 @@ from every_load import BODY, RHO, every_load
 from alula.fea.elements.space import displacement_space
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
-from alula.fea.superposition.peaks import largest_stress
+from alula.fea.superposition.peaks import largest, of_stress
 from alula.fea.superposition.unit_solutions import solve_units
 from alula.fea.tractions.link_tractions import KINDS, LinkTractions
 from alula.fea.tractions.traction import TRANSFERS
@@ -58,7 +58,7 @@ def test_peaks_of_an_envelope_are_those_of_checks(mesh, tractions) -> None:
     loads = every_load()
     columns = np.hstack([tractions.coefficients(loads, law, transfer) for law, transfer in VARIANTS])
     solved = solve_units(tractions, columns, np.tile(loads.size(40.0), len(VARIANTS)), E=E, nu=NU, threads=1)
-    peaks = largest_stress(solved.measures, solved.combination, brittle=False)
+    peaks = largest(of_stress(solved.stress, brittle=False), solved.combination)
     for pose in range(loads.poses):
         direct = solve_solid(
             mesh, E=E, nu=NU, density=RHO, loads=[loads.chosen(pose)], line=("bore:A", "bore:B"), threads=1

@@ -269,7 +269,7 @@ def ground(axes: Any, motion: Motion) -> None:
     for name in motion.linkage.joints_of(base):
         joint = motion.linkage.joints[name]
         x, y = motion.linkage.links[base].points[motion.linkage.point_of(name, base)]
-        if joint.type != "revolute" and joint.links[0] == base:
+        if joint.carrier == base:
             travel = motion.travel(name)
             reach = np.array([travel.min(), travel.max()])
             bar = complex(x, y) + np.exp(1j * joint.direction) * reach

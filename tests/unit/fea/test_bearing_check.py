@@ -9,7 +9,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Verdict
-from alula.fea.outcomes.bearing import weakest_eye
+from alula.fea.judging.bearing import weakest_eye
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.reports.sentences import told

@@ -16,15 +16,17 @@ from materials import with_material
 from result_paths import compare
 from told import tables_of
 
+from alula.fea.asked.asked import Asked, asked
 from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import check_beam
 from alula.fea.buckling.buckling import buckling_outcomes
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
+from alula.fea.common.verdict import LINKAGE, Quantity, Subject, Verdict
 from alula.fea.elements.space import displacement_space
 from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.motion import envelope
 from alula.fea.motion import envelope_outcomes as outcomes_over_motion
 from alula.fea.motion.envelope import envelope_case, evaluated_poses
@@ -34,11 +36,10 @@ from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
 from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.mesh_factors import MeshFactors
-from alula.fea.outcomes.bearing import bearing_outcome
 from alula.fea.outcomes.pins import stress_at, stress_of
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.stress import principal, stress_field, von_mises
-from alula.fea.superposition.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
+from alula.fea.superposition.peaks import deviator, largest, of_stress, signed_bounds
 from alula.fea.superposition.unit_solutions import nodal_stress
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.coordinate import Coordinate
@@ -226,10 +227,11 @@ def test_peaks_are_those_of_all_nodes_under_all_loads(loads, smooth):
         combination = rng.normal(size=(7, loads)) * rng.uniform(0.01, 10.0, size=loads)
     whole = np.einsum("nim,mp->pni", stress, combination)
     for brittle, values in ((False, von_mises(whole)), (True, principal(whole)[..., 0])):
-        found = largest_stress(ModeMeasures.of(stress), combination, brittle=brittle)
+        modes = of_stress(stress, brittle=brittle)
+        found = largest(modes, combination)
         assert found.value == pytest.approx(values.max(axis=1), rel=1e-10)
         assert found.node.tolist() == values.argmax(axis=1).tolist()
-        low, high = signed_bounds(ModeMeasures.of(stress), combination, brittle=brittle)
+        low, high = signed_bounds(modes, combination)
         signed = signed_stress(whole, brittle=brittle)
         assert (low <= signed.min(axis=0) + 1e-12).all()
         assert (high >= signed.max(axis=0) - 1e-12).all()
@@ -245,7 +247,7 @@ def test_the_deviators_length_is_the_von_mises_stress():
 def test_stress_of_a_compressed_link_may_have_no_tension():
     stress = np.zeros((4, 6, 1))
     stress[:, :3, 0] = -np.arange(1.0, 5.0)[:, None]
-    peaks = largest_stress(ModeMeasures.of(stress), np.array([[1.0, 2.0]]), brittle=True)
+    peaks = largest(of_stress(stress, brittle=True), np.array([[1.0, 2.0]]))
     assert peaks.value.tolist() == [-1.0, -2.0]
     assert peaks.node.tolist() == [0, 0]
 
@@ -354,7 +356,8 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
             stress = stress_at(case, joint, reactions.joints[joint]).equivalent
             least["shear", f"pin {joint}"].append(stress.inverse(case.pin_material(joint).allowable))
             wrench = reactions.joints[joint].wrench
-            outcome = bearing_outcome(case, "push", "eyes", case.checks["eyes"], joint, [wrench])
+            [eye] = asked(case, BearingCheck, subject=Subject.pin(joint))
+            outcome = bearing_outcome(case, "push", eye, [wrench])
             least["eyes", outcome.link].append(outcome.value)
     for key, bands in least.items():
         pose = int(np.argmin([band.value for band in bands]))
@@ -394,7 +397,7 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
     monkeypatch.setattr(outcomes_over_motion, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
     monkeypatch.setattr(outcomes_over_motion, "joint_growth", lambda *_: None)
-    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[5]))
+    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[3]))
     monkeypatch.setattr(
         outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(reason="", because=lambda _: None)
     )
@@ -403,8 +406,9 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
     motion = SimpleNamespace(coordinate=Coordinate("crank"), angles=np.zeros(4))
     check = BearingCheck.model_validate({"type": "bearing"})
+    eyes_asked = Asked(name="eyes", subject=Subject.pin("B"), quantity=Quantity.SAFETY_FACTOR, limit=3.33, check=check)
     moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
-    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3, {}))
+    list(outcomes_over_motion._joint(moved, eyes_asked, np.arange(4) < 3, {}))
     [[wrench]] = told
     assert wrench[0] == 2.0
 
@@ -498,7 +502,7 @@ def test_an_envelope_holds_every_way_in_which_pins_press_and_torque_enters(order
     motion = SimpleNamespace(
         stated="eye-faces",
         material=SimpleNamespace(allowable=60.0),
-        solved=SimpleNamespace(space=SimpleNamespace(nodes=np.eye(3))),
+        measure=SimpleNamespace(solved=SimpleNamespace(space=SimpleNamespace(nodes=np.eye(3)))),
     )
     motion._governing = lambda variants: LinkMotion._governing(motion, variants)
     found = LinkMotion._by_meshes(motion, "push", [every[i] for i in order], MeshFactors())

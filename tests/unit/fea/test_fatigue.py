@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from alula.fea.motion.critical import critical_nodes
+from alula.fea.motion.critical import critical_node
 from alula.fea.motion.fatigue import (
     cycles_to_failure,
     equivalent_peak,
@@ -16,7 +16,7 @@ from alula.fea.motion.fatigue import (
     strength_at,
     turning_points,
 )
-from alula.fea.superposition.peaks import ModeMeasures
+from alula.fea.superposition.peaks import of_stress
 from alula.geometry.materials.material import Fatigue, library
 from alula.reports.sentences import told
 
@@ -148,7 +148,8 @@ def test_critical_node_is_that_of_all_nodes(material):
     stress = rng.normal(size=(900, 6, 4)) * rng.uniform(0.1, 1.0, size=(900, 1, 1))
     angle = np.linspace(0.0, 2.0 * math.pi, 40, endpoint=False)
     combination = np.array([np.cos(angle), np.sin(angle), 0.5 * np.cos(2 * angle), np.ones(40)])
-    ((node, history),) = critical_nodes(ModeMeasures.of(stress), [combination], material)
+    modes = of_stress(stress, brittle=material.brittle)
+    node, history = critical_node(modes, stress, combination, material)
     signed = signed_stress(np.einsum("nim,mp->npi", stress, combination), brittle=material.brittle)
     size, mean = np.ptp(signed, axis=1), (signed.max(axis=1) + signed.min(axis=1)) / 2.0
     harm = equivalent_peak(np.column_stack([size, mean, mean]), material.fatigue, material.ultimate_strength)

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import pytest
 from edited_cases import PLANAR
 
-from alula.fea.buckling.linkage import NO_EQUILIBRIUM, linkage_outcomes, unless_it_gives_way
 from alula.fea.check import known_stiffness
 from alula.fea.check.known_stiffness import with_known_stiffness
 from alula.fea.common.alternatives import Alternatives
@@ -15,10 +14,11 @@ from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.judging.linkage import NO_EQUILIBRIUM, linkage_outcomes, unless_it_gives_way
+from alula.fea.judging.solid_buckling import _outcome, solid_growth
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.stability import SNAP
 from alula.fea.outcomes.result import SolidResult
-from alula.fea.outcomes.solid_buckling import _outcome, solid_growth
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.loads.case.case_file import read_case
 from alula.reports.sentences import told

@@ -11,14 +11,14 @@ from scipy.spatial.transform import Rotation
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.verdict import Verdict
+from alula.fea.judging.layers import layer_outcomes
 from alula.fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
 from alula.fea.motion.envelope_result import LayerEnvelope
 from alula.fea.outcomes.layer_stress import LayerStress
-from alula.fea.outcomes.layers import layer_outcomes
 from alula.fea.outcomes.limits import layer_limit, layer_limits, layers_of
 from alula.fea.solid.layers import Layers, best_directions, build_directions, on_plane
 from alula.fea.solid.stress import von_mises
-from alula.fea.superposition.peaks import ModeMeasures, largest_stress
+from alula.fea.superposition.peaks import largest, of_stress
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.materials.material import library
@@ -205,7 +205,7 @@ def test_peaks_over_many_loads_are_those_of_all_nodes():
     combination = np.array([np.cos(turn), np.sin(turn), 0.3 * np.cos(2.0 * turn)])
     stress = RNG.normal(size=(400, 6, 3)) * RNG.uniform(0.05, 1.0, size=(400, 1, 1))
     layers = Layers(normal=(1.0, 2.0, -0.5), across=12.0, between=5.0)
-    found = largest_stress(ModeMeasures.of(stress, layers), combination, brittle=False, layers=layers)
+    found = largest(of_stress(stress, brittle=False, layers=layers), combination)
     every = layers.stress(np.moveaxis(stress @ combination, 1, -1))
     assert found.value == pytest.approx(every.max(axis=0))
     assert np.array_equal(found.node, every.argmax(axis=0))

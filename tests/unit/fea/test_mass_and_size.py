@@ -14,9 +14,8 @@ from told import render, result_record, tables
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import SIZES, Quantity, Verdict
 from alula.fea.findings.of_check import with_findings
-from alula.fea.motion.envelope_outcomes import FOLLOWED
 from alula.fea.study.numbers import of_check, of_motion
-from alula.fea.whole.outcomes import unloaded_outcomes, whole_numbers
+from alula.fea.whole.outcomes import KINDS, unloaded_outcomes, whole_numbers
 from alula.fea.whole.size import size_band, size_limits
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
@@ -368,4 +367,4 @@ def test_a_study_and_an_envelope_judge_mass_and_size(heavy):
     verdict, numbers = of_motion(solve_case_motion(heavy.case), weighs=False)
     assert verdict is Verdict.FAIL
     assert {number.quantity for number in numbers if number.check} >= kept.keys()
-    assert {MassCheck, SizeCheck} <= set(FOLLOWED)
+    assert {MassCheck, SizeCheck} <= set(KINDS)

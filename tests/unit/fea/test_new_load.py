@@ -55,7 +55,9 @@ def test_a_new_kind_of_load_acts_in_checks_and_envelopes(mesh, monkeypatch) -> N
         pressed = (nodal - plain)[eye, 2].mean()
         assert pressed == pytest.approx(-FORCE / 25.0, rel=0.15)  # on the square eye of 5 mm, with its hole
         [curve] = [c for c in motion.curves["turn"] if (c.span, c.transfer) == (case.span, "bore-shear")]
-        combined = np.einsum("nim,m->ni", motion.solved.stress, motion.solved.combination[:, curve.first + pose])
+        combined = np.einsum(
+            "nim,m->ni", motion.measure.solved.stress, motion.measure.solved.combination[:, curve.first + pose]
+        )
         assert np.abs(combined - nodal).max() < 2e-2 * np.abs(nodal).max()
 
 

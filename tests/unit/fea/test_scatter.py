@@ -12,7 +12,6 @@ from edited_cases import edited
 from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
-from alula.fea.buckling.linkage import linkage_outcomes
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
@@ -20,6 +19,7 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, strength_scatt
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Verdict
 from alula.fea.doubts import load_growth
+from alula.fea.judging.linkage import linkage_outcomes
 from alula.fea.links.fidelity import decided_by_hand, hand_bands
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.envelope_outcomes import envelope_outcomes

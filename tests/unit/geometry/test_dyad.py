@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from alula.geometry.linkage.dyad import close_dyad, triangle_angle, wrap
+from alula.geometry.mechanisms.dyad import close_dyad, triangle_angle, wrap
 
 
 def test_wrap_takes_minus_pi_to_pi():

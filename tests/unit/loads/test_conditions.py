@@ -12,7 +12,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import compliance_scatter, strength_scatter
 from alula.fea.common.verdict import Verdict
-from alula.fea.outcomes.judge import outcomes
+from alula.fea.judging.judge import outcomes
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.material import library
 from alula.geometry.materials.temperature import factor_at

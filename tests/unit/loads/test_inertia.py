@@ -11,11 +11,12 @@ from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import check_beam
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.motion import solve_motion
+from alula.loads.acting.weight import inertia_loads
 from alula.loads.case.case_file import read_case
 from alula.loads.records.applied import PartMass
 from alula.loads.records.carried import CarriedBody, CarriedSpread, mass_of
 from alula.loads.records.load_case import gravity
-from alula.loads.states.actions import acting_loads, inertia_loads, placed, stated_loads
+from alula.loads.states.actions import acting_loads, placed, stated_loads
 from alula.loads.states.masses import laden_masses, together
 from alula.loads.statics.statics import solve_statics
 

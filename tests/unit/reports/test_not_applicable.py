@@ -10,10 +10,10 @@ from html_pages import Page
 from rich.console import Console
 from told import print_result, render
 
-from alula.fea.buckling.linkage import NO_EQUILIBRIUM
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, by_nearness, deciding, overall
+from alula.fea.judging.linkage import NO_EQUILIBRIUM
 from alula.fea.outcomes.unloaded import undecided
 from alula.fea.sizing.changes import changes
 from alula.fea.study.margin import least_margin, nearest

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from alula.fea.asked.asked import asked_of, cards_of
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import CheckOutcome, Quantity
@@ -90,14 +91,10 @@ def require_stiffness(case: Case) -> None:
 
 def _strength_unknown(case: Case, outcome: CheckOutcome) -> str:
     """Say why no strength is known for an outcome; "" where one is, and of pins whose card has no table (a caveat)."""
-    if outcome.subject.kind == "link":
-        names = [case.part_of(outcome.subject.name).material]
-    elif isinstance(case.all_checks[outcome.name], PinCheck):
-        pin = case.joints[outcome.subject.name].pin_material
-        names = [pin] if case.all_materials[pin].temperature_factors else []
-    else:  # bearing on eyes
-        links = case.joints[outcome.subject.name].links
-        names = [case.part_of(link).material for link in links if link in case.checked_links]
+    check = case.all_checks.get(outcome.name)
+    names = cards_of(case, check, outcome.subject)
+    if isinstance(check, PinCheck) and not case.all_materials[names[0]].temperature_factors:
+        return ""
     return next(filter(None, (strength_unknown(case.all_materials[name], case.conditions) for name in names)), "")
 
 
@@ -133,8 +130,7 @@ def temperature_caveats(case: Case) -> Iterator[Caveat]:
     if stated is not None and not ROOM[0] <= stated <= ROOM[1]:
         why = reason("sizes_as_stated", temperature=stated)
         yield Caveat(topic=Topic.TEMPERATURE, what=reason("thermal_expansion"), why=why)
-    asked = [check.joints or case.pinned_joints for check in case.all_checks.values() if isinstance(check, PinCheck)]
-    used = dict.fromkeys(case.joints[joint].pin_material for joints in asked for joint in joints)
+    used = dict.fromkeys(case.joints[joint].pin_material for joint in asked_of(case, PinCheck))
     left = [
         name
         for name in used

@@ -11,15 +11,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.asked.asked import Asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
-from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.common.verdict import CheckOutcome
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
 from alula.loads.records.bearing import bearing_stress
-from alula.loads.records.check_spec import BearingCheck
 
 Real = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], loa
         )
     factors, pressed = {}, [pressing(case, joint, wrench) for wrench in wrenches]
     # A pin in a slot shares its hole in the second link with others: that slot's force is not all that bears there.
-    for link in record.links[:1] if record.type == "pin-in-slot" else record.links:
+    for link in (record.slotted,) if record.slotted else record.links:
         if link in case.checked_links:
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable
@@ -99,13 +99,7 @@ def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], loa
 
 
 def bearing_outcome(
-    case: Case,
-    load_case: str,
-    name: str,
-    check: BearingCheck,
-    joint: str,
-    wrenches: Sequence[Real],
-    growth: Scatter | None = None,
+    case: Case, load_case: str, one: Asked, wrenches: Sequence[Real], growth: Scatter | None = None
 ) -> CheckOutcome:
     """Return the outcome of one joint: that of its softer or thinner eye.
 
@@ -114,10 +108,8 @@ def bearing_outcome(
     case : Case
     load_case : str
         Its name.
-    name : str
-        Of the check.
-    check : BearingCheck
-    joint : str
+    one : Asked
+        Of its pin.
     wrenches : sequence of ndarray, shape (6,)
         As of ``weakest_eye``.
     growth : Scatter, optional
@@ -133,6 +125,6 @@ def bearing_outcome(
         For a joint without pin diameter.
     """
     load = load_scatter(case, load_case).times(growth or Scatter())
-    eye, factor = weakest_eye(case, name, joint, wrenches, load)
-    found = CheckOutcome.of(name, Subject.pin(joint), load_case, Quantity.SAFETY_FACTOR, factor, check.limit)
+    eye, factor = weakest_eye(case, one.name, one.subject.name, wrenches, load)
+    found = one.outcome(load_case, factor)
     return found.because(reason("bearing_on_eye", link=eye, why=found.reason))

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from alula.fea.asked.asked import asked_of
 from alula.fea.common.reason import reason
 from alula.geometry.materials.material import Material
 from alula.geometry.materials.plausible import is_plastic
@@ -25,8 +26,7 @@ def creep_caveats(case: Case) -> Iterator[Caveat]:
     creeping = [x for x in case.checked_links if _is_plastic(case.part_of(x).material, case.material_of(x))]
     stays = any(one.speed == 0.0 for one in case.load_cases.values())
     if case.conditions.duration is not None:
-        checks = [check for check in case.all_checks.values() if isinstance(check, SustainedCheck)]
-        judged = {link for check in checks for link in check.links or case.checked_links}
+        judged = asked_of(case, SustainedCheck)
         if left := [link for link in creeping if link not in judged]:
             yield Caveat(topic=Topic.CREEP, what=reason("creep_of", links=left), why=reason("no_check"))
     elif creeping and stays:

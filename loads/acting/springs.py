@@ -1,11 +1,11 @@
-"""Springs, tendons and stops as a user states them."""
+"""Springs and tendons as a user states them, and what they do."""
 
-from typing import Annotated, Any, NamedTuple, TypeVar
+from collections.abc import Mapping
+from typing import Annotated, Any
 
-from pydantic import Discriminator, Field, PlainValidator, Tag, WithJsonSchema, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Discriminator, Field, Tag, model_validator
 
-from alula.geometry.base.model import CaseModel, Name, refusal
+from alula.geometry.base.model import CaseModel, Name, one_of, refusal
 from alula.geometry.base.units import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -15,23 +15,13 @@ from alula.geometry.base.units import (
     Moment,
     Stiffness,
     TorsionalStiffness,
-    parse,
 )
-from alula.geometry.linkage.coordinate import Measure
-
-Record = TypeVar("Record", bound=CaseModel)
-
-
-class Attachment(CaseModel):
-    """A point of a link, moving or not, at which a spring or a tendon is fastened or led over."""
-
-    link: Name
-    """The link."""
-    at: Name
-    """The point of that link."""
+from alula.geometry.linkage.placement import Placement
+from alula.loads.acting import sizes
+from alula.loads.acting.sprung import Attachment, Law, Sprung, SprungRecord
 
 
-class LineSpring(CaseModel):
+class LineSpring(SprungRecord):
     """A straight spring between points of two links: it pulls with stiffness times (length - free length)."""
 
     between: tuple[Attachment, Attachment]
@@ -47,10 +37,28 @@ class LineSpring(CaseModel):
     def _fits(self) -> "LineSpring":
         if self.between[0].link == self.between[1].link:
             raise refusal(f"both of its ends are on link '{self.between[0].link}'; fasten one to another link")
-        return _one_of(self, "free_length", "preload")
+        return one_of(self, "free_length", "preload")
+
+    @property
+    def fastened(self) -> Mapping[str, Attachment]:
+        """Entry -> point of a link at which it is fastened."""
+        return {f"between.{i}": one for i, one in enumerate(self.between)}
+
+    def acting(self, name: str, stated: Placement) -> Sprung:
+        """As ``SprungRecord.acting``."""
+        along = self.route()
+        if self.preload is not None:
+            law = Law(size=float(along.of(stated)), effort=self.preload, stiffness=self.stiffness)
+        else:
+            law = Law(size=self.free_length or 0.0, stiffness=self.stiffness)
+        return Sprung(name=name, along=along, law=law)
+
+    def standing(self, effort: float) -> "LineSpring":
+        """As ``SprungRecord.standing``: with a preload."""
+        return self.model_copy(update={"free_length": None, "preload": effort})
 
 
-class TurnSpring(CaseModel):
+class TurnSpring(SprungRecord):
     """A spring about a revolute joint, between its two links.
 
     The angle is that of the joint's second link less that of its first, counter-clockwise positive. The spring turns
@@ -70,10 +78,28 @@ class TurnSpring(CaseModel):
 
     @model_validator(mode="after")
     def _fits(self) -> "TurnSpring":
-        return _one_of(self, "free_angle", "preload")
+        return one_of(self, "free_angle", "preload")
+
+    @property
+    def hinge(self) -> str:
+        """The joint about which it turns."""
+        return self.joint
+
+    def acting(self, name: str, stated: Placement) -> Sprung:
+        """As ``SprungRecord.acting``."""
+        along = sizes.Angle(self.joint, stated, self.free_angle)
+        if self.preload is not None:
+            law = Law(size=along.at_stated, effort=-self.preload, stiffness=self.stiffness)
+        else:
+            law = Law(size=self.free_angle or 0.0, stiffness=self.stiffness)
+        return Sprung(name=name, along=along, law=law)
+
+    def standing(self, effort: float) -> "TurnSpring":
+        """As ``SprungRecord.standing``: with a preload."""
+        return self.model_copy(update={"free_angle": None, "preload": effort})
 
 
-class Tendon(CaseModel):
+class Tendon(SprungRecord):
     """A cord without mass or friction through points of links, with the same force all along; it only pulls."""
 
     through: Annotated[tuple[Attachment, ...], Field(min_length=2, max_length=50)]
@@ -94,82 +120,15 @@ class Tendon(CaseModel):
             raise refusal("it needs either a tension, or a stiffness and a free_length; state one of the two")
         return self
 
-
-class Limit(NamedTuple):
-    """Where a stop is.
-
-    Attributes
-    ----------
-    value : float
-        Angle [rad] or travel [mm].
-    measure : Measure
-        Which of the two it is.
-    """
-
-    value: float
-    measure: Measure
-
-
-def _limit(stated: object) -> Limit:
-    try:
-        return Limit(parse(stated, "angle"), Measure.ANGLE)
-    except PydanticCustomError as wrong:
-        try:
-            return Limit(parse(stated, "length"), Measure.TRAVEL)
-        except PydanticCustomError:
-            raise refusal(
-                f"{wrong.message()} for the angle of a revolute joint, or a length such as "
-                '"10 mm" for the travel of a slider'
-            ) from None
-
-
-AngleOrTravel = Annotated[
-    Limit,
-    PlainValidator(_limit),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "string", "format": "angle", "examples": ["30 deg"]},
-                {"type": "string", "format": "length", "examples": ["5 mm"]},
-            ]
-        }
-    ),
-]
-
-
-class Stop(CaseModel):
-    """A stop in a joint, which pushes its two links apart where they reach it, and does nothing elsewhere."""
-
-    joint: Name
-    """A revolute joint or a slider."""
-    at_least: AngleOrTravel | None = None
-    """The least angle of a revolute joint's second link to its first, counter-clockwise positive, or the least travel
-    of a slider. Either this or at_most."""
-    at_most: AngleOrTravel | None = None
-    """The greatest angle, or the greatest travel."""
-
     @property
-    def limit(self) -> Limit:
-        """Where it is."""
-        found = self.at_least or self.at_most
-        assert found is not None  # the validator sees to it
-        return found
+    def fastened(self) -> Mapping[str, Attachment]:
+        """Entry -> point of a link at which it is fastened or led over."""
+        return {f"through.{i}": one for i, one in enumerate(self.through)}
 
-    @property
-    def sense(self) -> float:
-        """1 where the joint may go on to larger values, -1 to smaller ones; so it pushes the second link."""
-        return 1.0 if self.at_least is not None else -1.0
-
-    @model_validator(mode="after")
-    def _fits(self) -> "Stop":
-        return _one_of(self, "at_least", "at_most")
-
-
-def _one_of(record: Record, one: str, other: str) -> Record:
-    """Require that exactly one of two entries is stated."""
-    if (getattr(record, one) is None) == (getattr(record, other) is None):
-        raise refusal(f"it needs either {one} or {other}; state one of the two, and not both")
-    return record
+    def acting(self, name: str, stated: Placement) -> Sprung:
+        """As ``SprungRecord.acting``."""
+        law = Law(size=self.free_length or 0.0, effort=self.tension or 0.0, stiffness=self.stiffness or 0.0, pulls=True)
+        return Sprung(name=name, kind="tendon", along=self.route(), law=law)
 
 
 def _kind(stated: Any) -> str:

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from alula.fea.buckling.buckling import NAME, factor_band, judgement
+from alula.fea.buckling.buckling import asked_of, factor_band, judgement
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
+from alula.fea.common.verdict import CheckOutcome, Subject
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.buckling_factor import MOST
@@ -72,8 +72,7 @@ def undecided_buckling(load_case: str, link: str, why: Reason | str) -> CheckOut
     -------
     CheckOutcome
     """
-    band = Band.unknown(why)
-    return CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, why).because(why)
+    return asked_of(Subject.link(link)).outcome(load_case, Band.unknown(why)).because(why)
 
 
 def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> CheckOutcome:
@@ -87,7 +86,7 @@ def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> Che
     mesh = Source(kind=SourceKind.DISCRETISATION, detail=reason("up_to_share_of_factor", share=found.error))
     ends = found.least * max(1.0 - found.error, 0.0), found.most * (1.0 + found.error)
     band = factor_band(case, load_case, link, min(found.value, MOST), ends, mesh)
-    outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, said)
+    outcome = asked_of(Subject.link(link)).outcome(load_case, band, said)
     return outcome.because(reason("buckling_judged", found=said, judgement=judgement(outcome, None)))
 
 

@@ -10,13 +10,13 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from alula.fea.doubts.load_growth import Growths
+from alula.fea.judging.layers import in_any_direction
+from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
 from alula.fea.links.fidelity import DecidedLink, Decision, HandBands
 from alula.fea.links.link_by_hand import LinkByHand
 from alula.fea.links.solid_result import solid_result
-from alula.fea.outcomes.layers import in_any_direction
 from alula.fea.outcomes.limits import displacement_limits, layer_limits, stress_limits
 from alula.fea.outcomes.result import HandResult, LinkResult, SolidResult
-from alula.fea.outcomes.solid_buckling import solid_buckling, solid_growth
 from alula.fea.refine.beyond_meshes import Ends, OpenRanges
 from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.superposition.solid_shares import Shares

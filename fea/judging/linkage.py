@@ -5,21 +5,21 @@ Sway of the whole linkage is the lowest factor on all loads at which its linear 
 snaps through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on the
 deformed shape (``alula.fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
 only outcome: the share of the load that is held, which is the limit-load factor up to 1, with its band. A link that is
-no beam is a strip in the frame, and may buckle by itself before it does (``alula.fea.outcomes.solid_buckling``): then
+no beam is a strip in the frame, and may buckle by itself before it does (``alula.fea.judging.solid_buckling``): then
 the lesser factor counts.
 """
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from alula.fea.asked.asked import Asked
 from alula.fea.beam.theory import BeamCheck
-from alula.fea.buckling.buckling import NAME as BUCKLING
-from alula.fea.buckling.buckling import beyond_strength
+from alula.fea.buckling.buckling import asked_of, beyond_strength
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from alula.fea.nonlinear.stability import SNAP, growth
 
@@ -106,7 +106,7 @@ def by_linear_theory(
         high=factor / slack.low,
         sources=(*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail=reason("linear_theory_too_high"))),
     )
-    found = CheckOutcome.of(BUCKLING, LINKAGE, load_case, Quantity.BUCKLING_FACTOR, band, 1.0, how)
+    found = asked_of(LINKAGE).outcome(load_case, band, how)
     if found.verdict is Verdict.FAIL:
         return found.because(reason("so_linkage_gives_way", how=how))
     if found.verdict is Verdict.UNDECIDED:
@@ -141,7 +141,7 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
     if outcome.subject == LINKAGE:
         return outcome.quantity is Quantity.LAYER_GAP
-    return outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
+    return outcome.quantity.origin == "loads"
 
 
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
@@ -153,7 +153,8 @@ def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
 def _followed(load_case: str, moved: LargeDisplacement, beyond: Reason | None) -> CheckOutcome:
     """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
     share = moved.held_share
-    found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, share, 1.0, share.without)
+    one = Asked(name=NAME, subject=LINKAGE, quantity=Quantity.LOAD_SHARE, limit=1.0)
+    found = one.outcome(load_case, share, share.without)
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
     return found.because(
         together(

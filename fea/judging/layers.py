@@ -6,14 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from alula.fea.asked.asked import Asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.limits import layer_limit
 from alula.fea.outcomes.result import LinkResult
+from alula.fea.refine.discretisation import Discretisation
 from alula.fea.solid.layers import in_worst_direction
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
@@ -37,22 +38,86 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
     CheckOutcome
     """
     for link, result in links.items():
-        limit = layer_limit(case, link)
-        if limit is None:
+        one = asked_of_layers(case, link)
+        if one is None:
             continue
-
-        def outcome(value: Band, link: str = link, limit: float = limit) -> CheckOutcome:
-            return CheckOutcome.of(CHECK, Subject.link(link), load_case, Quantity.LAYERS, value, limit)
-
         material, found = case.material_of(link), result.layers
         if found is not None:
-            yield _judged(outcome(found.safety_factor), found, material.title)
+            yield layers_judged(case, load_case, one, found.safety_factor, found.peak, found.discretisation)
         elif result.beam.idle:
-            yield outcome(Band.exact(np.inf)).because(reason("nothing_acts_on_link"))
+            yield one.outcome(load_case, Band.exact(np.inf), reason("nothing_acts_on_link"))
         elif material.strength_across_layers is None:
-            yield outcome(Band.unknown()).because(no_strength(material.title))
+            yield one.outcome(load_case, Band.unknown(), no_strength(material.title))
         else:
-            yield _bounded(outcome(_by_hand(material, result)))
+            yield _bounded(one.outcome(load_case, _by_hand(material, result)))
+
+
+def asked_of_layers(case: Case, link: str) -> Asked | None:
+    """Return what is asked of a link's layers; None where nothing is.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    Asked or None
+    """
+    limit = layer_limit(case, link)
+    if limit is None:
+        return None
+    return Asked(name=CHECK, subject=Subject.link(link), quantity=Quantity.LAYERS, limit=limit)
+
+
+def layers_judged(
+    case: Case, load_case: str, one: Asked, value: Band, where: Reason, meshes: Discretisation | None = None
+) -> CheckOutcome:
+    """Return the outcome of a link's layers whose safety factor was sought.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    one : Asked
+        Of the layers.
+    value : Band
+        Of a pose, or the least of a motion.
+    where : Reason
+        Where the peak is.
+    meshes : Discretisation, optional
+        What the meshes of the link leave open, where these were refined for its layers.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    outcome, material = with_meshes(one.outcome(load_case, value), meshes), case.material_of(one.subject.name)
+    if value.unknowable:
+        return outcome
+    outcome = outcome.because(together(outcome.reason, where))
+    return without_shear(outcome, material.title) if material.shear_strength_between_layers is None else outcome
+
+
+def with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckOutcome:
+    """Return an outcome on a link with what its meshes have to do with it where it is open.
+
+    Parameters
+    ----------
+    outcome : CheckOutcome
+    meshes : Discretisation or None
+        None where no meshes gave the number.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    if meshes is not None and outcome.value.unknowable:
+        return outcome.because(meshes.reason)
+    if meshes is not None and outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
+        return outcome.because(reason("open_for_meshes", found=outcome.reason, why=meshes.stopped))
+    return outcome
 
 
 def may_lie_in_any_direction(case: Case, link: str) -> bool:
@@ -149,17 +214,6 @@ def unless_built_otherwise(case: Case, link: str, outcome: CheckOutcome) -> Chec
     else:
         why = reason("no_build_direction", part=part)
     return outcome.because(together(outcome.reason, why))
-
-
-def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutcome:
-    meshes = found.discretisation
-    if outcome.value.unknowable:
-        return outcome.because(meshes.reason)
-    why = outcome.reason
-    if outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
-        why = reason("open_for_meshes", found=why, why=meshes.stopped)
-    outcome = outcome.because(together(why, found.peak))
-    return outcome if found.layers.between is not None else without_shear(outcome, title)
 
 
 def no_strength(title: str) -> Reason:

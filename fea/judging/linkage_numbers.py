@@ -5,10 +5,11 @@ from functools import partial
 
 import numpy as np
 
+from alula.fea.asked.asked import Asked, asked
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together, under_load_cases
-from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from alula.fea.common.verdict import CheckOutcome
 from alula.fea.frame.case_statics import CaseStatics
 from alula.fea.frame.joint_forces import JointForces
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -68,21 +69,16 @@ def limit_load_outcomes(case: Case, load_case: str, linkage: LinkageNumbers) -> 
     ------
     CheckOutcome
     """
-    for name, check in case.checks.items():
-        if isinstance(check, LimitLoadCheck):
-            yield limit_load_outcome(name, check, load_case, linkage.limit_load)
+    for one in asked(case, LimitLoadCheck):
+        yield limit_load_outcome(one, load_case, linkage.limit_load)
 
 
-def limit_load_outcome(
-    name: str, check: LimitLoadCheck, load_case: str, factor: Band, where: Reason | None = None
-) -> CheckOutcome:
+def limit_load_outcome(one: Asked, load_case: str, factor: Band, where: Reason | None = None) -> CheckOutcome:
     """Return the outcome of a check of the limit load.
 
     Parameters
     ----------
-    name : str
-        Of the check.
-    check : LimitLoadCheck
+    one : Asked
     load_case : str
         Its name.
     factor : Band
@@ -94,7 +90,7 @@ def limit_load_outcome(
     -------
     CheckOutcome
     """
-    found = CheckOutcome.of(name, LINKAGE, load_case, Quantity.LIMIT_LOAD, factor, check.minimum)
+    found = one.outcome(load_case, factor)
     return found.because(together(factor.without if factor.unknowable else found.reason, where))
 
 
