@@ -40,5 +40,7 @@ def edited(name: str, entries: Sequence[str], *, bare: bool = False) -> Case:
 
 def tight_pins(case: Case) -> Case:
     """Return a case whose pins tilt in none of their holes, so that they share couples between layers in one way."""
-    tight = {n: {"tight_in": joint.links if joint.type == "revolute" else ()} for n, joint in case.joints.items()}
-    return case.model_copy(update={"joints": {n: j.model_copy(update=tight[n]) for n, j in case.joints.items()}})
+    stated = {"fit": None, "clearance": None}
+    tight = {n: {"tight_in": joint.links, **stated} for n, joint in case.joints.items() if joint.type == "revolute"}
+    joints = {n: j.model_copy(update=tight.get(n, {"tight_in": ()})) for n, j in case.joints.items()}
+    return case.model_copy(update={"joints": joints})
