@@ -24,9 +24,9 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
 from alula.fea.doubts.force_doubt import measures, sharing_answers, stress_by_hand
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
-from alula.fea.frame.thrust import thrusts
 from alula.fea.pins.states import PinStates, unstated
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
+from alula.fea.standing.thrust import thrusts
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 

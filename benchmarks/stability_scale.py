@@ -7,10 +7,10 @@ import numpy as np
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.links.solid_result import link_task
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field, von_mises
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.loads.case.case_file import validate

@@ -28,7 +28,6 @@ from record import save  # noqa: E402
 
 from alula.fea.calculix import program as calculix  # noqa: E402
 from alula.fea.calculix.second_opinion import write_model  # noqa: E402
-from alula.fea.frame.case_statics import solve_case_statics  # noqa: E402
 from alula.fea.links.link_by_hand import cut_link  # noqa: E402
 from alula.fea.links.solid_result import link_task  # noqa: E402
 from alula.fea.nonlinear.large_displacement import examine  # noqa: E402
@@ -36,6 +35,7 @@ from alula.fea.refine.discretisation import judged  # noqa: E402
 from alula.fea.refine.link_series import STRESS  # noqa: E402
 from alula.fea.refine.link_task import LinkTask  # noqa: E402
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links  # noqa: E402
+from alula.fea.standing.case_statics import solve_case_statics  # noqa: E402
 from alula.geometry.base.errors import CannotRunError  # noqa: E402
 from alula.loads.case.case_file import read_case  # noqa: E402
 

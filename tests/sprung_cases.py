@@ -3,7 +3,7 @@
 import tomllib
 from typing import Any
 
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.states.standing import Standing

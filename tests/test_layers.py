@@ -19,7 +19,8 @@ LAYERS = {
     ),
     "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
     "fea": (
-        *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
+        *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
+        *("standing", "nonlinear", "buckling"),
         *("refine", "superposition", "vibration", "outcomes", "links", "doubts", "judging", "whole"),
         *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
@@ -30,8 +31,8 @@ LAYERS = {
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
 JOINT_FORCE = (
-    "alula.fea.frame.joint_forces",  # of a pose, by equilibrium or by a frame
-    "alula.fea.frame.case_statics",  # of every load case
+    "alula.fea.standing.joint_forces",  # of a pose, by equilibrium or by a frame
+    "alula.fea.standing.case_statics",  # of every load case
     "alula.fea.nonlinear.large_displacement",  # on the deformed shape
     "alula.fea.links.link_by_hand",  # each link cut free, with its stress by beams
     "alula.fea.links.fidelity",  # or by its solid

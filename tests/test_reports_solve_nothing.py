@@ -15,7 +15,7 @@ WORK = {
     "check_case": "fea.check.run",
     "least_gap": "geometry.clearance.least",
     "play_at": "loads.states.play",
-    "joint_forces": "fea.frame.joint_forces",
+    "joint_forces": "fea.standing.joint_forces",
     "examine": "fea.nonlinear.large_displacement",
     "mass_properties": "geometry.meshing.mesh",
 }

@@ -16,10 +16,10 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.source import PIN_PRESSURE, distinct
 from alula.fea.frame.displacement_band import softness, works_of_links
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link
 from alula.fea.outcomes.point_shares import MESHES, beam_work
 from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.bodies.body import no_beam
 from alula.loads.case.case import Case
 from alula.loads.records.bearing import WIDE

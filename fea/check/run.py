@@ -29,8 +29,6 @@ from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
 from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
-from alula.fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
@@ -51,6 +49,8 @@ from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.refinement import START, Effort, RefinedSolid
 from alula.fea.solid.solution import SolidSolution, require_compressible
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics, with_ends
+from alula.fea.standing.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.fea.superposition.solid_shares import Shares, solid_shares
 from alula.fea.whole.layer_gaps import layer_gap_outcomes

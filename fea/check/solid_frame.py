@@ -27,11 +27,8 @@ from alula.fea.common.source import PIN_PRESSURE, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.elements.space import displacement_space
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.case_statics import CaseStatics
 from alula.fea.frame.condensed import LinkFlexibility
-from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.displacement_band import flexibility_ranges
-from alula.fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces, on_pins
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -40,6 +37,9 @@ from alula.fea.outcomes.point_shares import condensable
 from alula.fea.refine.error_estimate import estimate_error
 from alula.fea.solid.condensation import CondensedSolid, Give, condense
 from alula.fea.solid.stress import stress_field
+from alula.fea.standing.case_statics import CaseStatics
+from alula.fea.standing.deviation import Deviation
+from alula.fea.standing.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces, on_pins
 from alula.geometry.meshing.mesh import MeshSettings, mesh_bodies
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case

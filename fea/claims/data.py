@@ -23,9 +23,9 @@ import numpy as np
 
 from alula.fea.check.run import check_case, effort_of, hand_calculations
 from alula.fea.common.reason import reason
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.mechanisms.flapping import FlappingWing
 from alula.geometry.mechanisms.fourbar import FourBar

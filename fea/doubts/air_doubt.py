@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.source import SourceKind, air_source
 from alula.fea.doubts.other_case import Doubt
-from alula.fea.frame.case_statics import CaseStatics, alone, solve_case_statics
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.standing.case_statics import CaseStatics, alone, solve_case_statics
 from alula.loads.states.flapping import in_air
 
 

@@ -19,9 +19,9 @@ from alula.fea.common.plates import plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import LEAST, Growths
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
 from alula.fea.links.second_order import on_tilting_pins
+from alula.fea.standing.joint_forces import JointForces
 from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule, widest
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart

@@ -4,7 +4,7 @@ Statics, frame and the hand calculation of every link are done again at the ends
 stated, these are shares by which bands of all models are widened.
 
 Two degrees before a linkage locks itself joint forces double where a coefficient grows by a quarter: no
-slope tells. The ends are the least friction that may be, and the largest (``alula.fea.frame.rubbing``); the
+slope tells. The ends are the least friction that may be, and the largest (``alula.fea.standing.rubbing``); the
 coefficients of all joints are at the same end together. Where the linkage locks itself, no band of joint forces has an
 end.
 """
@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.source import SourceKind, friction_source
 from alula.fea.doubts.other_case import Doubt
-from alula.fea.frame.case_statics import CaseStatics, at_friction_ends
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.standing.case_statics import CaseStatics, at_friction_ends
 from alula.loads.case.joint_rules import friction_ranges
 
 

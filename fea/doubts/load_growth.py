@@ -18,10 +18,10 @@ import numpy as np
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.frame.joint_forces import joint_forces
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from alula.fea.nonlinear.stability import growth
+from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case

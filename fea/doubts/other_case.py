@@ -13,11 +13,11 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.doubts.load_growth import LEAST, Growths
-from alula.fea.frame.case_statics import CaseStatics
 from alula.fea.links.fidelity import hand_bands
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement, examine
+from alula.fea.standing.case_statics import CaseStatics
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions

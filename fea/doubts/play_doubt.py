@@ -16,8 +16,8 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
 from alula.fea.doubts.force_doubt import borne, measures, measures_and_column
 from alula.fea.doubts.load_growth import LEAST, Growths
-from alula.fea.frame.joint_forces import JointForces, joint_forces
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
+from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.bodies.body import Body

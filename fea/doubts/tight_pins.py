@@ -13,8 +13,8 @@ from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.force_doubt import sharing_answers, stress_by_hand
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.pins.states import running, unstated
+from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 

@@ -1,4 +1,4 @@
 """All links together as a frame in small displacements: its equations, joint forces, displacement of points.
 
-Hands on ``LinkageFrame`` and ``JointForces``.
+Hands on ``LinkageFrame``.
 """

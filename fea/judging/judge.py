@@ -7,7 +7,6 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.judging.layers import layer_outcomes, unless_built_otherwise, with_meshes
 from alula.fea.judging.linkage import linkage_outcomes
 from alula.fea.judging.solid_buckling import solid_buckling
@@ -16,6 +15,7 @@ from alula.fea.outcomes.pins import PinStress, pin_outcome
 from alula.fea.outcomes.point_displacement import point_outcome
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.fea.refine.discretisation import Discretisation
+from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
     DisplacementCheck,

@@ -10,11 +10,11 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together, under_load_cases
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.frame.case_statics import CaseStatics
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.point_displacement import PointDisplacement
 from alula.fea.outcomes.result import LinkageNumbers, LinkResult
+from alula.fea.standing.case_statics import CaseStatics
+from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import LimitLoadCheck
 

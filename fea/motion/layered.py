@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.doubts.force_doubt import sharing_answers
-from alula.fea.frame.joint_forces import JointForces, joint_forces, solved_frame
 from alula.fea.pins.states import pin_states
+from alula.fea.standing.joint_forces import JointForces, joint_forces, solved_frame
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.ties import first_largest
 from alula.loads.records.applied import Load, chosen

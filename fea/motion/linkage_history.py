@@ -18,7 +18,6 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.play_doubt import shaken
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.displacement_band import compliance_range
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.linear import solve_frame
 from alula.fea.judging.linkage import by_linear_theory
 from alula.fea.judging.linkage_numbers import limit_load_outcome, linkage_numbers
@@ -26,6 +25,7 @@ from alula.fea.motion.layered import forces_at
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
 from alula.fea.nonlinear.on_rims import rim_factors
 from alula.fea.nonlinear.stability import dead_point_factor, linkage_factor
+from alula.fea.standing.joint_forces import JointForces
 from alula.fea.whole.air_range import air_range
 from alula.fea.whole.rubbed_motion import friction_range
 from alula.geometry.base.errors import CannotRunError, CaseError

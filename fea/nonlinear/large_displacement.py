@@ -39,13 +39,13 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.displacement_band import compliance_range
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
 from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
 from alula.fea.nonlinear.softened import followed
 from alula.fea.nonlinear.stability import ON_RIMS, SNAP, dead_point_factor, linkage_factor
+from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case

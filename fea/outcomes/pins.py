@@ -52,7 +52,7 @@ from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.frame.joint_forces import JointForces
+from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import Ring
 from alula.loads.case.case import Case

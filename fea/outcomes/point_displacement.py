@@ -20,15 +20,15 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
-from alula.fea.frame.case_statics import locks_on_tight_pins
 from alula.fea.frame.displacement_band import OneModulus, point_bounds
-from alula.fea.frame.joint_forces import JointForces
 from alula.fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from alula.fea.nonlinear.softened import displaced
 from alula.fea.nonlinear.stability import SNAP, growth
 from alula.fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
 from alula.fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
 from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.standing.case_statics import locks_on_tight_pins
+from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import DisplacementCheck
 from alula.loads.states.play import Play

@@ -12,11 +12,11 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from alula.fea.frame.joint_forces import JointForces, solved_frame
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.fea.solid.solution import LARGEST_POISSON_RATIO
 from alula.fea.solid.virtual_work import Work, virtual_work
+from alula.fea.standing.joint_forces import JointForces, solved_frame
 from alula.geometry.bodies.body import clamped_end
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case

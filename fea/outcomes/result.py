@@ -14,7 +14,6 @@ from alula.fea.common.band import Band
 from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.frame.joint_forces import JointForces, WayToHold
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.opinion import SecondOpinion
@@ -24,6 +23,7 @@ from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.solution import SolidCase, SolidSolution
 from alula.fea.solid.stress import StressField
+from alula.fea.standing.joint_forces import JointForces, WayToHold
 from alula.fea.vibration.over_motion import CaseFrequencies
 from alula.geometry.linkage.motion import Motion
 from alula.geometry.linkage.pose import Pose

@@ -21,7 +21,7 @@ depend on it: measured on a four-bar of PLA and of aluminium, 0.1 and 0.02 of th
 
 
 @dataclass(frozen=True, kw_only=True)
-class Clearance:
+class HoleClearance:
     """What the diametral clearance of one or two holes may be.
 
     Attributes
@@ -38,7 +38,7 @@ class Clearance:
     high: float
 
 
-def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
+def clearances_of(case: Case, frame: LinkageFrame) -> tuple[HoleClearance, ...]:
     """Return the clearances of all holes between layers in which pins may run.
 
     Parameters
@@ -49,7 +49,7 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
 
     Returns
     -------
-    tuple of Clearance
+    tuple of HoleClearance
         Without holes that hold their pin tightly, slots and guides. Where nothing tells how a pin sits in a hole, it
         may be pressed and as loose as ``LOOSE``; the value is a running fit, and a pressed pin in a link, such as the
         ground, whose thickness nothing tells.
@@ -63,15 +63,16 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[Clearance, ...]:
         if sits.shared is not None:
             low, high = sits.shared
             every = tuple((name, hole.link) for hole in sits.holes)
-            found.append(Clearance(holes=every, low=low, value=(low + high) / 2.0, high=high))
+            found.append(HoleClearance(holes=every, low=low, value=(low + high) / 2.0, high=high))
             continue
         for hole in sits.holes:
+            own = ((name, hole.link),)
             if hole.stated:
-                found.append(Clearance(holes=((name, hole.link),), low=hole.low, value=hole.nominal, high=hole.high))
+                found.append(HoleClearance(holes=own, low=hole.low, value=hole.nominal, high=hole.high))
             else:
                 value = hole.nominal if known_hole(case, name, hole.link) else 0.0
                 most = max(LOOSE * pin_size(case, name), hole.high if math.isfinite(hole.high) else 0.0)
-                found.append(Clearance(holes=((name, hole.link),), low=0.0, value=value, high=most))
+                found.append(HoleClearance(holes=own, low=0.0, value=value, high=most))
     return tuple(one for one in found if one.high > 0.0)
 
 
@@ -126,12 +127,12 @@ class Radii:
         Of each hole of each clearance, its number among the h holes.
     count : int
         h
-    clearances : tuple of Clearance
+    clearances : tuple of HoleClearance
     """
 
     numbers: tuple[tuple[int, ...], ...]
     count: int
-    clearances: tuple[Clearance, ...]
+    clearances: tuple[HoleClearance, ...]
 
     @property
     def value(self) -> Real:
@@ -173,12 +174,12 @@ class Radii:
         return np.repeat(radii, 2, axis=1), np.repeat(slope, 2, axis=2)
 
 
-def radii_of(clearances: Sequence[Clearance], order: Sequence[Sequence[HoleName]]) -> Radii:
+def radii_of(clearances: Sequence[HoleClearance], order: Sequence[Sequence[HoleName]]) -> Radii:
     """Return the radii of holes by what is open of their clearances.
 
     Parameters
     ----------
-    clearances : sequence of Clearance
+    clearances : sequence of HoleClearance
     order : sequence of sequence of (str, str)
         The names of every hole: where several joints have one pin, it has several.
 

@@ -33,6 +33,8 @@ PROVEN = 1e-8
 """Gap between the value and its lower bound, over the largest entry of b, that is taken."""
 ROUNDING = 1e-15
 """Least slack that is told from none."""
+IDLE = 1e-9
+"""Share of the force that moving a pin through its disc would take below which a force is none."""
 STEPS = 80
 SHORTER = 0.995
 """Share of the way to the nearest boundary that a step may go."""
@@ -88,7 +90,9 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE) -> InDis
     scale = np.repeat(radii, 2, axis=1)
     A, b = scale[:, :, None] * K * scale[:, None, :], scale * g
     size = np.abs(b).max(axis=1)
-    unit = np.where(size > 0.0, size, 1.0)
+    idle = size <= IDLE * np.abs(A).max(axis=(1, 2))
+    A[idle], b[idle] = 0.0, 0.0
+    unit = np.where(idle, 1.0, size)
     A, b = A / unit[:, None, None], b / unit[:, None]
     w, z = np.zeros_like(b), np.ones((count, discs))
     own = np.arange(count)

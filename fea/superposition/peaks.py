@@ -172,15 +172,45 @@ class TensionMeasures(ModeMeasures):
         return np.asarray(np.abs(self.mean) + 2.0 / 3.0 * ModeMeasures(parts=self.parts).sizes)
 
     def bounds(self, nodes: Nodes, combination: Real) -> Real:
-        """Return the mean stress plus 2/3 of the von Mises stress."""
+        """Return the mean stress plus 2/3 of the von Mises stress.
+
+        Parameters
+        ----------
+        nodes, combination
+            As of ``ModeMeasures``.
+
+        Returns
+        -------
+        ndarray
+        """
         return np.asarray(self.mean[nodes] @ combination + 2.0 / 3.0 * super().bounds(nodes, combination))
 
     def at(self, nodes: Nodes, combination: Real) -> Real:
-        """Return the largest principal stress, to about 1e-8."""
+        """Return the largest principal stress, to about 1e-8.
+
+        Parameters
+        ----------
+        nodes, combination
+            As of ``ModeMeasures``.
+
+        Returns
+        -------
+        ndarray
+        """
         return extreme_principal(_products(self.stress[nodes], combination).swapaxes(1, 2))[0]
 
     def largest(self, nodes: Nodes, combination: Real) -> Peaks:
-        """Return the largest of some nodes, exact where it is."""
+        """Return the largest of some nodes, exact where it is.
+
+        Parameters
+        ----------
+        nodes, combination
+            As of ``ModeMeasures``.
+
+        Returns
+        -------
+        Peaks
+        """
         node = super().largest(nodes, combination).node
         return Peaks(value=principal(np.einsum("nim,mn->ni", self.stress[node], combination))[:, 0], node=node)
 
@@ -189,7 +219,17 @@ class LayerMeasures(ModeMeasures):
     """The stress on layers: the length of shear along them and of tension across them; compression counts as none."""
 
     def at(self, nodes: Nodes, combination: Real) -> Real:
-        """Return the stress on the layers."""
+        """Return the stress on the layers.
+
+        Parameters
+        ----------
+        nodes, combination
+            As of ``ModeMeasures``.
+
+        Returns
+        -------
+        ndarray
+        """
         tension, *shear = np.moveaxis(_products(self.parts[nodes], combination), 1, 0)
         return np.asarray(np.sqrt(np.maximum(tension, 0.0) ** 2 + sum(part**2 for part in shear)))
 

@@ -9,11 +9,11 @@ from alula.fea.check.run import check_case
 from alula.fea.common.clock import Clock
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded_run
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
-from alula.fea.frame.rubbing import presses_of
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.refine.refinement import Effort
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
+from alula.fea.standing.rubbing import presses_of
 from alula.fea.tolerance.numbers import Numbers, SampledCheck, covered
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult, WorstCorner
 from alula.fea.tolerance.sizes import size_ends

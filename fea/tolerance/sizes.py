@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import CheckOutcome, Quantity
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.refine.refinement import Effort
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.tolerance.states import Reach, States
 from alula.fea.tolerance.told import SolvedCheck, Told
 from alula.geometry.base.errors import AlulaError, CannotRunError

@@ -4,8 +4,8 @@ A motor that turns evenly with a flywheel gives the mean of all power, for the f
 what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band. Play
 of pins moves both: each is taken with the drive torque at either end of what play makes of it, at all poses together.
 So does the air on wings that flap: each is taken at either end of the range of C_N, of which the mean is an affine and
-the peak a convex function. And so does friction, at either end of what it may be (``alula.fea.frame.rubbing``). All of
-it is in proportion to the loads of a load case, so that their stated scatter multiplies both ends.
+the peak a convex function. And so does friction, at either end of what it may be (``alula.fea.standing.rubbing``). All
+of it is in proportion to the loads of a load case, so that their stated scatter multiplies both ends.
 """
 
 import math

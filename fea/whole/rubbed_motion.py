@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from alula.fea.frame.joint_forces import joint_forces
-from alula.fea.frame.rubbing import End, at_end, largest, presses_of
+from alula.fea.standing.joint_forces import joint_forces
+from alula.fea.standing.rubbing import End, at_end, largest, presses_of
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import chosen

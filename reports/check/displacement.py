@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from alula.fea.common.verdict import LINKAGE, Quantity, Subject
-from alula.fea.frame.thrust import thrusts
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.solid.buckling_factor import MOST
+from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.pins import pin_parts, pin_record

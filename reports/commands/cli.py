@@ -128,7 +128,7 @@ def statics(
     overrides: options.SetOption = None,
 ) -> None:
     """Solve pose and joint forces only."""
-    from alula.fea.frame.case_statics import solve_case_statics
+    from alula.fea.standing.case_statics import solve_case_statics
     from alula.loads.case.case_file import read_case
     from alula.reports.commands.statics import UNITS, statics_sections
     from alula.reports.renderers.record import as_brief_record

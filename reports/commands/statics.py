@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from alula.fea.frame.case_statics import CaseStatics, with_ends
-from alula.fea.frame.thrust import thrusts
+from alula.fea.standing.case_statics import CaseStatics, with_ends
+from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.statics import Reactions
 from alula.loads.statics.system import System
 from alula.reports.sections.data import data

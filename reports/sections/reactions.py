@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from alula.fea.frame.joint_forces import JointForces
-from alula.fea.frame.thrust import thrusts
+from alula.fea.standing.joint_forces import JointForces
+from alula.fea.standing.thrust import thrusts
 from alula.loads.records.applied import Load
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.rubbing import told_direction

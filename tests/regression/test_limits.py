@@ -13,7 +13,7 @@ from told import as_json
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Verdict
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import LARGEST_FILE, read_case, validate
 from alula.loads.case.case_rules import MOST_RESULTS

@@ -11,8 +11,8 @@ from alula.fea.check.anchor import wrenches_on_ground
 from alula.fea.check.run import check_case
 from alula.fea.elements.quadrature import surface_quadrature
 from alula.fea.elements.space import displacement_space
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.refine.refinement import START
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.geometry.meshing.mesh import mesh_body
 from alula.loads.case.case_file import read_case

@@ -19,9 +19,9 @@ from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import internal_forces
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity, Verdict
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
-from alula.fea.frame.thrust import thrusts
 from alula.fea.outcomes.result import LoadCaseResult
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
+from alula.fea.standing.thrust import thrusts
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
 from alula.reports.sentences import told as in_words

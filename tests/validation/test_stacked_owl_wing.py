@@ -16,10 +16,10 @@ import alula.fea.frame.equations
 import alula.fea.frame.system
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.joint_forces import joint_forces
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.pins.clearances import clearances_of
+from alula.fea.standing.joint_forces import joint_forces
 from alula.loads.case.case import Case
 from alula.loads.states.actions import stated_loads
 

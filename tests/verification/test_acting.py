@@ -8,8 +8,8 @@ import pytest
 from sprung_cases import CROWN, FOUR_BAR, HANG, LEVER, case_of
 from torque_spring import TorqueCase
 
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.frame.spring import FrameSpring
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.placement import vector
 from alula.loads.acting.acting import loads_of

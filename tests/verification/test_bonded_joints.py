@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from alula.fea.check.run import check_case
-from alula.fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces
+from alula.fea.standing.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.actions import acting_loads

@@ -14,12 +14,12 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.doubts.friction_doubt import friction_doubt
 from alula.fea.doubts.play_doubt import _reactions, play_answers
-from alula.fea.frame.case_statics import CaseStatics, at_friction_ends, solve_case_statics
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import examine
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
+from alula.fea.standing.case_statics import CaseStatics, at_friction_ends, solve_case_statics
 from alula.fea.superposition.link_answers import widest
 from alula.fea.superposition.solid_shares import _factors, solid_shares
 from alula.geometry.meshing.mesh import mesh_body

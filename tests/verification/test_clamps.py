@@ -16,11 +16,11 @@ from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.elements.mouth import mouth_motion
 from alula.fea.elements.quadrature import SurfaceQuadrature
-from alula.fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces, solved_frame
 from alula.fea.links.clamp_edge import EDGE, edge_stress
 from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.standing.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces, solved_frame
 from alula.fea.tolerance.analysis import tolerance_case
 from alula.fea.vibration.link_modes import link_modes
 from alula.geometry.base.errors import CannotRunError, CaseError

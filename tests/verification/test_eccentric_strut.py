@@ -10,9 +10,9 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.doubts.force_doubt import measures
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.links.second_order import on_tilting_pins, second_order_loads
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case import Case
 
 WIDE, THICK, LONG, BESIDE = 16.0, 3.0, 100.0, 10.0

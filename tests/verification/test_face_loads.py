@@ -7,9 +7,9 @@ from imported_case import imported_case
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.elements.quadrature import surface_quadrature
 from alula.fea.elements.space import displacement_space
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.tractions.traction import wrench_density
 from alula.geometry.base.errors import CaseError
 from alula.geometry.meshing.mesh import COARSE, mesh_body

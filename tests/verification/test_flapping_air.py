@@ -8,7 +8,7 @@ import pytest
 import slotted_cases
 from edited_cases import edited
 
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.whole.air_range import air_range
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.placement import Placement

@@ -23,13 +23,13 @@ from slotted_cases import (
 )
 
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.joint_forces import PINNED_FRAME, joint_forces
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.model import FrameModel, Guide
 from alula.fea.nonlinear.corotational import solve_large_displacement, subdivide
 from alula.fea.nonlinear.corotational_element import guide_gap
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.standing.joint_forces import PINNED_FRAME, joint_forces
 from alula.geometry.base.errors import CannotRunError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case

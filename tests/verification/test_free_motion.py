@@ -10,8 +10,8 @@ from tilting_pins import LOOSE, TIGHT, checked, four_bar, place_of, rigid_motion
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.frame.joint_forces import solved_frame
 from alula.fea.outcomes.free_motion import FreeMotion, free_motion
+from alula.fea.standing.joint_forces import solved_frame
 from alula.loads.case.case import Case
 from alula.reports.sentences import told
 

@@ -12,10 +12,10 @@ from programs import inside
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.anchor import anchor_loads
 from alula.fea.check.run import check_case
-from alula.fea.frame.case_statics import solve_case_statics
-from alula.fea.frame.rubbing import presses_of
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.nonlinear.large_displacement import examine
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.fea.standing.rubbing import presses_of
 from alula.fea.tolerance.states import Sampler
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.linkage import Link

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from alula.fea.check.run import check_case
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
-from alula.fea.frame.case_statics import solve_case_statics, with_ends
-from alula.fea.frame.joint_forces import JointForces
-from alula.fea.frame.rubbing import at_end, bore_presses
 from alula.fea.motion.loosened import column_growth, joint_growth, otherwise
+from alula.fea.standing.case_statics import solve_case_statics, with_ends
+from alula.fea.standing.joint_forces import JointForces
+from alula.fea.standing.rubbing import at_end, bore_presses
 from alula.fea.whole.motor import motor_outcomes
 from alula.fea.whole.rubbed_motion import rubbed_motion, work_between
 from alula.geometry.base.errors import CaseError
@@ -233,7 +233,7 @@ def test_friction_that_swings_about_what_it_settles_at_is_no_lock(monkeypatch: p
         def pressed(case: Case, found: JointForces, end: str = "stated") -> dict[str, NDArray[np.float64]]:
             return {name: np.array([press(found)]) for name in rubbing_joints(case)}
 
-        monkeypatch.setattr("alula.fea.frame.rubbing.presses_of", pressed)
+        monkeypatch.setattr("alula.fea.standing.rubbing.presses_of", pressed)
         return float(solve_case_statics(case).reactions["push"].drive_torque)
 
     plain, doubled = torque(lambda found: 1.0), torque(lambda found: 2.0)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import slotted_cases
 
-from alula.fea.frame.case_statics import solve_case_statics
-from alula.fea.frame.rubbing import bore_presses, presses_of
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.fea.standing.rubbing import bore_presses, presses_of
 from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.geometry.bodies.features import Ring
 from alula.loads.case.case_file import read_case

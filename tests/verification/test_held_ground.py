@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity, Subject
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.link_history import link_histories
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion

@@ -8,7 +8,7 @@ from tilting_pins import LOOSE, checked, four_bar, rigid_motion
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
-from alula.fea.frame.joint_forces import solved_frame
+from alula.fea.standing.joint_forces import solved_frame
 from alula.fea.whole.layer_gaps import Raised, overlaps
 from alula.loads.states.actions import acting_loads
 from alula.loads.states.clearance import assembly

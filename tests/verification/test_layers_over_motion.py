@@ -5,8 +5,8 @@ import pytest
 from edited_cases import PLANAR, edited
 
 from alula.fea.beam.cut_free import link_loads
-from alula.fea.frame.joint_forces import joint_forces
 from alula.fea.motion.layered import with_couples
+from alula.fea.standing.joint_forces import joint_forces
 from alula.loads.records.applied import chosen
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.dead_point_reach import pose_at

@@ -17,13 +17,13 @@ from vibrating_frames import DENSITY, LENGTH, POISSON, YOUNG, eigenvalues, recta
 
 from alula.fea.common.source import SourceKind
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.frame.displacement_band import Zone
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.model import ALL_DOFS, PIN_DOFS, FrameElement, FrameModel, Support, Tie
 from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.stability import stiffness_parts
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.vibration import flexibility_doubt
 from alula.fea.vibration.linkage_modes import divide, frame_modes
 from alula.fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass, mass_matrix

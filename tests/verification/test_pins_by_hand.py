@@ -21,8 +21,8 @@ from tilting_pins import checked
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
-from alula.fea.frame.case_statics import solve_case_statics
-from alula.fea.frame.joint_forces import JointForces
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
 
 HIGH, SOFT = 10.0, 1000.0

@@ -10,13 +10,13 @@ from tilting_pins import ALUMINIUM, PLA, TIGHT, checked, four_bar, loaded
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import LINKAGE, Quantity
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.nonlinear.corotational import SUBDIVISIONS
 from alula.fea.nonlinear.on_rims import Extended, divided
 from alula.fea.nonlinear.stability import COARSE_SUBDIVISIONS, buckling_factor
 from alula.fea.pins.programme import least_in_discs
 from alula.fea.pins.states import PinStates
 from alula.fea.pins.tangent import tangent_of
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.vibration.linkage_modes import RimModes, divide, linkage_modes, on_rims
 from alula.fea.vibration.mass_matrix import mass_matrix
 from alula.loads.case.case import Case

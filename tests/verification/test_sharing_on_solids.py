@@ -12,13 +12,13 @@ from tilting_pins import PLA, loaded
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.solid_frame import with_solids
 from alula.fea.doubts.force_doubt import measures, outermost, sharing_answers, sharing_doubt
-from alula.fea.frame.case_statics import CaseStatics, solve_case_statics
-from alula.fea.frame.joint_forces import JointForces
-from alula.fea.frame.thrust import thrusts
 from alula.fea.links.solid_result import link_task
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from alula.fea.solid.solution import SolidSolution, solve_solid
 from alula.fea.solid.stress import stress_field
+from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
+from alula.fea.standing.joint_forces import JointForces
+from alula.fea.standing.thrust import thrusts
 from alula.fea.superposition.solid_shares import solid_shares
 from alula.geometry.meshing.mesh import mesh_body
 from alula.loads.case.case import Case

@@ -8,12 +8,12 @@ import pytest
 from scipy.optimize import brentq
 
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.judging.linkage_numbers import left_stops
 from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, State
 from alula.fea.nonlinear.large_displacement import examine
 from alula.fea.nonlinear.stability import linkage_factor
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case_file import validate
 from alula.reports.sentences import told
 

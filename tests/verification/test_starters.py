@@ -12,7 +12,7 @@ from golden import STARTERS
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Verdict
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case_file import read_case
 from alula.loads.statics.statics import Reactions
 

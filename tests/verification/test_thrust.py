@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
 
-from alula.fea.frame.case_statics import solve_case_statics
-from alula.fea.frame.joint_forces import JointForces
-from alula.fea.frame.thrust import thrusts
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.fea.standing.joint_forces import JointForces
+from alula.fea.standing.thrust import thrusts
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.reports.sections.reactions import thrust_texts

@@ -21,7 +21,6 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.linkage_history import linkage_outcomes, over_motion
 from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
@@ -29,6 +28,7 @@ from alula.fea.nonlinear.softened import followed
 from alula.fea.nonlinear.stability import SNAP, growth
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.fea.sizing.changes import _change, changes
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.study.numbers import of_motion
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.motion.link_history import link_histories
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.masses import laden_masses, part_masses

@@ -7,7 +7,7 @@ from importlib.resources import files
 import pytest
 
 from alula.fea.check.run import check_case
-from alula.fea.frame.joint_forces import joint_forces
+from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.actions import acting_loads

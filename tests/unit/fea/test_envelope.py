@@ -25,7 +25,6 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Subject, Verdict
 from alula.fea.elements.space import displacement_space
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.motion import envelope
 from alula.fea.motion import envelope_outcomes as outcomes_over_motion
@@ -39,6 +38,7 @@ from alula.fea.motion.mesh_factors import MeshFactors
 from alula.fea.outcomes.pins import stress_at, stress_of
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.stress import principal, stress_field, von_mises
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.superposition.peaks import deviator, largest, of_stress, signed_bounds
 from alula.fea.superposition.unit_solutions import nodal_stress
 from alula.geometry.base.errors import CannotRunError, CaseError

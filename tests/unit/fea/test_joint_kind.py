@@ -9,7 +9,7 @@ from made_joints import MADE
 from planar_linkages import joint, link
 
 import alula
-from alula.fea.frame.joint_forces import joint_forces
+from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CaseError
 from alula.geometry.joints.joint_kinds import ALL_WAYS, JOINT_KINDS, JointKind, Surface, Way
 from alula.geometry.linkage.linkage import Linkage

@@ -13,12 +13,12 @@ from alula.fea.check.run import check_case
 from alula.fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
 from alula.fea.common.verdict import LINKAGE, Verdict
 from alula.fea.frame.build import build_frame
-from alula.fea.frame.case_statics import solve_case_statics
-from alula.fea.frame.joint_forces import joint_forces
 from alula.fea.nonlinear.corotational import solve_large_displacement
 from alula.fea.nonlinear.deformed_links import balanced, bent, in_slots
 from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, examine, span
 from alula.fea.nonlinear.softened import PATH_SUBDIVISIONS
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.parts.part import Pin
 from alula.loads.case.case_file import read_case

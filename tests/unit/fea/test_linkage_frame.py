@@ -8,9 +8,9 @@ from edited_cases import PLANAR
 
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.condensed import LinkFlexibility
-from alula.fea.frame.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.linkage_frame import out_of_plane
+from alula.fea.standing.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad, shifted

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from benchmarks import draws
 
 

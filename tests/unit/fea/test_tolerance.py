@@ -15,10 +15,10 @@ from sprung_cases import LEVER as LEVER_LET_GO
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
-from alula.fea.frame.case_statics import solve_case_statics
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.tolerance.analysis import _drawn, tolerance_case
 from alula.fea.tolerance.link_response import link_response
 from alula.fea.tolerance.numbers import covered

@@ -5,7 +5,7 @@ import pytest
 from edited_cases import edited
 
 from alula.fea.beam.cut_free import link_loads
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.geometry.parts.part import Pin
 from alula.loads.records.applied import PointLoad

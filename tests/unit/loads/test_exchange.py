@@ -10,7 +10,7 @@ from pathlib import Path
 import programs
 import pytest
 
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.exchange.pmks import read_pmks

@@ -6,7 +6,7 @@ import pytest
 from edited_cases import PLANAR
 from edited_cases import edited as edited_case
 
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_case, read_text

@@ -11,7 +11,7 @@ from imported_case import STEP
 
 from alula.fea.check.run import check_case, effort_of
 from alula.fea.common.verdict import Verdict
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.exchange.part import part_case, part_entries

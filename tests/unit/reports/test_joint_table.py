@@ -10,7 +10,7 @@ from edited_cases import PLANAR
 from told import render
 from typer.testing import CliRunner
 
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case_file import read_case
 from alula.reports.check.statics import weight_sentence
 from alula.reports.sections.reactions import shown_components

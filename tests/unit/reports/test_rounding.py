@@ -10,7 +10,7 @@ from legible import written
 from told import print_result, render
 
 from alula.fea.check.run import check_case
-from alula.fea.frame.case_statics import solve_case_statics
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.study.numbers import of_check
 from alula.loads.case.case_file import validate
 from alula.loads.statics.rounding import size_of, without_rounding

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.source import Source, SourceKind, distinct
-from alula.fea.frame.deviation import Deviation
 from alula.fea.frame.linkage_frame import out_of_plane
+from alula.fea.standing.deviation import Deviation
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load

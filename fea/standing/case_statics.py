@@ -6,8 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from alula.fea.frame.joint_forces import JointForces, joint_forces
-from alula.fea.frame.rubbing import ENDS, End, at_end, presses_of, with_friction
+from alula.fea.standing.joint_forces import JointForces, joint_forces
+from alula.fea.standing.rubbing import ENDS, End, at_end, presses_of, with_friction
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.motion import refuse_slot_ends
 from alula.geometry.linkage.pose import Pose

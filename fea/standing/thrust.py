@@ -4,7 +4,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.common.source import COUPLES, distinct
-from alula.fea.frame.joint_forces import JointForces
+from alula.fea.standing.joint_forces import JointForces
 from alula.loads.statics.statics import Reactions
 
 _ROUNDING = 1e-6

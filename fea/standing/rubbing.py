@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import seat
-from alula.fea.frame.joint_forces import JointForces, joint_forces
+from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import Ring
 from alula.geometry.linkage.pose import Pose
