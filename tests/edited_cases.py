@@ -11,10 +11,10 @@ PLANAR = 'layer_spacing="0 mm"'
 """Entry that puts all layers of a case in one plane: for tests of what has nothing to do with layers."""
 
 
-def edited(name: str, entries: Sequence[str], *, bare: bool = False) -> Case:
+def edited(name: str, entries: Sequence[str], *, bare: bool = False, fits: bool = True) -> Case:
     """Return a case with entries ``path=value`` as if its file had been edited: missing tables are added.
 
-    A bare case has lost what its file says about layers, and about pins in their holes.
+    A bare case has lost what its file says about layers, and about pins in their holes; one without fits the latter.
     """
     data = tomllib.loads(read_text(name)[0])
     if bare:
@@ -22,9 +22,9 @@ def edited(name: str, entries: Sequence[str], *, bare: bool = False) -> Case:
         for link in data["links"].values():
             for key in ("layer", "thickness"):
                 link.pop(key, None)
-        for joint in data["joints"].values():
-            for key in ("fit", "clearance", "tight_in"):
-                joint.pop(key, None)
+    for joint in data["joints"].values() if bare or not fits else ():
+        for key in ("fit", "clearance", "tight_in"):
+            joint.pop(key, None)
     changes = [change for derived in Case.derived(data).values() for change in derived.items()]
     for entry in entries:
         path, _, text = entry.partition("=")

@@ -97,7 +97,7 @@ LAYERED_REFUSED = {
 def test_what_tight_in_contradicts_is_refused(entry):
     entries, message = LAYERED_REFUSED[entry]
     with pytest.raises(CaseError, match=message):
-        stated(*entries, name="owl-wing-static")
+        edited("owl-wing-static", [f"joints.A.{entry}" for entry in entries], fits=False)
 
 
 def test_without_a_diameter_there_is_no_fit_but_a_press():
@@ -170,10 +170,10 @@ def test_play_of_both_holes_is_that_of_their_sum():
 def test_a_press_tells_what_tight_in_tells():
     """In layers, on which way couples are shared; in one plane, where tight_in has no meaning, it may stand as well."""
     wing, pairs = "owl-wing-static", {"A": "AG", "B": "AE"}
-    pressed = edited(wing, [f'joints.{joint}.fit={{{link}="press"}}' for joint, link in pairs.items()])
-    tight = edited(wing, [f'joints.{joint}.tight_in="{link}"' for joint, link in pairs.items()])
+    pressed = edited(wing, [f'joints.{joint}.fit={{{link}="press"}}' for joint, link in pairs.items()], fits=False)
+    tight = edited(wing, [f'joints.{joint}.tight_in="{link}"' for joint, link in pairs.items()], fits=False)
     assert {n: j.tight_in for n, j in pressed.joints.items()} == {n: j.tight_in for n, j in tight.joints.items()}
-    assert edited(wing, [PLANAR, 'joints.A.fit={AG="press"}']).joints["A"].tight_in == ("AG",)
+    assert edited(wing, [PLANAR, 'joints.A.fit={AG="press"}'], fits=False).joints["A"].tight_in == ("AG",)
 
 
 def test_a_running_fit_is_told_as_assumed():
@@ -184,12 +184,12 @@ def test_a_running_fit_is_told_as_assumed():
 
 def test_play_that_is_not_followed_is_told():
     """In a linkage that is let go a fit tells how pins sit, and its play in the plane is left out."""
-    case = edited("spring-pedal", ['joints.O.fit="H8/f7"'])
+    case = edited("spring-pedal", ['joints.O.fit="H8/f7"'], fits=False)
     assert clearances(case) == {}
     [told] = [caveat(one) for one in joint_caveats(case) if one.topic is Topic.PLAY]
     assert told == "play in the plane of pin O (the linkage is let go)"
     with pytest.raises(CaseError, match=r"joints.O.clearance: play of a linkage that is let go is not modelled"):
-        edited("spring-pedal", ['joints.O.clearance="0.1 mm"'])
+        edited("spring-pedal", ['joints.O.clearance="0.1 mm"'], fits=False)
 
 
 def test_bonds_of_the_whole_case_leave_fits_without_meaning():
