@@ -5,6 +5,7 @@ goes in turns with joint forces, the turns of a pose (``alula.fea.frame.linear``
 """
 
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +56,6 @@ class Equations:
     scale : float
         Unit of the displacements.
     matrix : csc_matrix, shape (k, k)
-    factors : SuperLU
     size : int
         Number of natural forces, which come before the displacements.
     natural : ndarray, shape (m, 12, 6)
@@ -69,7 +69,6 @@ class Equations:
 
     def __init__(self, model: FrameModel) -> None:
         from scipy.sparse import bmat, csc_matrix
-        from scipy.sparse.linalg import splu
 
         self.system = FrameSystem(model)
         B, F = self.system.equations()
@@ -77,10 +76,19 @@ class Equations:
         # Displacements in units of the softest element's answer to unit force: no block outgrows the rest.
         self.scale = float(F.diagonal().max())
         self.matrix = csc_matrix(bmat([[-F / self.scale, B], [B.T, None]]))
-        self.factors = splu(self.matrix)
         self.size = B.shape[0]
         deformed = natural_deformations(self.system.lengths)
         self.natural = deformed.swapaxes(-1, -2) * self.system.natural_units[:, None]
+
+    @cached_property
+    def factors(self) -> Any:
+        """Those of the matrix by SuperLU, which do not go into a pickle, as of a result that keeps how pins stand."""
+        from scipy.sparse.linalg import splu
+
+        return splu(self.matrix)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "factors"}
 
     @cached_property
     def condition(self) -> float:

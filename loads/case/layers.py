@@ -107,18 +107,20 @@ def check_layers(case: CoreCase) -> None:
     Raises
     ------
     CaseError
-        As ``heights``; for a pin that is tight in a link that its joint does not have, or where no layers are stated;
+        As ``heights``; for a pin that is tight in a link that its joint does not have, or where no layers are stated (a
+        layer_spacing of 0, which takes stated ones back, leaves it without meaning);
         for a gap that the layers tell already.
     """
     case.linkage  # noqa: B018 - its own rules come first
     layered = case.layered
+    taken_back = case.layer_spacing == 0.0 and any(link.layer is not None for link in case.links.values())
     for name, joint in case.joints.items():
         for link in joint.tight_in:
             if link not in joint.links:
                 raise CaseError(
                     f"joints.{name}.tight_in: '{link}' is no link of this joint; choose one of {', '.join(joint.links)}"
                 )
-        for entry in ("tight_in",) if not layered else ("pin_gap",):
+        for entry in ("pin_gap",) if layered else () if taken_back else ("tight_in",):
             in_fork = layered and outer_link(case, name) is not None  # both links lie in one layer
             if entry in joint.model_fields_set and not in_fork:
                 why = "the layers tell the gap" if layered else "it has a meaning only where links lie in layers"

@@ -195,7 +195,8 @@ def test_the_old_name_of_threads(tmp_path: Path) -> None:
 def test_what_is_advised_bears_the_names_of_the_case(entry: str, value: object, rename: str) -> None:
     """It spoke of a link A where none was called so."""
     text = read_text("four-bar-synthesis")[0]
-    tables = tomllib.loads(text.replace("links.d]", f'links."{rename}"]').replace('["d", ', f'["{rename}", '))
+    text = text.replace("links.d]", f'links."{rename}"]').replace('["d", ', f'["{rename}", ')
+    tables = tomllib.loads(re.sub(r'\bd = "', f'"{rename}" = "', text))  # the fits of its holes
     del tables["layer_spacing"], tables["checks"]
     for link in tables["links"].values():
         del link["layer"]

@@ -10,12 +10,12 @@ from functools import cache
 import numpy as np
 import pytest
 import slotted_cases
+from edited_cases import edited
 
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.rubbing import bore_presses, presses_of
 from alula.fea.whole.rubbed_motion import rubbed_motion
 from alula.geometry.bodies.features import Ring
-from alula.loads.case.case_file import read_case
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.statics import foundation
@@ -181,7 +181,7 @@ def by_own_frame(degrees: float, sense: float, mu: float = PIN, guide: float = G
 def test_slider_crank_in_layers_by_a_frame_of_its_own(degrees: float, rod: float) -> None:
     """Drive torque and what presses in all three bores; by the forces alone the torque was 3.5 % less at 285°."""
     entries = [f'pose.angle="{degrees} deg"', f'pose.near.rod="{rod} deg"', *TIGHT]
-    statics = solve_case_statics(read_case("slider-crank", entries))
+    statics = solve_case_statics(edited("slider-crank", entries, fits=False))
     for name, sense in (("push forward", 1.0), ("push backward", -1.0)):
         torque, ratios = by_own_frame(degrees, sense)
         assert statics.reactions[name].drive_torque == pytest.approx(torque, rel=2e-4)
@@ -192,7 +192,7 @@ def test_slider_crank_in_layers_by_a_frame_of_its_own(degrees: float, rod: float
 
 def test_the_motion_of_the_slider_crank_by_a_frame_of_its_own() -> None:
     """Its greatest drive torque, 1827 N mm where the forces alone made 1766; and that of poses between the frames."""
-    moved = rubbed_motion(read_case("slider-crank", TIGHT))
+    moved = rubbed_motion(edited("slider-crank", TIGHT, fits=False))
     for name, sense in (("push forward", 1.0), ("push backward", -1.0)):
         torque, angles = moved.torque[name], np.degrees(moved.motion.angles)
         i = int(np.nanargmax(np.abs(torque)))
@@ -266,7 +266,7 @@ def test_a_pin_that_is_tight_in_both_links_rubs_in_the_bore_on_which_more_presse
     for stated in ("[]", '["crank", "rod"]', '"crank"', '"rod"'):
         entry = [one for one in TIGHT if ".A." not in one]
         entry += [] if stated == "[]" else [f"joints.A.tight_in={stated}"]
-        statics = solve_case_statics(read_case("slider-crank", entry))
+        statics = solve_case_statics(edited("slider-crank", entry, fits=False))
         wrenches = {name: one.wrench[None] for name, one in statics.reactions["push forward"].joints.items()}
         pressed.append(float(bore_presses(statics.case, wrenches)["A"][0]))
     unstated, both, crank, rod = pressed

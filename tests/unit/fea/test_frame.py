@@ -1,3 +1,4 @@
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -240,6 +241,18 @@ def test_frames_that_differ_in_their_loads_alone_share_one_factorisation() -> No
         replace(CANTILEVER, supports=(Support(node=1),)),
     ):
         assert equations_of(other) is not first
+
+
+def test_a_solved_frame_can_be_pickled() -> None:
+    """A result keeps the frame of its pins, and could not be written to a file with the factors in it."""
+    from alula.fea.frame.linear import FactorisedFrame
+
+    solved = FactorisedFrame(replace(CANTILEVER, loads=(load(1, 0.0, 0.0, -3.0),)))
+    kept = pickle.loads(pickle.dumps(solved))
+    rows = np.array([0, 2])
+    assert np.abs(solved.opened(rows)).max() > 0.0
+    np.testing.assert_array_equal(kept.opened(rows), solved.opened(rows))
+    np.testing.assert_array_equal(kept.own, solved.own)
 
 
 def test_a_moment_about_what_nothing_turns_is_refused_beside_a_known_frame() -> None:

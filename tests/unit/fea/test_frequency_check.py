@@ -85,7 +85,11 @@ def test_over_a_motion_value_and_ends_of_the_lowest_frequency_are_each_the_least
 
 @pytest.mark.parametrize("low", [lambda i: 0.0, lambda i: 5.0 + abs(i - 61.0)])
 def test_the_pose_of_the_lowest_frequency_is_sought_by_low_ends_and_where_these_are_alike_by_values(monkeypatch, low):
-    """The least of 81 poses is the 61st: by its low end, or by its value where pins that run leave all poses at 0."""
+    """The least of 81 poses is the 61st: by its low end, or by its value where pins that run leave all poses at 0.
+
+    It alone is looked at with its pins elsewhere on their rims.
+    """
+    rimmed = []
 
     def at(case, name, pose, *_):
         value = 60.0 + abs(pose - 61.0)
@@ -93,12 +97,14 @@ def test_the_pose_of_the_lowest_frequency_is_sought_by_low_ends_and_where_these_
         return SimpleNamespace(modes=[mode], notes=(), pose=pose)
 
     monkeypatch.setattr(over_motion, "_at", at)
+    monkeypatch.setattr(over_motion, "on_rims", lambda case, modes, masses: rimmed.append(modes.pose) or modes)
     monkeypatch.setattr(over_motion, "pose_at", lambda motion, i: i)
     case = SimpleNamespace(motion=SimpleNamespace(speed=0.0), load_cases={"turning": SimpleNamespace(speed=10.0)})
     motion = SimpleNamespace(angles=np.linspace(0.0, 80.0, 81))
     moved = SimpleNamespace(case=case, motion=motion, torque={"turning": np.zeros(81)}, loads={"turning": ()})
     own = over_motion._over(moved, "turning", {}, 1)
     assert own.lowest.pose == 61
+    assert rimmed == [61]
     assert least_at(own) == 61.0
     assert len(own.at) < 30
 

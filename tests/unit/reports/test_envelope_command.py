@@ -54,7 +54,7 @@ def test_too_little_memory_is_refused_before_solving_with_estimate_and_remedy(pa
     assert done.returncode == 4
     assert done.stdout == ""
     last = done.stderr.strip().splitlines()[-1]
-    assert "the stress of 10 unit loads" in last
+    assert "the stress of 10 loads at" in last
     assert "GB of memory and 0 GB are left of the limit of 0.05 GB" in last
     assert "use a coarser mesh, raise the limit" in last
     assert "Solving" not in done.stderr

@@ -107,8 +107,10 @@ def test_the_bands_are_told_check_by_check(wing):
     start = words.index("Sources of error in the band of each check")
     told = words[start : start + 1000]
     assert "strength: nothing (beam theory without stress concentration)." in told
-    assert "pins: load sharing between the two eyes of a pin." in told
-    assert re.search("buckling: .*geometric imperfection,? .*restraint by the neighbouring links", told)
+    assert "pins: load sharing between the two eyes of a pin and play of pins." in told
+    assert re.search(
+        "buckling: .*geometric imperfection,? .*restraint by the neighbouring links and play of pins[.]", told
+    )
 
 
 def test_forces_of_the_undeformed_pose_are_called_so(wing):
