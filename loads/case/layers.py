@@ -108,12 +108,11 @@ def check_layers(case: CoreCase) -> None:
     ------
     CaseError
         As ``heights``; for a pin that is tight in a link that its joint does not have, or where no layers are stated (a
-        layer_spacing of 0, which takes stated ones back, leaves it without meaning);
-        for a gap that the layers tell already.
+        layer_spacing of 0, which takes stated ones back, passes it over); for a gap that the layers tell already.
     """
     case.linkage  # noqa: B018 - its own rules come first
     layered = case.layered
-    taken_back = case.layer_spacing == 0.0 and any(link.layer is not None for link in case.links.values())
+    taken_back = case.layer_spacing == 0.0
     for name, joint in case.joints.items():
         for link in joint.tight_in:
             if link not in joint.links:

@@ -30,8 +30,11 @@ from alula.reports.sentences import told as in_words
 PINS = ("O2", "A", "B")
 
 
-def toggle(friction: float, stated: tuple[float, float] | None, *more: str) -> Case:
-    """A slider pushes the crank of the slider-crank a few degrees from its dead point; its pins rub."""
+def toggle(friction: float, stated: tuple[float, float] | None, *more: str, fits: bool = False) -> Case:
+    """A slider pushes the crank of the slider-crank a few degrees from its dead point; its pins rub.
+
+    Without fits its pins have no play, which would take it through the dead point.
+    """
     entries = [f"joints.{pin}.friction={friction}" for pin in PINS]
     if stated is not None:
         entries += [f"joints.{pin}.friction_range=[{stated[0]}, {stated[1]}]" for pin in PINS]
@@ -47,6 +50,7 @@ def toggle(friction: float, stated: tuple[float, float] | None, *more: str) -> C
             'load_cases.push.forces=[{link="crank",at="A",force=["0 N","-1 N"]}]',
             'load_cases.push.direction="forward"',
         ],
+        fits=fits,
     )
 
 
@@ -105,6 +109,13 @@ def test_where_the_largest_friction_locks_the_linkage_bands_have_no_end() -> Non
     work = result.load_cases["push"].work
     assert sorted(np.abs(work.ends[:, 0])) == [pytest.approx(abs(with_least()), rel=1e-12), math.inf]
     assert math.copysign(1.0, work.ends[np.isinf(work.ends)][0]) == math.copysign(1.0, work.effort[0])
+    loose, played = outcomes(toggle(0.25, None, fits=True))
+    told = [in_words(one) for one in loose.warnings]
+    assert any("play of pins may take the linkage through a dead point" in one for one in told)
+    assert any("locks itself" in one for one in told)
+    both = played["strength", "rod", "safety factor"].value
+    assert (both.low, both.high) == (0.0, math.inf)
+    assert {source.kind for source in both.sources} >= {SourceKind.PLAY, SourceKind.FRICTION}
 
 
 def with_least() -> float:
@@ -164,20 +175,21 @@ def test_in_layers_the_least_is_by_forces_alone_and_the_largest_by_the_worst_cou
         assert max(found) > 0.6 * max(lost)
 
 
-def turning(friction: float, stated: tuple[float, float]) -> Case:
+def turning(friction: float, stated: tuple[float, float], fits: bool) -> Case:
     """The slider-crank in one plane, turning at a speed with a motor."""
     motor = 'type = "motor", voltage = "6 V", current = "400 mA", efficiency = 0.5, rated_torque = "1500 N*mm"'
     rubs = [f"joints.{pin}.friction={friction}" for pin in PINS]
     rubs += [f"joints.{pin}.friction_range=[{stated[0]}, {stated[1]}]" for pin in PINS]
     speed = ["load_cases.push.speed=60 rpm", "motion.poses=25", "joints.guide.friction=0"]
-    return edited("slider-crank", [PLANAR, *rubs, *speed, f"checks={{ motor = {{ {motor} }} }}"])
+    return edited("slider-crank", [PLANAR, *rubs, *speed, f"checks={{ motor = {{ {motor} }} }}"], fits=fits)
 
 
-def test_over_a_motion_bands_hold_direct_calculations() -> None:
-    """Of the motor, the drive torque, joint forces, stresses and columns."""
-    case = turning(0.3, (0.1, 0.45))
+@pytest.mark.parametrize("fits", [False, True])
+def test_over_a_motion_bands_hold_direct_calculations(fits: bool) -> None:
+    """Of the motor, the drive torque, joint forces, stresses and columns; the play of fits adds to joint forces."""
+    case = turning(0.3, (0.1, 0.45), fits)
     moved = rubbed_motion(case)
-    others = [rubbed_motion(turning(mu, (mu, mu))) for mu in (0.1, 0.2, 0.45)]
+    others = [rubbed_motion(turning(mu, (mu, mu), fits)) for mu in (0.1, 0.2, 0.45)]
     [name], every = moved.loads, np.ones(len(moved.motion.angles), dtype=bool)
     asked = motor_outcomes(moved.case, "motor", moved.case.checks["motor"])[name]
     told = [motor_outcomes(one.case, "motor", one.case.checks["motor"])[name] for one in others]
@@ -195,7 +207,9 @@ def test_over_a_motion_bands_hold_direct_calculations() -> None:
         growth = joint_growth(moved, name, joint, every)
         sizes = [np.linalg.norm(one.forces[name].forces[joint], axis=1).max() for one in (moved, *others)]
         assert growth.low - 1e-9 <= min(sizes) / sizes[0]
-        assert growth.high == pytest.approx(max(sizes) / sizes[0], rel=1e-9)
+        assert growth.high >= max(sizes) / sizes[0] - 1e-9
+        assert growth.high == pytest.approx(max(sizes) / sizes[0], rel=5e-3 if fits else 1e-9)
+        assert (SourceKind.PLAY in {source.kind for source in growth.sources}) == fits
     shares = otherwise(moved, every)
     for link in moved.case.checked_links:
         assert shares[name, link].low < 1.0 < shares[name, link].high

@@ -28,12 +28,13 @@ from alula.reports.sentences import told
 HELD_AT_GF = ('drive.link="GF"', 'drive.joint="G"')
 
 
-def under(load, *overrides):
-    """The wing's case with its one load replaced, as [x, y] or [x, y, z] in N."""
+def under(load, *overrides, fits=False):
+    """The wing's case with its one load replaced, as [x, y] or [x, y, z] in N; without what it states of its pins."""
     components = ", ".join(f'"{x} N"' for x in load)
     return edited(
         "owl-wing-static",
         [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', PLANAR, *overrides],
+        fits=fits,
     )
 
 
@@ -143,9 +144,9 @@ def test_the_drive_torque_keeps_its_axis_where_the_driven_link_tilts(monkeypatch
     assert found.state == "deformed"
 
 
-def tip(maximum, *overrides, load=(0, -0.25)):
+def tip(maximum, *overrides, load=(0, -0.25), fits=False):
     """What becomes of a check of the wing's tip."""
-    case = under(load, f'checks.tip={{type="displacement", at="H", maximum="{maximum} mm"}}', *overrides)
+    case = under(load, f'checks.tip={{type="displacement", at="H", maximum="{maximum} mm"}}', *overrides, fits=fits)
     result = check_case(case, name="owl-wing-static", fidelity="beam").load_cases["weight"]
     (found,) = [c for c in result.checks if c.name == "tip"]
     assert (found.link, found.quantity, found.unit) == ("point H of CH", "displacement", "mm")
@@ -175,6 +176,21 @@ def test_a_point_is_checked_with_the_whole_linkage_and_a_link_from_its_own_pins(
     assert link.value.value < 0.3
 
 
+@pytest.mark.parametrize("load", [-0.125, -1.5])
+def test_play_that_a_case_states_lets_a_point_of_either_shape_come_to_rest_further_off(load):
+    """By up to its free motion, to either side; no load of the wing's size keeps a pin from lying where it is pushed."""
+    result, loose = tip(5.0, *HELD_AT_GF, load=(0, load), fits=True)
+    _, plain = tip(5.0, *HELD_AT_GF, load=(0, load))
+    assert result.large_displacement.state == ("small" if load > -1.0 else "deformed")
+    free = result.forces.play.free_motion("CH", "H")
+    for off in (
+        loose.value.value - plain.value.value,
+        loose.value.high - plain.value.high,
+        plain.value.low - loose.value.low,
+    ):
+        assert 0.98 * free < off < 1.005 * free
+
+
 def test_a_point_that_moves_far_is_checked_on_the_deformed_shape():
     result, found = tip(5.0, *HELD_AT_GF, load=(0, -1.5))
     moved = result.large_displacement
@@ -199,6 +215,9 @@ def test_a_point_without_equilibrium_or_beyond_linear_theory_is_left_open():
     assert "above 5 % of the span" in told(found.reason)
     _, found = tip(6.5, *HELD_AT_GF, 'large_displacement="off"')
     assert found.verdict is Verdict.PASS
+    _, found = tip(6.5, *HELD_AT_GF, 'large_displacement="off"', fits=True)
+    assert found.verdict is Verdict.UNDECIDED
+    assert "without play the verdict would be pass" in told(found.reason)
 
 
 def test_a_card_with_a_range_of_moduli_widens_the_band_of_a_point():

@@ -55,6 +55,18 @@ def test_a_spacing_of_zero_puts_all_layers_in_one_plane() -> None:
         edited([*FOUR, 'layer_spacing="-1 mm"'])
 
 
+def test_a_spacing_of_zero_leaves_tight_pins_without_meaning() -> None:
+    """A pin that a layered case has tight in a link need not be taken out of the file."""
+    tight = edited([*FOUR, PLANAR, 'joints.A.tight_in="AE"'])
+    assert not tight.layered
+    of_tight, of_plain = (solve_case_statics(case, WING).forces["weight"] for case in (tight, edited([])))
+    assert of_tight.by_equilibrium
+    for name, joint in of_plain.reactions.joints.items():
+        assert of_tight.reactions.joints[name].force == pytest.approx(joint.force, rel=1e-12, abs=1e-15)
+    with pytest.raises(CaseError, match="only where links lie in layers"):
+        edited([*(f"links.{link}.layer=0" for link in LINKS), 'layer_spacing="7 mm"', 'joints.A.tight_in="AE"'])
+
+
 BUILT_IN = {name: case for name in built_in_cases() if (case := read_case(name)).layered}
 
 
@@ -69,6 +81,18 @@ def test_layers_of_built_in_cases_leave_room(name: str) -> None:
     assert len(marked) == len(case.links) + 1
     assert all("# assumed" in line for line in marked)
     assert any(line.startswith("Layers ") for line in case.assumptions)
+
+
+NO_ROOM = [name for name, case in BUILT_IN.items() if all(c.type != "clearance" for c in case.checks.values())]
+"""Cases without a check that needs layers."""
+
+
+@pytest.mark.parametrize("name", NO_ROOM)
+def test_a_spacing_of_zero_puts_built_in_cases_in_one_plane(name: str) -> None:
+    """As the pages say of ``--set``, whatever a case states of its pins."""
+    flat = read_case(name, [PLANAR])
+    assert not flat.layered
+    assert set(flat.heights.values()) == {0.0}
 
 
 def test_without_layers_all_lies_in_one_plane() -> None:
