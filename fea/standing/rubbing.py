@@ -35,13 +35,9 @@ SETTLED = 1e-10
 
 End = Literal["least", "stated", "largest"]
 """Of what friction may be: the least coefficients, and bores pressed by forces alone; the stated coefficients, with the
-couples of pins that are tight in both links; the largest, with the largest couples of any way in which pins share them.
+couples of pins that stand as the values of their clearances say; the largest, with the largest couples of all states.
 """
-
-
 ENDS: tuple[End, End] = ("least", "largest")
-
-
 NOTHING = 1e-9
 """Force of a joint, over the largest, below which its bore counts as pressed by nothing."""
 
