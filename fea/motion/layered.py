@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.doubts.force_doubt import sharing_answers
-from alula.fea.pins.states import pin_states
-from alula.fea.standing.joint_forces import JointForces, joint_forces, solved_frame
+from alula.fea.standing.joint_forces import JointForces, joint_forces, solved_frame, stood
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.ties import first_largest
 from alula.loads.records.applied import Load, chosen
@@ -73,12 +72,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         stands = pose_at(moved.motion, i)
         for name in moved.forces:  # pose by pose: all load cases have one factorisation
             frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.drive)
-            pins = pin_states(case, frame)
-            found = (
-                frame.reactions(solution.joint_wrenches, solution.residual)
-                if pins is None
-                else pins.reactions(pins.value)
-            )
+            found, _ = stood(case, frame, solution)
             for joint, wrench in wrenches[name].items():
                 wrench[i, 2:5] = found.joints[joint].wrench[2:5]
     for name, solved in moved.forces.items():

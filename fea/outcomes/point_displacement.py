@@ -238,8 +238,7 @@ class PointDisplacement:
             assert forces.frame is not None
             assert forces.solution is not None
             node, tight = forces.frame.points[self.link, self.point], forces.solution.displacements
-            stands = (forces.pins.value, *forces.pins.states)
-            return np.array([(forces.pins.answer(v).displacements - tight)[node, :3] for v in stands])
+            return np.array([(one.displacements - tight)[node, :3] for one in forces.pins.answers])
         shift = 0j if self.play is None else complex(self.play.shift(self.link, self.point))
         return np.array([[shift.real, shift.imag, 0.0]])
 

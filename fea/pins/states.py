@@ -166,9 +166,14 @@ class PinStates:
         return (self.tangent(self.radii.value, self.value), *(self.tangent(shares, v) for shares, v in told))
 
     @cached_property
+    def answers(self) -> tuple[FrameSolution, ...]:
+        """The frame's answers with the values of all clearances first, then in ``states``."""
+        return tuple(self.answer(v) for v in (self.value, *self.states))
+
+    @cached_property
     def ends(self) -> tuple[Reactions, ...]:
-        """Joint forces in these states."""
-        return tuple(map(self.reactions, self.states))
+        """Joint forces in ``states``."""
+        return tuple(self.rims.frame.reactions(one.joint_wrenches, one.residual) for one in self.answers[1:])
 
     def extremes(self) -> Real:
         """Return the shares at which couples are largest and least, after that of the values and those of ``LEVELS``.

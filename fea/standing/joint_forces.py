@@ -212,12 +212,33 @@ def on_pins(case: Case, tight: JointForces) -> JointForces:
     -------
     JointForces
     """
-    if not case.layered or tight.frame is None:
+    if tight.frame is None or tight.solution is None:
         return tight
+    reactions, pins = stood(case, tight.frame, tight.solution)
+    return tight if pins is None else replace(tight, reactions=reactions, pins=pins)
+
+
+def stood(case: Case, frame: "LinkageFrame", solution: "FrameSolution") -> "tuple[Reactions, PinStates | None]":
+    """Return what joints bear as pins stand in their holes, and how else they may.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+    solution : FrameSolution
+        Of that frame, with pins that are tight.
+
+    Returns
+    -------
+    tuple of (Reactions, PinStates or None)
+        None where no pin between layers may run.
+    """
     from alula.fea.pins.states import pin_states
 
-    pins = pin_states(case, tight.frame)
-    return tight if pins is None else replace(tight, reactions=pins.reactions(pins.value), pins=pins)
+    pins = pin_states(case, frame) if case.layered else None
+    if pins is None:
+        return frame.reactions(solution.joint_wrenches, solution.residual), None
+    return pins.reactions(pins.value), pins
 
 
 def solved_frame(

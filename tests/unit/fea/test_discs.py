@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import LinearConstraint, NonlinearConstraint, minimize
 
+from alula.fea.pins import programme
 from alula.fea.pins.programme import least_in_discs, slopes
+from alula.geometry.base.errors import CannotRunError
 
 DISCS = 5
 
@@ -83,3 +85,11 @@ def test_slopes_are_those_of_differences():
         down[:, disc] -= step
         moved = (least_in_discs(K, g, up).v - least_in_discs(K, g, down).v)[state] / (2.0 * step)
         assert told[:, disc] == pytest.approx((moved * along).sum(axis=1), rel=2e-3, abs=2e-3)
+
+
+def test_what_is_not_proven_is_no_answer(monkeypatch):
+    """Of two states, of which one is idle."""
+    K, g = problem(8)
+    monkeypatch.setattr(programme, "STEPS", 3)
+    with pytest.raises(CannotRunError, match="how pins stand in their holes was not found"):
+        least_in_discs(K, np.array([0.0 * g, g]), np.full((2, DISCS), 0.1))
