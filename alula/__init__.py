@@ -11,7 +11,7 @@ Examples
 ...     report = alula.check(case.with_values({"parts.tube.outer_diameter": diameter}), fidelity="beam")
 ...     print(diameter, report.verdict, f"{report.safety_factors['AE'].value:.1f}")
 3.5 mm undecided 4.4
-4 mm pass 8.7
+4 mm undecided 8.7
 """
 
 import sys
@@ -163,7 +163,7 @@ def check(
     --------
     >>> report = check("owl-wing-closed", fidelity="beam")
     >>> print(report.verdict)
-    pass
+    undecided
     >>> [row["link"] for row in report.table("links")]
     ['GF', 'AE', 'CF', 'CH', 'ED']
     >>> round(report.drive_torques["weight"], 1)  # N·mm
