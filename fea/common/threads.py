@@ -1,5 +1,9 @@
 """A bound on the threads of a run: numpy's and scipy's OpenBLAS, MKL, OpenMP, and how many children work at once.
 
+OpenBLAS gets one thread in every bounded run. It multiplies and factorises dense matrices of some hundred rows here;
+numpy and scipy bring one OpenBLAS each, whose idle threads spin on each other's cores: with two a check of the owl wing
+by hand took 5.7 s on two cores, with one 2.6 s. Sparse factorisations, which threads serve, are MKL's.
+
 threadpoolctl sets libraries that are loaded; those that are loaded later read the environment. Children (the mesher,
 the renderer) use one thread each (``alula.geometry.base.child``), so that bounding their number bounds them.
 """
@@ -16,7 +20,8 @@ from alula.geometry.base import child
 P = ParamSpec("P")
 R = TypeVar("R")
 
-VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+OPENBLAS = "OPENBLAS_NUM_THREADS"
+VARIABLES = ("OMP_NUM_THREADS", OPENBLAS, "MKL_NUM_THREADS")
 
 
 @contextmanager
@@ -44,11 +49,13 @@ def bounded(threads: int | None, *, children: int | None = None) -> Iterator[Non
     for pool in controller.info():
         current[pool["user_api"]] = max(pool["num_threads"], current.get(pool["user_api"], 1))
     before = {name: os.environ.get(name) for name in VARIABLES}
-    every = _least(threads, before[VARIABLES[0]])  # what OpenBLAS and MKL take where nothing of their own is stated
+    every = _least(threads, before[VARIABLES[0]])  # what MKL takes where nothing of its own is stated
     os.environ.update({name: str(_least(every, value)) for name, value in before.items()})
+    os.environ[OPENBLAS] = "1"
     try:
         limits = {api: min(threads, used) for api, used in current.items()}
-        with controller.limit(limits=limits), child.at_most(children or threads):
+        dense = controller.select(internal_api="openblas")
+        with controller.limit(limits=limits), dense.limit(limits=1), child.at_most(children or threads):
             yield
     finally:
         for name, value in before.items():
