@@ -36,9 +36,10 @@ def test_libraries_children_and_what_is_loaded_later_are_bounded_and_given_back(
     before = threads_of_libraries()
     with bounded(2):
         assert max(threads_of_libraries()) <= 2
-        assert [os.environ[name] for name in VARIABLES] == ["2", "2", "2"]
+        assert [os.environ[name] for name in VARIABLES] == ["2", "1", "2"], "OpenBLAS takes one"
+        assert {pool["num_threads"] for pool in threadpool_info() if pool["internal_api"] == "openblas"} == {1}
         with bounded(5):
-            assert [os.environ[name] for name in VARIABLES] == ["2", "2", "2"], "an inner bound raises nothing"
+            assert [os.environ[name] for name in VARIABLES] == ["2", "1", "2"], "an inner bound raises nothing"
         with bounded(1):
             assert threads_of_libraries() == {1}
             assert [os.environ[name] for name in VARIABLES] == ["1", "1", "1"]
