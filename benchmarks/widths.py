@@ -11,11 +11,10 @@ import math
 from collections import Counter
 from typing import Any
 
-from benchmarks.record import save
-
 import alula
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import CheckOutcome
+from benchmarks.record import save
 
 WIDE = 3.0
 BY_COUPLES = 1.5
@@ -50,7 +49,9 @@ def counted(name: str, fidelity: str) -> tuple[Counter[str], list[dict[str, Any]
         found["couples count"] += bool(by_couples > BY_COUPLES)
         found["couples, width not known"] += math.isnan(by_couples)
         if by_couples > BY_COUPLES:
-            widened.append({"check": f"{check.load_case}: {check.subject.name} {check.quantity}", "factor": float(by_couples)})
+            widened.append(
+                {"check": f"{check.load_case}: {check.subject.name} {check.quantity}", "factor": float(by_couples)}
+            )
     return found, widened
 
 
