@@ -1,8 +1,8 @@
 """A bound on the threads of a run: numpy's and scipy's OpenBLAS, MKL, OpenMP, and how many children work at once.
 
-OpenBLAS gets one thread in every bounded run. It multiplies and factorises dense matrices of some hundred rows here;
+OpenBLAS gets one thread in every bounded run. It multiplies and solves dense matrices of some hundred rows here;
 numpy and scipy bring one OpenBLAS each, whose idle threads spin on each other's cores: with two a check of the owl wing
-by hand took 5.7 s on two cores, with one 2.6 s. Sparse factorisations, which threads serve, are MKL's.
+by hand took 5.7 s on two cores, with one 2.6 s. Sparse factors, which threads serve, are MKL's.
 
 threadpoolctl sets libraries that are loaded; those that are loaded later read the environment. Children (the mesher,
 the renderer) use one thread each (``alula.geometry.base.child``), so that bounding their number bounds them.
