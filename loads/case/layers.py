@@ -108,9 +108,11 @@ def check_layers(case: CoreCase) -> None:
     ------
     CaseError
         As ``heights``; for a pin that is tight in a link that its joint does not have, or where no layers are stated (a
-        layer_spacing of 0, which takes stated ones back, passes it over); for a gap that the layers tell already.
+        layer_spacing of 0, which takes stated ones back, passes it over); for a gap that the layers tell already; for
+        heads of one joint of a pin alone.
     """
     case.linkage  # noqa: B018 - its own rules come first
+    _check_heads(case)
     layered = case.layered
     taken_back = case.layer_spacing == 0.0
     for name, joint in case.joints.items():
@@ -119,8 +121,21 @@ def check_layers(case: CoreCase) -> None:
                 raise CaseError(
                     f"joints.{name}.tight_in: '{link}' is no link of this joint; choose one of {', '.join(joint.links)}"
                 )
-        for entry in ("pin_gap",) if layered else () if taken_back else ("tight_in",):
+        for entry in ("pin_gap",) if layered else () if taken_back else ("tight_in", "heads"):
             in_fork = layered and outer_link(case, name) is not None  # both links lie in one layer
             if entry in joint.model_fields_set and not in_fork:
                 why = "the layers tell the gap" if layered else "it has a meaning only where links lie in layers"
                 raise CaseError(f"joints.{name}.{entry}: {why}; leave it out")
+
+
+def _check_heads(case: CoreCase) -> None:
+    """Refuse heads of some joints of a pin: the gaps of all of its links are one."""
+    for names in on_one_axis(case):
+        turning = [name for name in names if case.joints[name].pivots]
+        without = [name for name in turning if case.joints[name].heads is None]
+        if without and len(without) < len(turning):
+            name = next(name for name in turning if name not in without)
+            raise CaseError(
+                f"joints.{name}.heads: joint '{without[0]}' is on the same pin and states none, but its links share "
+                "the gap; state heads of both, whose gaps add up, or of neither"
+            )
