@@ -15,8 +15,9 @@ needs no curvature in K: directions in which nothing resists are held by the dis
 is a lower bound of the least value (the Lagrange dual), so that what is found proves how near it is: by
 ``gap`` >= ½ eᵀ K e, where e is the error of v.
 
-Differences of two pairs may be kept in discs too. With the inner share e of any disc, linear in w, its multiplier adds
-z e to the slope along e; else all is the same.
+The difference of two pairs of one radius r may be kept in a disc too, of the radius ρ. Half their sum over r and half
+their difference over min(r, ρ/2) are the variables then. The inner share e of every disc is linear in the variables,
+and its multiplier z adds z e to the slope along e; else all is the same.
 
 Many states, with other radii each, are solved side by side.
 """
@@ -43,8 +44,6 @@ SHORTER = 0.995
 """Share of the way to the nearest boundary that a step may go."""
 TOWARDS = 0.1
 """Share of the mean product z s that a step aims at."""
-NARROW = 1e-6
-"""Radius of the disc of a difference, over those of its two pairs, in place of a smaller one."""
 NO_TIES = np.empty((0, 2), dtype=np.int64)
 
 
@@ -57,7 +56,8 @@ class InDiscs:
     v : ndarray, shape (n, 2 m)
         The variables.
     share : ndarray, shape (n, 2 m)
-        The same in shares of the radii.
+        w: the same in shares of the radii; of two pairs with a disc for their difference, half the sum in the place of
+        the first, half the difference in that of the second.
     multiplier : ndarray, shape (n, m + f)
         Of the discs, in shares of the radii.
     gap : ndarray, shape (n,)
@@ -72,51 +72,74 @@ class InDiscs:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Discs:
-    """Inner shares of all discs by the shares w of the radii of n states of m pairs.
+    """Inner shares of all discs by the variables w of n states of m pairs.
 
     Attributes
     ----------
-    pairs : ndarray of int, shape (f, 2)
-        Of the discs of differences: the second pair less the first; each pair is in one of them at most.
-    by : ndarray, shape (n, f, 2)
-        Factors of their w.
+    ties : ndarray of int, shape (f, 2)
+        The pairs i, j whose difference has a disc; each pair is in one of them at most.
+    half : ndarray, shape (n, f)
+        q: the inner shares of both pairs are w_i - q w_j and w_i + q w_j.
+    own : ndarray, shape (n, f)
+        p: that of the difference is p w_j.
     """
 
-    pairs: NDArray[np.int64]
-    by: Real
+    ties: NDArray[np.int64]
+    half: Real
+    own: Real
 
     @classmethod
     def of(cls, radii: Real, ties: NDArray[np.int64]) -> "_Discs":
-        count = radii.shape[1] - len(ties)
-        size = radii[:, ties]
-        own = np.maximum(radii[:, count:], NARROW * size.sum(axis=2))[:, :, None]
-        by = np.divide(size * [-1.0, 1.0], own, out=np.zeros_like(size), where=own > 0.0)
-        return cls(pairs=ties, by=by)
+        wide, apart = 2.0 * radii[:, ties[:, 0]], radii[:, radii.shape[1] - len(ties) :]
+        half = np.divide(apart, wide, out=np.ones_like(wide), where=apart < wide)
+        own = np.divide(wide, apart, out=np.ones_like(wide), where=apart > wide)
+        return cls(ties=ties, half=half, own=own)
 
-    def __getitem__(self, states: NDArray[np.int64]) -> "_Discs":
-        return _Discs(pairs=self.pairs, by=self.by[states])
+    def __getitem__(self, states: NDArray[np.int64] | NDArray[np.bool_]) -> "_Discs":
+        return _Discs(ties=self.ties, half=self.half[states], own=self.own[states])
 
     def inner(self, w: Real) -> Real:
         """(n, m + f, 2) of w (n, 2 m)."""
-        each = w.reshape(len(w), -1, 2)
-        return np.concatenate([each, (self.by[..., None] * each[:, self.pairs]).sum(axis=2)], axis=1)
+        pairs, (i, j) = w.reshape(len(w), -1, 2), self.ties.T
+        if not len(self.ties):
+            return pairs
+        found = np.concatenate([pairs, self.own[..., None] * pairs[:, j]], axis=1)
+        by_half = self.half[..., None] * pairs[:, j]
+        found[:, i], found[:, j] = pairs[:, i] - by_half, pairs[:, i] + by_half
+        return found
+
+    def folded(self, along: Real) -> Real:
+        """(n, 2 m, ...) by the variables, of what is (n, 2 m, ...) by the inner shares of pairs."""
+        if not len(self.ties):
+            return along
+        each, (i, j) = along.reshape(len(along), -1, 2, *along.shape[2:]), self.ties.T
+        found, half = each.copy(), self.half.reshape(*self.half.shape, *(1 for _ in each.shape[2:]))
+        found[:, i], found[:, j] = each[:, i] + each[:, j], half * (each[:, j] - each[:, i])
+        return found.reshape(along.shape)
 
     def outer(self, forces: Real) -> Real:
-        """(n, 2 m) what forces (n, m + f, 2) on the inner shares are on w."""
-        found = forces[:, : forces.shape[1] - len(self.pairs)].copy()
-        found[:, self.pairs] += self.by[..., None] * forces[:, found.shape[1] :, None]
-        return found.reshape(len(found), -1)
+        """(n, 2 m) what forces (n, m + f, 2) on all inner shares are on w."""
+        count = forces.shape[1] - len(self.ties)
+        found = self.folded(forces[:, :count].reshape(len(forces), -1))
+        if len(self.ties):
+            found.reshape(len(found), -1, 2)[:, self.ties[:, 1]] += self.own[..., None] * forces[:, count:]
+        return found
 
     def held(self, A: Real, own: Real) -> Real:
-        """A (n, 2 m, 2 m) with the stiffness (n, m + f, 2, 2) of the inner shares."""
-        found = A.copy()
-        count = A.shape[1] // 2
+        """A (n, 2 m, 2 m) with the stiffness (n, m + f, 2, 2) of all inner shares."""
+        found, count = A.copy(), A.shape[1] // 2
+        at = [slice(2 * i, 2 * i + 2) for i in range(count)]
+        tied = set(self.ties.ravel().tolist())
         for i in range(count):
-            found[:, 2 * i : 2 * i + 2, 2 * i : 2 * i + 2] += own[:, i]
-        for k, pair in enumerate(self.pairs):
-            for i, one in zip(pair, self.by[:, k].T, strict=True):
-                for j, other in zip(pair, self.by[:, k].T, strict=True):
-                    found[:, 2 * i : 2 * i + 2, 2 * j : 2 * j + 2] += (one * other)[:, None, None] * own[:, count + k]
+            if i not in tied:
+                found[:, at[i], at[i]] += own[:, i]
+        for k, (i, j) in enumerate(self.ties):
+            both, half = own[:, i] + own[:, j], self.half[:, k, None, None]
+            across = half * (own[:, j] - own[:, i])
+            found[:, at[i], at[i]] += both
+            found[:, at[i], at[j]] += across
+            found[:, at[j], at[i]] += across
+            found[:, at[j], at[j]] += half**2 * both + self.own[:, k, None, None] ** 2 * own[:, count + k]
         return found
 
 
@@ -133,7 +156,7 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
     close : float, optional
         Of the residual and of the mean product z s, over the largest entry of b, at which the steps end.
     ties : ndarray of int, shape (f, 2), optional
-        Pairs whose difference stays in a disc too, whose radii come last; each pair in one of them at most.
+        Pairs of one radius whose difference stays in a disc too, whose radii come last; each pair in one at most.
 
     Returns
     -------
@@ -146,7 +169,7 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
     """
     count, discs = radii.shape
     scale, every = np.repeat(radii[:, : discs - len(ties)], 2, axis=1), _Discs.of(radii, ties)
-    A, b = scale[:, :, None] * K * scale[:, None, :], scale * g
+    A, b = _scaled(K, scale, every), every.folded(scale * g)
     size = np.abs(b).max(axis=1)
     idle = size <= IDLE * np.abs(A).max(axis=(1, 2))
     A[idle], b[idle] = 0.0, 0.0
@@ -182,7 +205,15 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
             f"how pins stand in their holes was not found: the energy may be {float((gap / unit).max()):.1e} of that "
             "of the load too high; state in which links pins are tight, or other clearances"
         )
-    return InDiscs(v=scale * w, share=w, multiplier=z * unit[:, None], gap=gap)
+    return InDiscs(
+        v=scale * every.inner(w)[:, : w.shape[1] // 2].reshape(w.shape), share=w, multiplier=z * unit[:, None], gap=gap
+    )
+
+
+def _scaled(K: Real, scale: Real, every: _Discs) -> Real:
+    """K by the variables w (n, 2 m, 2 m)."""
+    A = every.folded(scale[:, :, None] * K * scale[:, None, :])
+    return every.folded(A.swapaxes(1, 2)).swapaxes(1, 2)
 
 
 def _to_rim(inner: Real, step: Real) -> Real:
@@ -216,8 +247,9 @@ def slopes(
 ) -> Real:
     """Return how linear functions of the variables change with the radii.
 
-    The optimal state follows from A w - b + z w = 0 with z s = μ at the last μ, which is smooth in the radii r. Its
-    Jacobian is inverted once for each state.
+    The optimal state follows from A w - b + Σ z e = 0 with z s = μ at the last μ, which is smooth in the radii. Its
+    Jacobian is inverted once for each state. Of pairs with a disc for their difference v stays, in place of w, and a
+    disc that grows presses its e by (2 + |e|²/s) z over its radius less.
 
     Parameters
     ----------
@@ -238,21 +270,19 @@ def slopes(
         Of aᵀ v by each radius.
     """
     pairs = radii.shape[1] - len(ties)
-    scale, w, every = np.repeat(radii[:, :pairs], 2, axis=1), found.share, _Discs.of(radii, ties)
-    inner, z = every.inner(w), found.multiplier
-    own = _barriers(inner, z)
-    A, rims = scale[:, :, None] * K * scale[:, None, :], np.zeros_like(own)
-    rims[:, :pairs] = own[:, :pairs]
-    tied = every.held(A, own - rims)  # with the discs of differences, which rims move at a share that stays
-    inverse = np.linalg.inv(every.held(tied, rims))
-    force = _over(np.repeat(z[:, :pairs], 2, axis=1) * w, scale)  # of a rim on its pair, times the share's radius
-    y = np.einsum("kij,kj->ki", inverse[state], scale[state] * along)
-    each = along * w[state] + y * force[state]
-    each -= np.einsum("ki,kij->kj", y, tied[state]) * _over(w, scale)[state]
-    by_pairs = each.reshape(len(state), pairs, 2).sum(axis=2)
-    # z e of a difference grows by (2 + |e|²/s) over its radius, as that shrinks and all else stays
-    pull = _over(z * (2.0 + (inner**2).sum(axis=2) / _slack(inner)), radii)[state, pairs:]
-    return np.hstack([by_pairs, pull * (every[state].inner(y) * inner[state])[:, pairs:].sum(axis=2)])
+    scale, every = np.repeat(radii[:, :pairs], 2, axis=1), _Discs.of(radii, ties)
+    w, z, inner = found.share, found.multiplier, every.inner(found.share)
+    inverse = np.linalg.inv(every.held(_scaled(K, scale, every), _barriers(inner, z)))
+    moved = np.einsum("kij,kj->ki", inverse[state], every[state].folded(scale[state] * along))
+    y = every[state].inner(moved)
+    force = _over(np.repeat(z[:, :pairs], 2, axis=1) * w, scale)  # what is left of g - K v at a rim, times its radius
+    own = y[:, :pairs].reshape(along.shape)
+    each = along * w[state] + own * force[state] - (scale[state] * own) @ K * w[state]
+    by_radii = np.hstack([each.reshape(len(state), pairs, 2).sum(axis=2), np.zeros((len(state), len(ties)))])
+    tied = [*ties.ravel(), *range(pairs, pairs + len(ties))]  # whose w depends on several radii
+    pull = _over(z * (2.0 + (inner**2).sum(axis=2) / _slack(inner)), radii)[state]
+    by_radii[:, tied] = (pull * (y * inner[state]).sum(axis=2))[:, tied]
+    return np.asarray(by_radii)
 
 
 def _over(value: Real, size: Real) -> Real:
