@@ -281,11 +281,11 @@ class Radii:
                     slope[:, of_size, number] = wide * part
         apart, of_apart = [np.zeros((n, 0))], [np.zeros((n, k, 0))]
         for head in self.heads:
-            least, wide = np.array(head.low), np.array(head.high) - head.low
+            least, more = np.array(head.low), np.array(head.high) - head.low
             of_apart.append(np.zeros((n, k, len(least))))
             if head.high > head.low:
-                apart.append(least + shares[:, at, None] * wide)
-                of_apart[-1][:, at] = wide
+                apart.append(least + shares[:, at, None] * more)
+                of_apart[-1][:, at] = more
                 at += 1
             else:
                 apart.append(np.tile(least, (n, 1)))
