@@ -42,12 +42,10 @@ Real = NDArray[np.float64]
 class RimReach(Reach):
     """Where a vector may end by the play at rims, of which each of some groups has its play in any one hole.
 
+    Its ``axes`` (groups, holes, rims, 2) are those of every rim's ellipse, its ``joints`` those of each group.
+
     Attributes
     ----------
-    joints : tuple of str
-        Of each group.
-    axes : complex array (groups, holes, rims, 2)
-        Conjugate half axes of every rim's ellipse.
     apart : array (groups, holes)
         How far a pin's places at both rims of a hole may be apart, over c/2.
     """

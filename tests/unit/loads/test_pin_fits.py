@@ -167,6 +167,22 @@ def test_heads_are_those_of_a_whole_pin_that_turns(name, joint, further, message
         edited(name, entries, fits=bool(not further))
 
 
+def test_two_joints_of_one_pin_do_not_state_one_hole_in_two_ways():
+    """They may state it alike, or one of them alone: here AR states that the pin is pressed in the crank."""
+    name, own = "flapping-wing-chosen", 'fit={coupler-left="running"}'
+    assert stated(own, 'clearance={crank="0 mm"}', name=name, joint="AL").joints["AL"].tight_in == ()
+    with pytest.raises(CaseError) as told:
+        stated('fit={crank="running"}', name=name, joint="AL")
+    assert str(told.value) == (
+        "joints.AL: it states a clearance of 0.004 to 0.032 mm in the hole of 'crank', but joint 'AR' on the same pin "
+        "states a tight pin there; state the same in both, or leave it out of one"
+    )
+    with pytest.raises(
+        CaseError, match="^joints.AL: it states a clearance of 0.1 mm in the hole of 'crank', but joint"
+    ):
+        stated(own, 'clearance={crank="0.1 mm"}', name=name, joint="AL")
+
+
 def test_a_slider_has_no_fit():
     name, joint = "slider-crank", next(n for n, j in read_case("slider-crank").joints.items() if j.type == "slider")
     with pytest.raises(CaseError, match=f"joints.{joint}.fit: a joint of type slider has no fit; leave it out"):
