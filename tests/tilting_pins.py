@@ -1,5 +1,6 @@
 """Linkages in layers whose pins run in their holes, and the free motion of such rigid links by linear programming."""
 
+import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -87,11 +88,13 @@ def rigid_motion(
     play: float,
     length: float,
     against: str = "",
+    tilt: float = math.inf,
 ) -> float:
     """Return how far a place of rigid links goes along a direction, or against another link, to first order.
 
     Six unknowns of every moving link; at both rims of every hole the axis of the other link's pin stays in a polygon
-    about a circle of half the play, links do not shift along the pins, and the drive holds its link.
+    about a circle of half the play, in every hole its tilt in one about a circle, links do not shift along the pins,
+    and the drive holds its link.
     """
     from scipy.optimize import linprog
 
@@ -111,10 +114,9 @@ def rigid_motion(
     for name, hole in holes.items():
         [other] = [link for link in case.joints[name].links if link != hole]
         middle = place_of(case, hole, case.linkage.point_of(name, hole))
-        for rim in (-length / 2.0, length / 2.0):
-            edge = middle + np.array([0.0, 0.0, rim])
-            apart = moved(other, edge) - moved(hole, edge)
-            within.append(sides @ apart[:2])
+        edges = [middle + np.array([0.0, 0.0, rim]) for rim in (-length / 2.0, length / 2.0)]
+        low, high = (moved(other, edge)[:2] - moved(hole, edge)[:2] for edge in edges)
+        within += [sides @ low, sides @ high, sides @ (high - low)]
         held.append((moved(other, middle) - moved(hole, middle))[2])
     assert case.drive is not None
     turn = np.zeros(6 * len(moving))
@@ -122,7 +124,7 @@ def rigid_motion(
     found = linprog(
         -along @ (moved(link, where) - moved(against, where)),
         A_ub=np.vstack(within),
-        b_ub=np.full(_CORNERS * len(within), play / 2.0),
+        b_ub=np.tile(np.repeat([play / 2.0, play / 2.0, min(play, length * tilt)], _CORNERS), len(holes)),
         A_eq=np.vstack([*held, turn]),
         b_eq=np.zeros(len(held) + 1),
         bounds=(None, None),

@@ -10,6 +10,13 @@ the rim: so the point may move by
 over all rims, to first order. It holds whatever loads act: in a redundant linkage the links give where the tilts do
 not fit together, which the frame's own R has in it. With rigid links the free motion is the least of that sum over all
 forces in equilibrium, and so no larger.
+
+Where heads keep the places at both rims of a hole within ρ of each other, they may take any part f of its rims' forces,
+and the hole lets the point move by the least of
+
+    c/2 |R1 + f| + c/2 |R2 - f| + ρ |f| ,
+
+of which f = 0, -R1 and R2 are tried: exact where both forces lie on one line, else a little more.
 """
 
 from collections.abc import Mapping
@@ -22,7 +29,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
-from alula.fea.pins.clearances import loose_holes
+from alula.fea.pins.clearances import apart_at_rims, loose_holes
 from alula.fea.pins.holes import known_hole, rims_of, shortest
 from alula.geometry.linkage.play import Reach
 from alula.loads.case.case import Case
@@ -35,13 +42,15 @@ Real = NDArray[np.float64]
 class RimReach(Reach):
     """Where a vector may end by the play at rims, of which each of some groups has its play in any one hole.
 
+    Its ``axes`` (groups, holes, rims, 2) are those of every rim's ellipse, its ``joints`` those of each group.
+
     Attributes
     ----------
-    joints : tuple of str
-        Of each group.
-    axes : complex array (groups, holes, rims, 2)
-        Conjugate half axes of every rim's ellipse.
+    apart : array (groups, holes)
+        How far a pin's places at both rims of a hole may be apart, over c/2.
     """
+
+    apart: Real
 
     def support(self, direction: NDArray[np.complex128]) -> Real:
         """Return how far the vector may go in directions.
@@ -56,7 +65,26 @@ class RimReach(Reach):
         array (n,)
         """
         along = (np.conj(direction)[:, None, None, None, None] * self.axes).real
-        return np.asarray(np.sqrt((along**2).sum(axis=-1)).sum(axis=-1).max(axis=-1).sum(axis=-1))
+        return np.asarray(furthest(along, self.apart).max(axis=-1).sum(axis=-1))
+
+
+def furthest(forces: Real, apart: Real) -> Real:
+    """Return how far holes let a point move, by the forces at their rims that a unit force there makes.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (..., 2, 2)
+        At both rims, times c/2.
+    apart : ndarray, shape (...)
+        How far a pin's places at both rims may be apart, over c/2.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
+    each = np.linalg.norm(forces, axis=-1)
+    both = np.linalg.norm(forces.sum(axis=-2), axis=-1)
+    return np.asarray(np.minimum(each.sum(axis=-1), both + apart * each.min(axis=-1)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,14 +123,17 @@ def free_motion(case: Case, frame: LinkageFrame, link: str, point: str) -> FreeM
     at_rims = [rim_forces(case, frame, (NodeLoad(node=node, wrench=unit),)) for unit in np.eye(6)[:3]]
     groups = [(name, group) for name in case.joints for group in loose_holes(case, name)]
     shape = (len(groups), max((len(group) for _, group in groups), default=0), 2)
-    axes, across = np.zeros((*shape, 2), dtype=complex), np.zeros(shape)
+    axes, across = np.zeros((*shape, 2), dtype=complex), np.zeros((*shape, 2))
+    apart = np.full(shape[:2], 2.0)
     for i, (name, group) in enumerate(groups):
         for k, (held, play) in enumerate(group):
             x, y, z = (play / 2.0 * found[name, held] for found in at_rims)
             axes[i, k] = x + 1j * y
-            across[i, k] = np.linalg.norm(z, axis=-1)
-    plane = RimReach(joints=tuple(name for name, _ in groups), axes=axes)
-    return FreeMotion(plane=plane, across=float(across.sum(axis=-1).max(axis=-1, initial=0.0).sum()))
+            across[i, k] = z
+            if len(group) == 1:  # of two that share a clearance, where either may have any part of it, only rims count
+                apart[i, k] = apart_at_rims(case, name, held, play) / (play / 2.0)
+    plane = RimReach(joints=tuple(name for name, _ in groups), axes=axes, apart=apart)
+    return FreeMotion(plane=plane, across=float(furthest(across, apart).max(axis=-1, initial=0.0).sum()))
 
 
 def unknown_lengths(case: Case) -> tuple[Reason, ...]:

@@ -1,4 +1,9 @@
-"""How wide the holes of pins between layers may be: what a case states, and radii of rims' discs by what is open."""
+"""How wide the holes of pins between layers may be: what a case states, and radii of discs by what is open.
+
+Heads on a pin keep a link between them from tilting, too. A plate of thickness t that tilts by θ between two discs of
+diameter D takes up D sin θ + t cos θ of the t + g between them: to first order |θ| <= g/D. That is one more disc, of
+the difference of the pin's places at both rims of the hole, with the radius t g/D.
+"""
 
 import math
 from collections.abc import Sequence
@@ -8,8 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.pins.holes import known_hole, shortest
+from alula.fea.pins.holes import Hole, known_hole, rims_of, shortest
+from alula.fea.pins.programme import NO_TIES
 from alula.loads.case.case import Case
+from alula.loads.case.forks import eye_of
+from alula.loads.case.layers import on_one_axis
 
 Real = NDArray[np.float64]
 HoleName = tuple[str, str]
@@ -117,9 +125,100 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
 
 
+def gap_over_diameter(case: Case, joint: str, link: str) -> tuple[float, float] | None:
+    """Return by how much a joint's link may tilt on its pin between heads.
+
+    The gaps of all joints of a pin add up, and the smallest face counts: a stack of links that tilt alike may use all
+    of the gap, each of them; if they tilt apart they use it up sooner, which is left out.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+
+    Returns
+    -------
+    tuple of 2 float or None
+        Least and largest [rad]; None where the pin has no heads that hold it.
+    """
+    names = next(names for names in on_one_axis(case) if joint in names)
+    every = [case.joints[name].heads for name in names if case.joints[name].pivots]
+    stated = [heads for heads in every if heads is not None]
+    if not stated or len(stated) < len(every):
+        return None
+    eye = eye_of(case, joint, link).diameter if case.links[link].part is not None else 0.0
+    diameter = min([heads.diameter for heads in stated] + ([eye] if eye > 0.0 else []))
+    low, high = (math.fsum(ends) for ends in zip(*(heads.gap_ends for heads in stated), strict=True))
+    return low / diameter, high / diameter
+
+
+def apart_at_rims(case: Case, joint: str, link: str, play: float) -> float:
+    """Return how far a pin's places at both rims of a hole may be apart, across it.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+    play : float
+        Of the hole [mm].
+
+    Returns
+    -------
+    float
+        [mm]; the play, or less where heads hold the link.
+    """
+    tilt = gap_over_diameter(case, joint, link)
+    if tilt is None:
+        return play
+    low, high = rims_of(case, joint, link)
+    return min(play, (high - low) * tilt[1])
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeadGap:
+    """What the gap between the heads of a pin may be.
+
+    Attributes
+    ----------
+    numbers : tuple of int
+        Of the holes of its links, among all.
+    low, high : tuple of float
+        How far the pin's places at the rims of each may be apart, at the least gap and at the largest [mm].
+    """
+
+    numbers: tuple[int, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+
+def head_gaps(case: Case, holes: Sequence[Hole]) -> tuple[HeadGap, ...]:
+    """Return the gaps between heads of all pins.
+
+    Parameters
+    ----------
+    case : Case
+    holes : sequence of Hole
+        In which pins may run.
+
+    Returns
+    -------
+    tuple of HeadGap
+        Of pins with heads.
+    """
+    found = []
+    for names in on_one_axis(case):
+        own = [(n, hole) for n, hole in enumerate(holes) if not set(names).isdisjoint(hole.joints)]
+        tilts = [(n, h.high - h.low, gap_over_diameter(case, h.joints[0], h.link)) for n, h in own]
+        ends = [(n, length * tilt[0], length * tilt[1]) for n, length, tilt in tilts if tilt is not None]
+        if ends:
+            numbers, low, high = zip(*ends, strict=True)
+            found.append(HeadGap(numbers=numbers, low=low, high=high))
+    return tuple(found)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Radii:
-    """The radii of rims' discs in h holes by k shares, each from 0 to 1.
+    """The radii of discs in h holes, of which heads hold f, by k shares, each from 0 to 1.
 
     Attributes
     ----------
@@ -128,11 +227,19 @@ class Radii:
     count : int
         h
     clearances : tuple of HoleClearance
+    heads : tuple of HeadGap
     """
 
     numbers: tuple[tuple[int, ...], ...]
     count: int
     clearances: tuple[HoleClearance, ...]
+    heads: tuple[HeadGap, ...] = ()
+
+    @property
+    def ties(self) -> NDArray[np.int64]:
+        """(f, 2) numbers of the rims of each hole that heads hold."""
+        held = [number for one in self.heads for number in one.numbers]
+        return np.array([(2 * number, 2 * number + 1) for number in held], dtype=np.int64) if held else NO_TIES
 
     @property
     def value(self) -> Real:
@@ -141,7 +248,7 @@ class Radii:
         for one in self.clearances:
             found += [(one.value - one.low) / (one.high - one.low)] if one.high > one.low else []
             found += [0.5] if len(one.holes) == 2 else []
-        return np.array(found)
+        return np.array([*found, *(0.5 for one in self.heads if one.high > one.low)])
 
     def of(self, shares: Real) -> tuple[Real, Real]:
         """Return the radii of the discs, and how they change with shares.
@@ -153,7 +260,8 @@ class Radii:
         Returns
         -------
         tuple of ndarray
-            Radii of both rims of every hole (n, 2 h) [mm], and their slopes (n, k, 2 h).
+            Radii of both rims of every hole, then of how far the pin's places at them may be apart (n, 2 h + f) [mm],
+            and their slopes (n, k, 2 h + f).
         """
         n, k = shares.shape
         radii, slope, at = np.zeros((n, self.count)), np.zeros((n, k, self.count)), 0
@@ -171,10 +279,25 @@ class Radii:
                 radii[:, number] = size * part
                 if wide > 0.0:
                     slope[:, of_size, number] = wide * part
-        return np.repeat(radii, 2, axis=1), np.repeat(slope, 2, axis=2)
+        apart, of_apart = [np.zeros((n, 0))], [np.zeros((n, k, 0))]
+        for head in self.heads:
+            least, more = np.array(head.low), np.array(head.high) - head.low
+            of_apart.append(np.zeros((n, k, len(least))))
+            if head.high > head.low:
+                apart.append(least + shares[:, at, None] * more)
+                of_apart[-1][:, at] = more
+                at += 1
+            else:
+                apart.append(np.tile(least, (n, 1)))
+        return (
+            np.hstack([np.repeat(radii, 2, axis=1), *apart]),
+            np.concatenate([np.repeat(slope, 2, axis=2), *of_apart], axis=2),
+        )
 
 
-def radii_of(clearances: Sequence[HoleClearance], order: Sequence[Sequence[HoleName]]) -> Radii:
+def radii_of(
+    clearances: Sequence[HoleClearance], order: Sequence[Sequence[HoleName]], heads: tuple[HeadGap, ...] = ()
+) -> Radii:
     """Return the radii of holes by what is open of their clearances.
 
     Parameters
@@ -182,6 +305,7 @@ def radii_of(clearances: Sequence[HoleClearance], order: Sequence[Sequence[HoleN
     clearances : sequence of HoleClearance
     order : sequence of sequence of (str, str)
         The names of every hole: where several joints have one pin, it has several.
+    heads : tuple of HeadGap, optional
 
     Returns
     -------
@@ -196,4 +320,4 @@ def radii_of(clearances: Sequence[HoleClearance], order: Sequence[Sequence[HoleN
             known.update(own)
             numbers.append(own)
             kept.append(one)
-    return Radii(numbers=tuple(numbers), count=len(order), clearances=tuple(kept))
+    return Radii(numbers=tuple(numbers), count=len(order), clearances=tuple(kept), heads=heads)

@@ -15,6 +15,10 @@ needs no curvature in K: directions in which nothing resists are held by the dis
 is a lower bound of the least value (the Lagrange dual), so that what is found proves how near it is: by
 ``gap`` >= ½ eᵀ K e, where e is the error of v.
 
+The difference of two pairs of one radius r may be kept in a disc too, of the radius ρ. Half their sum over r and half
+their difference over min(r, ρ/2) are the variables then. The inner share e of every disc is linear in the variables,
+and its multiplier z adds z e to the slope along e; else all is the same.
+
 Many states, with other radii each, are solved side by side.
 """
 
@@ -40,19 +44,21 @@ SHORTER = 0.995
 """Share of the way to the nearest boundary that a step may go."""
 TOWARDS = 0.1
 """Share of the mean product z s that a step aims at."""
+NO_TIES = np.empty((0, 2), dtype=np.int64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class InDiscs:
-    """The least values of n states of m pairs.
+    """The least values of n states of m pairs, with f discs of differences.
 
     Attributes
     ----------
     v : ndarray, shape (n, 2 m)
         The variables.
     share : ndarray, shape (n, 2 m)
-        The same in shares of the radii.
-    multiplier : ndarray, shape (n, m)
+        w: the same in shares of the radii; of two pairs with a disc for their difference, half the sum in the place of
+        the first, half the difference in that of the second.
+    multiplier : ndarray, shape (n, m + f)
         Of the discs, in shares of the radii.
     gap : ndarray, shape (n,)
         By what the value may lie above the least one.
@@ -64,7 +70,80 @@ class InDiscs:
     gap: Real
 
 
-def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE) -> InDiscs:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Discs:
+    """Inner shares of all discs by the variables w of n states of m pairs.
+
+    Attributes
+    ----------
+    ties : ndarray of int, shape (f, 2)
+        The pairs i, j whose difference has a disc; each pair is in one of them at most.
+    half : ndarray, shape (n, f)
+        q: the inner shares of both pairs are w_i - q w_j and w_i + q w_j.
+    own : ndarray, shape (n, f)
+        p: that of the difference is p w_j.
+    """
+
+    ties: NDArray[np.int64]
+    half: Real
+    own: Real
+
+    @classmethod
+    def of(cls, radii: Real, ties: NDArray[np.int64]) -> "_Discs":
+        wide, apart = 2.0 * radii[:, ties[:, 0]], radii[:, radii.shape[1] - len(ties) :]
+        half = np.divide(apart, wide, out=np.ones_like(wide), where=apart < wide)
+        own = np.divide(wide, apart, out=np.ones_like(wide), where=apart > wide)
+        return cls(ties=ties, half=half, own=own)
+
+    def __getitem__(self, states: NDArray[np.int64] | NDArray[np.bool_]) -> "_Discs":
+        return _Discs(ties=self.ties, half=self.half[states], own=self.own[states])
+
+    def inner(self, w: Real) -> Real:
+        """(n, m + f, 2) of w (n, 2 m)."""
+        pairs, (i, j) = w.reshape(len(w), -1, 2), self.ties.T
+        if not len(self.ties):
+            return pairs
+        found = np.concatenate([pairs, self.own[..., None] * pairs[:, j]], axis=1)
+        by_half = self.half[..., None] * pairs[:, j]
+        found[:, i], found[:, j] = pairs[:, i] - by_half, pairs[:, i] + by_half
+        return found
+
+    def folded(self, along: Real) -> Real:
+        """(n, 2 m, ...) by the variables, of what is (n, 2 m, ...) by the inner shares of pairs."""
+        if not len(self.ties):
+            return along
+        each, (i, j) = along.reshape(len(along), -1, 2, *along.shape[2:]), self.ties.T
+        found, half = each.copy(), self.half.reshape(*self.half.shape, *(1 for _ in each.shape[2:]))
+        found[:, i], found[:, j] = each[:, i] + each[:, j], half * (each[:, j] - each[:, i])
+        return found.reshape(along.shape)
+
+    def outer(self, forces: Real) -> Real:
+        """(n, 2 m) what forces (n, m + f, 2) on all inner shares are on w."""
+        count = forces.shape[1] - len(self.ties)
+        found = self.folded(forces[:, :count].reshape(len(forces), -1))
+        if len(self.ties):
+            found.reshape(len(found), -1, 2)[:, self.ties[:, 1]] += self.own[..., None] * forces[:, count:]
+        return found
+
+    def held(self, A: Real, own: Real) -> Real:
+        """A (n, 2 m, 2 m) with the stiffness (n, m + f, 2, 2) of all inner shares."""
+        found, count = A.copy(), A.shape[1] // 2
+        at = [slice(2 * i, 2 * i + 2) for i in range(count)]
+        tied = set(self.ties.ravel().tolist())
+        for i in range(count):
+            if i not in tied:
+                found[:, at[i], at[i]] += own[:, i]
+        for k, (i, j) in enumerate(self.ties):
+            both, half = own[:, i] + own[:, j], self.half[:, k, None, None]
+            across = half * (own[:, j] - own[:, i])
+            found[:, at[i], at[i]] += both
+            found[:, at[i], at[j]] += across
+            found[:, at[j], at[i]] += across
+            found[:, at[j], at[j]] += half**2 * both + self.own[:, k, None, None] ** 2 * own[:, count + k]
+        return found
+
+
+def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: NDArray[np.int64] = NO_TIES) -> InDiscs:
     """Return where ½ vᵀ K v - gᵀ v is least with every pair of variables in its disc.
 
     Parameters
@@ -72,10 +151,12 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE) -> InDis
     K : ndarray, shape (2 m, 2 m)
         Symmetric, without negative eigenvalues.
     g : ndarray, shape (2 m,) or (n, 2 m)
-    radii : ndarray, shape (n, m)
+    radii : ndarray, shape (n, m + f)
         Not negative.
     close : float, optional
         Of the residual and of the mean product z s, over the largest entry of b, at which the steps end.
+    ties : ndarray of int, shape (f, 2), optional
+        Pairs of one radius whose difference stays in a disc too, whose radii come last; each pair in one at most.
 
     Returns
     -------
@@ -87,8 +168,8 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE) -> InDis
         Where the bound does not come near to the value.
     """
     count, discs = radii.shape
-    scale = np.repeat(radii, 2, axis=1)
-    A, b = scale[:, :, None] * K * scale[:, None, :], scale * g
+    scale, every = np.repeat(radii[:, : discs - len(ties)], 2, axis=1), _Discs.of(radii, ties)
+    A, b = _scaled(K, scale, every), every.folded(scale * g)
     size = np.abs(b).max(axis=1)
     idle = size <= IDLE * np.abs(A).max(axis=(1, 2))
     A[idle], b[idle] = 0.0, 0.0
@@ -97,32 +178,42 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE) -> InDis
     w, z = np.zeros_like(b), np.ones((count, discs))
     own = np.arange(count)
     for _ in range(STEPS):
-        a, at, inner, pull = A[own], b[own], w[own].reshape(-1, discs, 2), z[own]
+        a, at, by, pull = A[own], b[own], every[own], z[own]
+        inner = by.inner(w[own])
         slack = _slack(inner)
         force = at - np.einsum("nij,nj->ni", a, w[own])
-        rest = np.abs(np.repeat(pull, 2, axis=1) * w[own] - force).max(axis=1)
+        rest = np.abs(by.outer(pull[:, :, None] * inner) - force).max(axis=1)
         mean = (pull * slack).mean(axis=1)
         going = np.maximum(rest, mean) > close
         if not going.any():
             break
-        own = own[going]
+        own, by = own[going], by[going]
         a, inner, pull, slack = a[going], inner[going], pull[going], slack[going]
         force, aim = force[going], TOWARDS * mean[going, None]
-        matrix = _with_discs(a, inner, pull)
-        right = force - ((aim / slack)[:, :, None] * inner).reshape(len(own), -1)
-        step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0].reshape(-1, discs, 2)
-        further = (aim - pull * slack + pull * (inner * step).sum(axis=2)) / slack
-        length = np.minimum(_to_rim(inner, step), _to_zero(pull, further)).min(axis=1)
+        matrix = by.held(a, _barriers(inner, pull))
+        right = force - by.outer((aim / slack)[:, :, None] * inner)
+        step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        moved = by.inner(step)
+        further = (aim - pull * slack + pull * (inner * moved).sum(axis=2)) / slack
+        length = np.minimum(_to_rim(inner, moved), _to_zero(pull, further)).min(axis=1)
         length = np.minimum(SHORTER * length, 1.0)
-        w[own] += (length[:, None, None] * step).reshape(len(own), -1)
+        w[own] += length[:, None] * step
         z[own] += length[:, None] * further
-    gap = unit * _gap(A, b, w, z)
+    gap = unit * _gap(A, b, w, z, every)
     if not (gap <= max(PROVEN, 100.0 * discs * close) * unit).all():
         raise CannotRunError(
             f"how pins stand in their holes was not found: the energy may be {float((gap / unit).max()):.1e} of that "
             "of the load too high; state in which links pins are tight, or other clearances"
         )
-    return InDiscs(v=scale * w, share=w, multiplier=z * unit[:, None], gap=gap)
+    return InDiscs(
+        v=scale * every.inner(w)[:, : w.shape[1] // 2].reshape(w.shape), share=w, multiplier=z * unit[:, None], gap=gap
+    )
+
+
+def _scaled(K: Real, scale: Real, every: _Discs) -> Real:
+    """K by the variables w (n, 2 m, 2 m)."""
+    A = every.folded(scale[:, :, None] * K * scale[:, None, :])
+    return every.folded(A.swapaxes(1, 2)).swapaxes(1, 2)
 
 
 def _to_rim(inner: Real, step: Real) -> Real:
@@ -138,57 +229,70 @@ def _to_zero(value: Real, step: Real) -> Real:
     return np.asarray(np.divide(value, -step, out=np.full_like(value, np.inf), where=step < 0.0))
 
 
-def _gap(A: Real, b: Real, w: Real, z: Real) -> Real:
+def _gap(A: Real, b: Real, w: Real, z: Real, every: _Discs) -> Real:
     """Value less its lower bound (n,)."""
     value = 0.5 * np.einsum("ni,nij,nj->n", w, A, w) - (b * w).sum(axis=1)
-    pull = np.repeat(z, 2, axis=1)
-    held = A + pull[:, :, None] * np.eye(A.shape[1])
+    held = every.held(A, z[:, :, None, None] * np.eye(2))
     bound = -0.5 * (b * np.linalg.solve(held, b[:, :, None])[:, :, 0]).sum(axis=1) - 0.5 * z.sum(axis=1)
     return np.asarray(np.maximum(value - bound, 0.0))
 
 
-def slopes(K: Real, radii: Real, found: InDiscs, state: NDArray[np.int64], along: Real) -> Real:
+def slopes(
+    K: Real,
+    radii: Real,
+    found: InDiscs,
+    state: NDArray[np.int64],
+    along: Real,
+    ties: NDArray[np.int64] = NO_TIES,
+) -> Real:
     """Return how linear functions of the variables change with the radii.
 
-    The optimal state follows from A w - b + z w = 0 with z s = μ at the last μ, which is smooth in the radii r. Its
-    Jacobian is inverted once for each state.
+    The optimal state follows from A w - b + Σ z e = 0 with z s = μ at the last μ, which is smooth in the radii. Its
+    Jacobian is inverted once for each state. Of pairs with a disc for their difference v stays, in place of w, and a
+    disc that grows presses its e by (2 + |e|²/s) z over its radius less.
 
     Parameters
     ----------
     K : ndarray, shape (2 m, 2 m)
-    radii : ndarray, shape (n, m)
+    radii : ndarray, shape (n, m + f)
     found : InDiscs
         Of these.
     state : ndarray of int, shape (k,)
         Which state each function is of.
     along : ndarray, shape (k, 2 m)
         a of each function aᵀ v.
+    ties : ndarray of int, shape (f, 2), optional
+        As in ``least_in_discs``.
 
     Returns
     -------
-    ndarray, shape (k, m)
+    ndarray, shape (k, m + f)
         Of aᵀ v by each radius.
     """
-    count, discs = radii.shape
-    scale, w = np.repeat(radii, 2, axis=1), found.share
-    inverse = np.linalg.inv(
-        _with_discs(scale[:, :, None] * K * scale[:, None, :], w.reshape(count, discs, 2), found.multiplier)
-    )
-    pull = np.repeat(found.multiplier, 2, axis=1) * w  # what is left of g - K v at a rim, times its radius
-    force = np.divide(pull, scale, out=np.zeros_like(pull), where=scale > 0.0)
-    y = np.einsum("kij,kj->ki", inverse[state], scale[state] * along)
-    each = along * w[state] + y * force[state] - (scale[state] * y) @ K * w[state]
-    return np.asarray(each.reshape(len(state), discs, 2).sum(axis=2))
+    pairs = radii.shape[1] - len(ties)
+    scale, every = np.repeat(radii[:, :pairs], 2, axis=1), _Discs.of(radii, ties)
+    w, z, inner = found.share, found.multiplier, every.inner(found.share)
+    inverse = np.linalg.inv(every.held(_scaled(K, scale, every), _barriers(inner, z)))
+    moved = np.einsum("kij,kj->ki", inverse[state], every[state].folded(scale[state] * along))
+    y = every[state].inner(moved)
+    force = _over(np.repeat(z[:, :pairs], 2, axis=1) * w, scale)  # what is left of g - K v at a rim, times its radius
+    own = y[:, :pairs].reshape(along.shape)
+    each = along * w[state] + own * force[state] - (scale[state] * own) @ K * w[state]
+    by_radii = np.hstack([each.reshape(len(state), pairs, 2).sum(axis=2), np.zeros((len(state), len(ties)))])
+    tied = [*ties.ravel(), *range(pairs, pairs + len(ties))]  # whose w depends on several radii
+    pull = _over(z * (2.0 + (inner**2).sum(axis=2) / _slack(inner)), radii)[state]
+    by_radii[:, tied] = (pull * (y * inner[state]).sum(axis=2))[:, tied]
+    return np.asarray(by_radii)
 
 
-def _with_discs(A: Real, inner: Real, pull: Real) -> Real:
-    """A with the curvature of the discs' barriers (n, 2 m, 2 m), from shares (n, m, 2) and multipliers (n, m)."""
+def _over(value: Real, size: Real) -> Real:
+    return np.divide(value, size, out=np.zeros_like(value), where=size > 0.0)
+
+
+def _barriers(inner: Real, pull: Real) -> Real:
+    """Stiffness (n, m + f, 2, 2) of the discs' barriers, from inner shares (n, m + f, 2) and multipliers (n, m + f)."""
     own = (pull / _slack(inner))[:, :, None, None] * inner[:, :, :, None] * inner[:, :, None, :]
-    own += pull[:, :, None, None] * np.eye(2)
-    found = A.copy()
-    for i in range(inner.shape[1]):
-        found[:, 2 * i : 2 * i + 2, 2 * i : 2 * i + 2] += own[:, i]
-    return found
+    return np.asarray(own + pull[:, :, None, None] * np.eye(2))
 
 
 def _slack(inner: Real) -> Real:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.pins.clearances import Radii, clearances_of, pin_size, radii_of
+from alula.fea.pins.clearances import Radii, clearances_of, head_gaps, pin_size, radii_of
 from alula.fea.pins.holes import RimFrame, rims_of
 from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
 from alula.fea.pins.tangent import RimTangent, tangent_of
@@ -75,7 +75,7 @@ class PinStates:
         InDiscs
         """
         radii, _ = self.radii.of(shares)
-        return least_in_discs(self.rims.K, self.rims.g, radii)
+        return least_in_discs(self.rims.K, self.rims.g, radii, ties=self.radii.ties)
 
     def answer(self, v: Real) -> FrameSolution:
         """Return the frame's answer with its pins as they stand.
@@ -157,7 +157,8 @@ class PinStates:
         RimTangent
         """
         lengths = np.array([hole.high - hole.low for hole in self.rims.holes])
-        return tangent_of(self.radii.of(shares[None])[0][0], v, self.rims.g - self.rims.K @ v, lengths)
+        radii = self.radii.of(shares[None])[0][0]
+        return tangent_of(radii, v, self.rims.g - self.rims.K @ v, lengths, self.radii.ties)
 
     @property
     def tangents(self) -> tuple[RimTangent, ...]:
@@ -215,13 +216,14 @@ class PinStates:
     def _stands(self, shares: Real) -> tuple[Real, InDiscs]:
         """Radii, and where pins stand, near enough to tell which state is worse."""
         radii = np.maximum(self.radii.of(shares)[0], LEAST_RADIUS)
-        return radii, least_in_discs(self.rims.K, self.rims.g, radii, ROUGH)
+        return radii, least_in_discs(self.rims.K, self.rims.g, radii, ROUGH, self.radii.ties)
 
     def _ends(self, shares: Real, aims: Real) -> Real:
         """The ends of shares' ranges to which each aim rises, from each of its shares."""
         known, state = np.unique(shares, axis=0, return_inverse=True)
         radii, at = self._stands(known)
-        rising = np.einsum("akr,ar->ak", self.radii.of(known)[1][state], slopes(self.rims.K, radii, at, state, aims))
+        by_radii = slopes(self.rims.K, radii, at, state, aims, self.radii.ties)
+        rising = np.einsum("akr,ar->ak", self.radii.of(known)[1][state], by_radii)
         telling = np.abs(rising) > FLAT * np.abs(rising).max(axis=1, keepdims=True)
         return np.where(telling, (rising > 0.0).astype(float), shares)
 
@@ -263,7 +265,7 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
         return None
     rims = RimFrame.of(frame, {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes})
     names = [[(joint, hole.link) for joint in hole.joints] for hole in rims.holes]
-    return PinStates(rims=rims, radii=radii_of(open_holes, names))
+    return PinStates(rims=rims, radii=radii_of(open_holes, names, head_gaps(case, rims.holes)))
 
 
 def unstated(case: Case, pins: PinStates) -> tuple[str, ...]:

@@ -26,8 +26,8 @@ from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
-from alula.fea.outcomes.free_motion import rim_forces
-from alula.fea.pins.clearances import loose_holes
+from alula.fea.outcomes.free_motion import furthest, rim_forces
+from alula.fea.pins.clearances import apart_at_rims, loose_holes
 from alula.geometry.clearance.shape import TOUCHING
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import clearances
@@ -248,7 +248,9 @@ class LayerGaps:
                             x, y = (over.places - origin).T[..., None, None]
                             key = name, held
                             force += sign * (push[key] + y * about_x[key] - x * about_y[key])
-                    each.append(play / 2.0 * np.linalg.norm(force, axis=-1).sum(axis=-1))
+                    alone = len(group) == 1
+                    apart = apart_at_rims(self.case, name, held, play) if alone else play
+                    each.append(furthest(play / 2.0 * force, np.array(apart / (play / 2.0))))
                 total += np.max(each, axis=0)
         return total
 

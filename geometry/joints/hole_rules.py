@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.joints.fits import RUNNING, fit
+from alula.geometry.joints.heads import Heads
 from alula.geometry.joints.holes import by_link, largest_clearance, loose_links
 from alula.geometry.joints.joint import Joint
 from alula.geometry.joints.pin_entries import PRESS, RUNS
@@ -31,6 +32,8 @@ def check_holes(name: str, joint: Joint) -> None:
         _check_fits(f"{entry}.fit", joint)
     if not joint.bonded:
         _check_apart(entry, joint)
+    if joint.heads is not None:
+        _check_heads(f"{entry}.heads", joint, joint.heads)
 
 
 def _check_table(entry: str, joint: Joint, stated: Mapping[str, object]) -> None:
@@ -108,4 +111,22 @@ def _check_apart(entry: str, joint: Joint) -> None:
         raise CaseError(
             f"{entry}.{plain[0]}: it gives the pin play, but tight_in says that it is tight in every link; leave out "
             "one of the two"
+        )
+
+
+def _check_heads(entry: str, joint: Joint, heads: Heads) -> None:
+    """Refuse heads of a pin that does not turn in two holes, and those that would fall through one."""
+    if not joint.pivots:
+        kind = "bonded joint" if joint.fixed else f"joint of type {joint.type}"
+        raise CaseError(f"{entry}: a {kind} has no pin that turns in two holes, so heads hold none; leave them out")
+    hole = (joint.pin_diameter or 0.0) + largest_clearance(joint)
+    if heads.diameter <= hole:
+        raise CaseError(
+            f"{entry}.diameter: it is {heads.diameter:g} mm, but must be larger than the hole, {hole:g} mm; make it "
+            "larger"
+        )
+    if heads.gap_ends[1] >= heads.diameter:
+        raise CaseError(
+            f"{entry}.gap: it is {heads.gap_ends[1]:g} mm, but must stay below the diameter of the heads, "
+            f"{heads.diameter:g} mm; make it smaller, or leave heads out"
         )

@@ -8,7 +8,7 @@ from enum import StrEnum
 from alula.geometry.base.errors import CaseError
 from alula.geometry.joints.fits import LARGEST, RUNNING, fit
 from alula.geometry.joints.joint import Joint
-from alula.geometry.joints.pin_entries import PRESS, RUNS, Range
+from alula.geometry.joints.pin_entries import PRESS, RUNS, Range, ends_of
 
 
 class Known(StrEnum):
@@ -183,7 +183,7 @@ def by_link(joint: Joint) -> dict[str, tuple[Known, Range]]:
     """
     clearances = joint.clearance if isinstance(joint.clearance, Mapping) else {}
     fits = joint.fit if isinstance(joint.fit, Mapping) else {}
-    return {link: (Known.CLEARANCE, _ends(stated)) for link, stated in clearances.items()} | {
+    return {link: (Known.CLEARANCE, ends_of(stated)) for link, stated in clearances.items()} | {
         link: _of_fit(code, joint) for link, code in fits.items()
     }
 
@@ -194,11 +194,7 @@ def _plain(joint: Joint) -> tuple[Known, Range] | None:
         return _of_fit(joint.fit, joint)
     if joint.clearance is None or isinstance(joint.clearance, Mapping):
         return None
-    return Known.CLEARANCE, _ends(joint.clearance)
-
-
-def _ends(stated: float | Range) -> Range:
-    return stated if isinstance(stated, tuple) else (stated, stated)
+    return Known.CLEARANCE, ends_of(joint.clearance)
 
 
 def _of_fit(code: str, joint: Joint) -> tuple[Known, Range]:

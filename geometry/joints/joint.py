@@ -8,6 +8,7 @@ from pydantic_core import PydanticKnownError
 
 from alula.geometry.base.model import CaseModel, Name
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from alula.geometry.joints.heads import Heads
 from alula.geometry.joints.joint_kinds import JOINT_KINDS, JointKind, Way, Ways
 from alula.geometry.joints.pin_entries import PRESS, PinClearance, PinFit
 
@@ -79,6 +80,9 @@ class Joint(CaseModel):
     and a pin d to h in grades 5 to 12 (rounded by up to 2 µm; coarser than IT8 or above 315 mm by up to 5 %, and 16 %
     up to 3 mm); "running", for which H8/f7 is assumed; or, for a link, "press". Of the hole in which the pin is not
     tight, or a table with one for each link, such as { crank = "press", coupler = "H8/f7" }."""
+    heads: Heads | None = None
+    """Where links lie in layers: faces on the pin, such as a head and a ring, that keep its links from tilting by more
+    than their gap over their diameter, and bear couples from there on. Left out, only the holes do."""
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0

@@ -34,22 +34,53 @@ def _by_link(stated: object, read: Callable[[object], _T]) -> _T | dict[str, _T]
 
 
 def _clearance(stated: object) -> float | Range:
-    """Read a length, or a range of lengths."""
+    return length_or_range(stated, "clearance", 'write zero or more, or a fit = { LINK = "press" }')
+
+
+def length_or_range(stated: object, what: str, remedy: str) -> float | Range:
+    """Read a length that is not negative, or a range of such lengths.
+
+    Parameters
+    ----------
+    stated : object
+        As a case has it.
+    what, remedy : str
+        What it is, and what to do where it is negative.
+
+    Returns
+    -------
+    float or tuple of 2 float
+        [mm]
+    """
+
+    def size(value: object) -> float:
+        found = parse(value, "length")
+        if found < 0.0:
+            raise refusal(f"the {what} must not be negative; {remedy}")
+        return found
+
     if not isinstance(stated, list | tuple):
-        return _size(stated)
+        return size(stated)
     if len(stated) != 2:
         raise refusal('a range has two lengths; write for example ["0.01 mm", "0.05 mm"]')
-    low, high = map(_size, stated)
+    low, high = map(size, stated)
     if low > high:
-        raise refusal(f"its range goes from {low:g} mm to {high:g} mm; write the least clearance first")
+        raise refusal(f"its range goes from {low:g} mm to {high:g} mm; write the least {what} first")
     return low, high
 
 
-def _size(stated: object) -> float:
-    value = parse(stated, "length")
-    if value < 0.0:
-        raise refusal('the clearance must not be negative; write zero or more, or a fit = { LINK = "press" }')
-    return value
+def ends_of(stated: float | Range) -> Range:
+    """Return the least and the largest of a length or a range.
+
+    Parameters
+    ----------
+    stated : float or tuple of 2 float
+
+    Returns
+    -------
+    tuple of 2 float
+    """
+    return stated if isinstance(stated, tuple) else (stated, stated)
 
 
 def _fit(stated: object) -> str:
@@ -77,12 +108,14 @@ _LENGTH = {
     "examples": [EXAMPLES["length"]],
     "x-rule": "not negative",
 }
-_RANGE = {"type": "array", "items": _LENGTH, "minItems": 2, "maxItems": 2}
+LENGTH_OR_RANGE: dict[str, Any] = {
+    "anyOf": [_LENGTH, {"type": "array", "items": _LENGTH, "minItems": 2, "maxItems": 2}]
+}
 
 PinClearance = Annotated[
     float | Range | dict[str, float | Range],
     PlainValidator(lambda stated: _by_link(stated, _clearance)),
-    _schema({"anyOf": [_LENGTH, _RANGE]}),
+    _schema(LENGTH_OR_RANGE),
 ]
 """Diametral clearance [mm], a range of it, or either by link."""
 PinFit = Annotated[

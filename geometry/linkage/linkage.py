@@ -96,6 +96,7 @@ def _check_clamp(name: str, joint: Joint) -> None:
         ("friction", "does not turn"),
         ("clearance", "has no play"),
         ("fit", "has no pin"),
+        ("heads", "has no pin"),
         ("tight_in", "has no pin"),
     ):
         if getattr(joint, wrong):

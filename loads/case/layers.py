@@ -3,6 +3,7 @@
 import math
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.joints.holes import HolePlay
 from alula.loads.case.core import CoreCase
 from alula.loads.case.forks import levels, outer_link
 from alula.loads.case.heights import thickness
@@ -108,9 +109,12 @@ def check_layers(case: CoreCase) -> None:
     ------
     CaseError
         As ``heights``; for a pin that is tight in a link that its joint does not have, or where no layers are stated (a
-        layer_spacing of 0, which takes stated ones back, passes it over); for a gap that the layers tell already.
+        layer_spacing of 0, which takes stated ones back, passes it over); for a gap that the layers tell already; for
+        heads of one joint of a pin alone, and joints of one pin that state one hole in two ways.
     """
     case.linkage  # noqa: B018 - its own rules come first
+    _check_heads(case)
+    _check_shared_holes(case)
     layered = case.layered
     taken_back = case.layer_spacing == 0.0
     for name, joint in case.joints.items():
@@ -119,8 +123,48 @@ def check_layers(case: CoreCase) -> None:
                 raise CaseError(
                     f"joints.{name}.tight_in: '{link}' is no link of this joint; choose one of {', '.join(joint.links)}"
                 )
-        for entry in ("pin_gap",) if layered else () if taken_back else ("tight_in",):
+        for entry in ("pin_gap",) if layered else () if taken_back else ("tight_in", "heads"):
             in_fork = layered and outer_link(case, name) is not None  # both links lie in one layer
             if entry in joint.model_fields_set and not in_fork:
                 why = "the layers tell the gap" if layered else "it has a meaning only where links lie in layers"
                 raise CaseError(f"joints.{name}.{entry}: {why}; leave it out")
+
+
+def _check_heads(case: CoreCase) -> None:
+    """Refuse heads of some joints of a pin: the gaps of all of its links are one."""
+    for names in on_one_axis(case):
+        turning = [name for name in names if case.joints[name].pivots]
+        without = [name for name in turning if case.joints[name].heads is None]
+        if without and len(without) < len(turning):
+            name = next(name for name in turning if name not in without)
+            raise CaseError(
+                f"joints.{name}.heads: joint '{without[0]}' is on the same pin and states none, but its links share "
+                "the gap; state heads of both, whose gaps add up, or of neither"
+            )
+
+
+def _check_shared_holes(case: CoreCase) -> None:
+    """Refuse two joints of one pin between layers that state the hole of a link in two ways."""
+    stated: dict[tuple[str, str], tuple[str, HolePlay]] = {}
+    for name, joint in case.joints.items() if case.layered else ():
+        sits = case.linkage.pin_holes(name)
+        for hole in sits.holes if joint.pivots and sits.shared is None else ():
+            if not hole.stated:
+                continue
+            eye = hole.link, case.linkage.point_of(name, hole.link)
+            first, other = stated.setdefault(eye, (name, hole))
+            if (hole.low, hole.high) != (other.low, other.high):
+                raise CaseError(
+                    f"joints.{name}: it states {_width(hole)} in the hole of '{hole.link}', but joint '{first}' on the "
+                    f"same pin states {_width(other)} there; state the same in both, or leave it out of one"
+                )
+
+
+def _width(hole: HolePlay) -> str:
+    if hole.high == 0.0:
+        return "a tight pin"
+    return (
+        f"a clearance of {hole.low:.4g} to {hole.high:.4g} mm"
+        if hole.low < hole.high
+        else (f"a clearance of {hole.high:.4g} mm")
+    )

@@ -29,10 +29,14 @@ parts.bar = { shape = "bar", material = "pvc-paredes-2018", width = "8 mm", thic
 """
 
 
+HEADS = {"diameter": "5 mm", "gap": ["0 mm", "0.1 mm"]}
+
+
 def lever(**entries: Any) -> Case:
     """A lever 7 mm above its ground, with a play of 0.2 mm and a part of 4 mm."""
     data = tomllib.loads(LEVER)
     data["joints"]["O"] |= {k: v for k, v in entries.items() if k == "tight_in"}
+    data["joints"]["O"] |= {k: v for k, v in entries.items() if k == "heads"}
     data["links"]["base"] |= {k: v for k, v in entries.items() if k == "thickness"}
     return checked(data)
 
@@ -50,26 +54,40 @@ def free(case: Case, link: str, point: str) -> FreeMotion:
         ({"tight_in": "arm", "thickness": "20 mm"}, 0.1, 0.2 / 20.0 * 60.0),
         ({"tight_in": "arm"}, 0.2 / 4.0 * 7.0, 0.2 / 4.0 * 60.0),  # as long as that of the arm
         ({"thickness": "8 mm"}, 0.2 / 8.0 * 7.0, 0.2 / 4.0 * 60.0),  # either: each direction has its worst
+        ({"tight_in": "base", "heads": HEADS}, 0.1, 0.1 / 5.0 * 60.0),
+        ({"tight_in": "arm", "thickness": "20 mm", "heads": HEADS}, 0.1, 0.2 / 20.0 * 60.0),  # rims touch first
+        ({"tight_in": "arm", "thickness": "8 mm", "heads": HEADS}, 0.1 + 0.1 / 5.0 * 3.0, 0.1 / 5.0 * 60.0),
     ],
 )
 def test_a_lever_tilts_by_its_play_over_the_length_of_the_hole(entries, plane, across):
-    """Along the arm by c/2, or c h/t where the hole is in the ground; across by c/t times the length of the arm."""
+    """Along the arm by c/2, or c h/t where the hole is in the ground; across by c/t times the length of the arm.
+
+    Between heads by g/D in place of c/t, and along it about the upper rim, 4 mm above the ground: by c/2 and 3 g/D.
+    """
     found = free(lever(**entries), "arm", "P")
     along = found.plane.support(np.array([1.0 + 0j, -1.0 + 0j]))
     assert along == pytest.approx([plane, plane], rel=1e-9)
     assert found.across == pytest.approx(across, rel=1e-9)
 
 
-@pytest.mark.parametrize("loose", [LOOSE, TIGHT, {**LOOSE, "A": "crank", "O4": "rocker"}])
-def test_rigid_links_stay_within_the_free_motion_and_fill_most_of_it(loose):
+@pytest.mark.parametrize(
+    ("loose", "tilt"),
+    [(LOOSE, None), (TIGHT, None), ({**LOOSE, "A": "crank", "O4": "rocker"}, None), (LOOSE, 0.01), (TIGHT, 0.001)],
+)
+def test_rigid_links_stay_within_the_free_motion_and_fill_most_of_it(loose, tilt):
     """Forces of the elastic frame are one equilibrium of many, so that their sum bounds that of rigid links."""
     both = {name: {LOOSE[name], TIGHT[name]} for name in LOOSE}
     tight = {name: next(iter(both[name] - {link})) for name, link in loose.items()}
-    case = checked(four_bar(tight=tight, play="0.1 mm"))
+    data = four_bar(tight=tight, play="0.1 mm")
+    for joint in data["joints"].values() if tilt else ():
+        joint["heads"] = {"diameter": "5 mm", "gap": f"{5.0 * tilt} mm"}
+    case = checked(data)
     for point in ("P", "B"):
         found, where = free(case, "rocker", point), place_of(case, "rocker", point)
         rigid = [
-            rigid_motion(case, "rocker", where, np.array(along), holes=loose, play=0.1, length=4.0)
+            rigid_motion(
+                case, "rocker", where, np.array(along), holes=loose, play=0.1, length=4.0, tilt=tilt or math.inf
+            )
             for along in ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.6, -0.8, 0.0], [0.0, 0.0, 1.0])
         ]
         bound = [*found.plane.support(np.array([1.0, 1j, 0.6 - 0.8j])), found.across]

@@ -4,12 +4,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tilting_pins import LOOSE, checked, four_bar, rigid_motion
+from tilting_pins import LOOSE, TIGHT, checked, four_bar, rigid_motion
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.standing.joint_forces import solved_frame
-from alula.fea.whole.layer_gaps import Raised, overlaps
+from alula.fea.whole.layer_gaps import LayerGaps, Raised, overlaps
 from alula.loads.states.actions import acting_loads
 from alula.loads.states.clearance import assembly
 from alula.reports.sentences import told
@@ -76,6 +76,22 @@ def test_play_closes_the_gap_by_no_less_than_that_of_rigid_links():
     small = gap("4.2 mm", play="0.1 mm")
     assert small.verdict is Verdict.UNDECIDED
     assert "links rocker and coupler, 0.2 mm apart along the pins without load" in told(small.reason)
+
+
+@pytest.mark.parametrize("tilt", [0.015, 0.003])
+def test_heads_keep_links_apart_by_no_more_than_rigid_ones(tilt):
+    data, free, rigid = four_bar(play="0.1 mm", tight=TIGHT), [], []
+    for joint in data["joints"].values():
+        joint["heads"] = {"diameter": "6 mm", "gap": f"{6.0 * tilt} mm"}
+    case = checked(data)
+    frame, _ = solved_frame(case, case.solve_pose(), (), case.pinned_drive)
+    gaps = LayerGaps(case=case, load_case="l", moved=None, assembly=assembly(case))  # what it becomes is not asked
+    for one in overlaps(frame, gaps.assembly):
+        far = max(one.places, key=lambda at: np.linalg.norm(at - one.places.mean(axis=0)))
+        place, holes = np.array([*far, 4.5]), {"play": 0.1, "length": 4.0, "tilt": tilt, "against": one.upper}
+        free.append(gaps._free(frame, one).max())
+        rigid.append(rigid_motion(case, one.lower, place, np.eye(3)[2], holes=LOOSE, **holes))
+    assert max(rigid) * (1.0 - 2e-3) < max(free) < 1.5 * max(rigid)
 
 
 def test_deflection_that_closes_the_gap_fails_and_goes_with_the_load():

@@ -70,14 +70,23 @@ def material(young: float) -> dict[str, Any]:
     return card | {table: dict.fromkeys(entries, "assumed") for table in ("sources", "status")}
 
 
-def lap(clearances: dict[str, float], *, force: float = 20.0, crank: float = 6.0, coupler: float = 12.0) -> dict:
-    """The data of the lap joint: clearances at A, the force, and thicknesses [mm, N]."""
+def lap(
+    clearances: dict[str, float],
+    *,
+    force: float = 20.0,
+    crank: float = 6.0,
+    coupler: float = 12.0,
+    heads: tuple[float, float] | None = None,
+) -> dict:
+    """The data of the lap joint: clearances at A, the force, thicknesses, diameter and gap of heads at A [mm, N]."""
     data = tomllib.loads(LAP)
     data["materials"] = {"hard": material(210000.0), "soft": material(SOFT)}
     data["joints"]["A"]["clearance"] = {link: f"{size} mm" for link, size in clearances.items()}
     data["load_cases"]["l"]["forces"][0]["force"] = [f"{force} N", "0 N"]
     for name, thickness in (("crank", crank), ("coupler", coupler)):
         data["parts"][name]["thickness"] = f"{thickness} mm"
+    if heads is not None:
+        data["joints"]["A"]["heads"] = dict(zip(("diameter", "gap"), (f"{size} mm" for size in heads), strict=True))
     return data
 
 
@@ -131,6 +140,42 @@ def test_a_running_pin_tilts_about_one_rim_until_it_meets_the_other():
     assert abs(high[0] - low[0]) == pytest.approx(tilt * 6.0, rel=1e-2)
 
 
+@pytest.mark.parametrize(
+    ("clearance", "heads", "tilt"),
+    [
+        (0.3, (8.0, 0.1), 0.1 / 8.0),  # heads before the second rim
+        (0.3, (4.0, 0.1), 0.1 / 4.0),
+        (0.3, (8.0, 0.0), 0.0),  # as a pressed pin
+        (0.05, (8.0, 0.1), 0.05 / 6.0),  # the second rim before heads
+        (0.3, (50.0, 0.64), 0.64 / 32.0),  # faces no larger than the eye of 32 mm
+    ],
+)
+def test_heads_stop_the_tilt_at_their_gap_over_their_diameter(clearance, heads, tilt):
+    """As rims do at c/6: what a pin tilted by θ leaves of its couple, F h/2 - E I θ/h, rims and heads bear together."""
+    case = checked(lap({"crank": 0.0, "coupler": clearance}, crank=12.0, coupler=6.0, heads=heads))
+    less = BENDING * tilt / HIGH
+    assert couples(case, "A") == pytest.approx((100.0 + less, 100.0 - less), rel=3e-4)
+
+
+@pytest.mark.parametrize(("gap", "tilt"), [(0.016, 0.002), (0.08, (HIGH / 2.0 - 3.0) * HIGH / BENDING)])
+def test_heads_bear_what_a_pin_beyond_its_seat_has_no_room_to_tilt_from(gap, tilt):
+    """On one rim it bears F t/2 and tilts by 0.005: heads let it have 0.002 of that, or more than all."""
+    data = lap({"crank": 0.0, "coupler": 0.1}, force=1.0, crank=12.0, coupler=6.0, heads=(8.0, gap))
+    less = BENDING * tilt / HIGH
+    assert couples(checked(data), "A") == pytest.approx((HIGH / 2.0 + less, HIGH / 2.0 - less), rel=5e-4)
+
+
+def test_a_seated_pin_does_not_touch_its_heads():
+    """In 12 mm it bears up to 6 F without tilt; the gap is open, and nothing is as it is without heads but the stop."""
+    plain, held = (lap({"crank": 0.0, "coupler": 0.1}, heads=heads) for heads in (None, (8.0, 0.05)))
+    one, other = (forces_of(checked(data)).pins for data in (plain, held))
+    assert one is not None
+    assert other is not None
+    assert other.value == pytest.approx(one.value, abs=1e-7)
+    assert (one.tangents[0].touching, one.tangents[0].tilt) == (2, pytest.approx(0.1 / 12.0))
+    assert (other.tangents[0].touching, other.tangents[0].tilt) == (2, pytest.approx(0.05 / 8.0))
+
+
 def test_the_longer_hole_of_two_with_one_clearance_bears_more():
     """Both could tilt; the one of 6 mm does, by c/6, and that of 12 mm stays seated below 6 F."""
     case = checked(lap({"crank": 0.01, "coupler": 0.01}))
@@ -169,7 +214,14 @@ def test_a_stub_pressed_in_the_ground_bears_the_couple_alone():
     assert check.value.high >= 60.0 * 0.12 / 4.0
 
 
-def three(joints: dict[str, list[str]], clearances: dict[str, str], *, lower: float = 20.0, upper: float = 20.0):
+def three(
+    joints: dict[str, list[str]],
+    clearances: dict[str, str],
+    *,
+    lower: float = 20.0,
+    upper: float = 20.0,
+    heads: dict[str, dict[str, str]] | None = None,
+):
     """A crank between two couplers on one pin, each with a rocker of its own; forces along both couplers [N]."""
     data = lap({})
     points = data["links"]["coupler"]["points"]
@@ -185,7 +237,7 @@ def three(joints: dict[str, list[str]], clearances: dict[str, str], *, lower: fl
     for name, pair in joints.items():
         own = {link: clearances.get(link, "0 mm") for link in pair}
         data["joints"][name] = {"links": pair, "points": ["A", "A"], "pin_diameter": "3 mm", "clearance": own}
-        data["joints"][name]["pin_material"] = "soft"
+        data["joints"][name] |= {"pin_material": "soft", **({"heads": heads[name]} if heads else {})}
     data["pose"]["near"] = {"lower": "0 deg", "upper": "0 deg", "rocker": "90 deg", "other": "90 deg"}
     data["parts"]["crank"]["thickness"], data["parts"]["coupler"]["thickness"] = "6 mm", "12 mm"
     forces = {"lower": lower, "upper": upper}
@@ -224,10 +276,22 @@ def test_pulled_alike_on_both_sides_the_middle_link_of_a_pin_bears_no_couple(joi
 
 
 @pytest.mark.parametrize("joints", ONE_PIN)
-@pytest.mark.parametrize(("clearance", "tilt"), [("0 mm", 0.0), ("0.02 mm", 0.02 / 6.0), ("2.9 mm", math.inf)])
-def test_pulled_against_each_other_the_middle_link_bears_what_its_tilt_leaves(joints, clearance, tilt):
+@pytest.mark.parametrize(
+    ("clearance", "gaps", "tilt"),
+    [
+        ("0 mm", None, 0.0),
+        ("0.02 mm", None, 0.02 / 6.0),
+        ("2.9 mm", None, math.inf),
+        ("2.9 mm", ("0.1 mm", "0.02 mm"), 0.12 / 8.0),  # of both joints on the pin, over the smaller face
+    ],
+)
+def test_pulled_against_each_other_the_middle_link_bears_what_its_tilt_leaves(joints, clearance, gaps, tilt):
     """By halves beams of h: the crank bears F h - 2 E I θ/h, tilted by θ = c/t; none where a pin runs freely."""
-    found = borne_by(three(joints, {"crank": clearance}, lower=-20.0))
+    heads = gaps and {
+        name: {"diameter": size, "gap": gap}
+        for name, size, gap in zip(("A", "A2"), ("8 mm", "9 mm"), gaps, strict=True)
+    }
+    found = borne_by(three(joints, {"crank": clearance}, lower=-20.0, heads=heads))
     free = 20.0 * HIGH**2 / (2.0 * BENDING)
     less = 2.0 * BENDING * min(tilt, free) / HIGH
     assert abs(found["crank"]) == pytest.approx(20.0 * HIGH - less, rel=5e-3, abs=0.5)

@@ -13,6 +13,7 @@ from alula.fea.frame.build import build_frame
 from alula.fea.nonlinear.corotational import SUBDIVISIONS
 from alula.fea.nonlinear.on_rims import Extended, divided
 from alula.fea.nonlinear.stability import COARSE_SUBDIVISIONS, buckling_factor
+from alula.fea.pins.clearances import HeadGap
 from alula.fea.pins.programme import least_in_discs
 from alula.fea.pins.states import PinStates
 from alula.fea.pins.tangent import tangent_of
@@ -31,11 +32,13 @@ def pins_of(case: Case) -> PinStates:
     return found
 
 
-def with_clearance(pins: PinStates, size: float) -> PinStates:
-    """The same pins with one clearance in every hole that is not pressed."""
+def with_clearance(pins: PinStates, size: float, apart: float | None = None) -> PinStates:
+    """The same pins with one clearance in every hole that is not pressed, and heads that keep both rims so near."""
     kept = [replace(one, low=size, value=size, high=size) for one in pins.radii.clearances if one.value > 0.0]
     numbers = [n for n, one in zip(pins.radii.numbers, pins.radii.clearances, strict=True) if one.value > 0.0]
-    return replace(pins, radii=replace(pins.radii, clearances=tuple(kept), numbers=tuple(numbers)))
+    every = tuple(k for own in numbers for k in own)
+    held = (HeadGap(numbers=every, low=(apart,) * len(every), high=(apart,) * len(every)),) if apart else ()
+    return replace(pins, radii=replace(pins.radii, clearances=tuple(kept), numbers=tuple(numbers), heads=held))
 
 
 def test_a_pin_seated_on_two_rims_is_closed_along_its_force_and_a_pendulum_across():
@@ -59,15 +62,18 @@ def test_a_rim_that_does_not_touch_is_free_and_a_pressed_hole_is_closed():
     assert tangent_of(np.zeros(2), np.zeros(4), forces, np.array([4.0])).ways.shape == (4, 0)
 
 
-@pytest.mark.parametrize("clearance", [0.002, 0.01])
+@pytest.mark.parametrize(("clearance", "apart"), [(0.002, None), (0.01, None), (0.01, 0.002), (0.01, 0.007)])
 @pytest.mark.parametrize("material", [ALUMINIUM, PLA])
-def test_the_tangent_says_how_pins_move_under_a_little_more_load(material, clearance):
+def test_the_tangent_says_how_pins_move_under_a_little_more_load(material, clearance, apart):
     """dv = N (Nᵀ K N + T)⁺ Nᵀ dg but for what strains nothing, against the state under other loads, found anew."""
-    pins = with_clearance(pins_of(loaded(material, ["0 N", "-20 N"], TIGHT)), clearance)
+    pins = with_clearance(pins_of(loaded(material, ["0 N", "-20 N"], TIGHT)), clearance, apart)
+    ties = pins.radii.ties
     K, g, radii = pins.rims.K, pins.rims.g, pins.radii.of(pins.radii.value[None])[0]
     more = K @ np.random.default_rng(5).uniform(-1.0, 1.0, len(g))
     more *= 1e-4 * np.abs(g).max() / np.abs(more).max()
-    ahead, behind = (least_in_discs(K, g + sign * more, radii, 1e-13).v[0] for sign in (1.0, -1.0))
+    ahead, behind = (least_in_discs(K, g + sign * more, radii, 1e-13, ties).v[0] for sign in (1.0, -1.0))
+    between = np.diff(pins.value.reshape(-1, 2, 2), axis=1)
+    assert (np.linalg.norm(between, axis=-1).max() > 0.999 * apart) if apart else not len(ties)
     found = pins.tangent(pins.radii.value, pins.value)
     held = found.ways.T @ K @ found.ways + np.diag(found.stiffness)
     moved = K @ found.ways @ np.linalg.pinv(held, rcond=1e-11, hermitian=True) @ found.ways.T @ more

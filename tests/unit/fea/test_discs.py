@@ -5,10 +5,11 @@ import pytest
 from scipy.optimize import LinearConstraint, NonlinearConstraint, minimize
 
 from alula.fea.pins import programme
-from alula.fea.pins.programme import least_in_discs, slopes
+from alula.fea.pins.programme import NO_TIES, least_in_discs, slopes
 from alula.geometry.base.errors import CannotRunError
 
 DISCS = 5
+TIES = np.array([[0, 1], [4, 3]])
 
 
 def problem(seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -18,13 +19,14 @@ def problem(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return factor @ factor.T, draw.standard_normal(2 * DISCS)
 
 
-def by_scipy(K: np.ndarray, g: np.ndarray, radii: np.ndarray) -> float:
-    """The least value with every pair in its disc, by a trust region method of scipy."""
+def by_scipy(K: np.ndarray, g: np.ndarray, radii: np.ndarray, ties: np.ndarray) -> float:
+    """The least value with every pair and every difference in its disc, by a trust region method of scipy."""
+    by = np.vstack([np.eye(DISCS), np.eye(DISCS)[ties[:, 1]] - np.eye(DISCS)[ties[:, 0]]])
     within = NonlinearConstraint(
-        lambda v: (v.reshape(-1, 2) ** 2).sum(axis=1),
+        lambda v: ((by @ v.reshape(-1, 2)) ** 2).sum(axis=1),
         -np.inf,
         radii**2,
-        jac=lambda v: np.array([[2.0 * x * (i // 2 == k) for i, x in enumerate(v)] for k in range(len(radii))]),
+        jac=lambda v: 2.0 * np.einsum("ki,kx->kix", by, by @ v.reshape(-1, 2)).reshape(len(radii), -1),
     )
     found = minimize(
         lambda v: (0.5 * v @ K @ v - g @ v, K @ v - g),
@@ -38,18 +40,33 @@ def by_scipy(K: np.ndarray, g: np.ndarray, radii: np.ndarray) -> float:
 
 
 @pytest.mark.filterwarnings("ignore:delta_grad == 0.0:UserWarning")  # of scipy, where a step is too short to tell
-@pytest.mark.parametrize("seed", [1, 2])
-def test_finds_the_least_value_that_scipy_finds(seed):
+@pytest.mark.parametrize(("seed", "ties"), [(1, NO_TIES), (2, NO_TIES), (2, TIES)])
+def test_finds_the_least_value_that_scipy_finds(seed, ties):
     K, g = problem(seed)
     radii = np.random.default_rng(seed).uniform(0.01, 0.3, (2, DISCS))
-    found = least_in_discs(K, g, radii)
+    radii[:, ties[:, 1]] = radii[:, ties[:, 0]]
+    radii = np.hstack([radii, np.array([[0.05, 0.2], [0.01, 0.03]])[:, : len(ties)]])
+    found = least_in_discs(K, g, radii, ties=ties)
     for v, gap, own in zip(found.v, found.gap, radii, strict=True):
         value = 0.5 * v @ K @ v - g @ v
-        least = by_scipy(K, g, own)
+        least = by_scipy(K, g, own, ties)
         assert value == pytest.approx(least, rel=1e-6)
         assert value - gap <= least + 1e-6 * abs(least)
-        assert (np.hypot(*v.reshape(-1, 2).T) <= own).all()
+        assert (np.hypot(*v.reshape(-1, 2).T) <= own[:DISCS]).all()
+        apart = v.reshape(-1, 2)[ties[:, 1]] - v.reshape(-1, 2)[ties[:, 0]]
+        assert (np.hypot(*apart.T) <= own[DISCS:] * (1.0 + 1e-9)).all()
     assert not np.allclose(found.v[0], found.v[1])
+
+
+def test_a_difference_of_no_size_makes_one_pair_of_two_and_a_wide_one_does_nothing():
+    K, g = problem(9)
+    one = np.vstack([np.eye(8)[:2], np.eye(8)])  # pairs 0 and 1 are the first of four
+    merged = least_in_discs(one.T @ K @ one, one.T @ g, np.array([[0.1, 0.2, 0.3, 0.1]])).v @ one.T
+    radii = np.array([[0.1, 0.1, 0.2, 0.3, 0.1, apart] for apart in (0.0, 0.2)])
+    found = least_in_discs(K, g, radii, ties=TIES[:1])
+    assert K @ found.v[0] == pytest.approx(K @ merged[0], abs=1e-4)
+    assert K @ found.v[1] == pytest.approx(K @ least_in_discs(K, g, radii[:1, :DISCS]).v[0], abs=1e-6)
+    assert np.abs(K @ (found.v[0] - found.v[1])).max() > 0.01
 
 
 def test_forces_vanish_inside_a_disc_and_point_outwards_at_its_rim():
@@ -73,18 +90,22 @@ def test_without_forces_nothing_moves():
     assert np.abs(least_in_discs(K, np.zeros(2 * DISCS), np.full((1, DISCS), 0.1)).v).max() < 1e-6
 
 
-def test_slopes_are_those_of_differences():
+@pytest.mark.parametrize("ties", [NO_TIES, TIES])
+def test_slopes_are_those_of_differences(ties):
     K, g = problem(6)
-    radii, step = np.random.default_rng(6).uniform(0.05, 0.3, (2, DISCS)), 1e-5
+    radii, step = np.random.default_rng(6).uniform(0.05, 0.3, (2, DISCS + len(ties))), 1e-5
+    radii[:, ties[:, 1]] = radii[:, ties[:, 0]]
     along = np.random.default_rng(7).standard_normal((3, 2 * DISCS))
     state = np.array([0, 1, 1])
-    told = slopes(K, radii, least_in_discs(K, g, radii), state, along)
-    for disc in range(DISCS):
+    told = slopes(K, radii, least_in_discs(K, g, radii, ties=ties), state, along, ties)
+    alone = np.setdiff1d(np.arange(DISCS + len(ties)), ties)
+    for discs in (*alone[:, None], *ties):  # rims of one hole have one radius
         up, down = radii.copy(), radii.copy()
-        up[:, disc] += step
-        down[:, disc] -= step
-        moved = (least_in_discs(K, g, up).v - least_in_discs(K, g, down).v)[state] / (2.0 * step)
-        assert told[:, disc] == pytest.approx((moved * along).sum(axis=1), rel=2e-3, abs=2e-3)
+        up[:, discs] += step
+        down[:, discs] -= step
+        ends = (least_in_discs(K, g, at, ties=ties).v for at in (up, down))
+        moved = np.subtract(*ends)[state] / (2.0 * step)
+        assert told[:, discs].sum(axis=1) == pytest.approx((moved * along).sum(axis=1), rel=2e-3, abs=2e-3)
 
 
 def test_what_is_not_proven_is_no_answer(monkeypatch):

@@ -70,6 +70,16 @@ REFUSED = {
     "no such diameter": (['fit="H8/f7"', LARGE], "A.fit: it is 'H8/f7', but its fits are known up to 500 mm"),
     "no such diameter of a link": (['fit={crank="running"}', LARGE], "A.fit.crank: it is 'running', but its fits are"),
     "bonded": (['fit="H8/f7"', "bonded=true"], "A.fit: a bonded joint does not turn"),
+    "heads in one plane": (
+        ['heads={diameter="5 mm", gap="0.1 mm"}'],
+        "A.heads: it has a meaning only where links lie in layers; leave",
+    ),
+    "a negative gap": (['heads={diameter="5 mm", gap="-1 mm"}'], "A.heads.gap .*: the gap must not be negative; write"),
+    "a reversed gap": (
+        ['heads={diameter="5 mm", gap=["1 mm", "0 mm"]}'],
+        "A.heads.gap .*: its range goes from 1 mm to 0 mm; write the least gap",
+    ),
+    "heads without a gap": (['heads={diameter="5 mm"}'], "A.heads.gap: this entry is missing; add"),
     "bonded with play": (['clearance={crank="1 mm"}', "bonded=true"], "A.clearance: a bonded joint has no play"),
 }  # fmt: skip
 
@@ -88,6 +98,14 @@ LAYERED_REFUSED = {
     "press in one of two": (['fit={AG="press"}', 'tight_in=["AG", "AE"]'], "A.fit: .* in 'AG', but tight_in .* 'AE'"),
     "play in a tight hole": (['clearance={AG="0.1 mm"}', 'tight_in="AG"'], "A.clearance.AG: it gives .* tight there"),
     "a fit in a tight hole": (['fit={AG="H8/f7"}', 'tight_in="AG"'], "A.fit.AG: it gives the pin play, but tight_in"),
+    "heads that fall through": (
+        ['heads={diameter="1.7 mm", gap="0.1 mm"}', 'clearance="0.2 mm"'],
+        "A.heads.diameter: it is 1.7 mm, but must be larger than the hole, 1.7 mm",
+    ),
+    "a gap as wide as heads": (
+        ['heads={diameter="3 mm", gap=["0 mm", "3 mm"]}'],
+        "A.heads.gap: it is 3 mm, but must stay below the diameter of the heads, 3 mm; make it smaller",
+    ),
     "play where all is tight": (['clearance="0.1 mm"', 'tight_in=["AG", "AE"]'], "A.clearance: .* tight in every link"),
     "a fit where all is tight": (['fit="running"', 'tight_in=["AG", "AE"]'], "A.fit: .* tight in every link; leave"),
 }  # fmt: skip
@@ -121,6 +139,48 @@ def test_without_a_diameter_there_is_no_fit_but_a_press():
 def test_a_slot_has_a_clearance_alone(entry, message):
     with pytest.raises(CaseError, match=message):
         stated(entry, name=SLOTTED, joint="slot-right")
+
+
+@pytest.mark.parametrize(
+    ("name", "joint", "further", "message"),
+    [
+        (
+            SLOTTED,
+            "slot-right",
+            [],
+            "joints.slot-right.heads: a joint of type pin-in-slot has no pin that turns in two",
+        ),
+        ("owl-wing-static", "B", ["bonded=true"], "joints.B.heads: a bonded joint has no pin that turns in two holes"),
+        ("owl-wing-static", "B", ["clamped=true"], "joints.B.heads: a clamped joint has no pin; leave it out"),
+        (
+            "flapping-wing-chosen",
+            "AL",
+            [],
+            "joints.AL.heads: joint 'AR' is on the same pin and states none, but its links share the gap; state heads "
+            "of both, whose gaps add up, or of neither",
+        ),
+    ],
+)
+def test_heads_are_those_of_a_whole_pin_that_turns(name, joint, further, message):
+    entries = [f"joints.{joint}.{entry}" for entry in ('heads={diameter="6 mm", gap="0.1 mm"}', *further)]
+    with pytest.raises(CaseError, match=message):
+        edited(name, entries, fits=bool(not further))
+
+
+def test_two_joints_of_one_pin_do_not_state_one_hole_in_two_ways():
+    """They may state it alike, or one of them alone: here AR states that the pin is pressed in the crank."""
+    name, own = "flapping-wing-chosen", 'fit={coupler-left="running"}'
+    assert stated(own, 'clearance={crank="0 mm"}', name=name, joint="AL").joints["AL"].tight_in == ()
+    with pytest.raises(CaseError) as told:
+        stated('fit={crank="running"}', name=name, joint="AL")
+    assert str(told.value) == (
+        "joints.AL: it states a clearance of 0.005 to 0.032 mm in the hole of 'crank', but joint 'AR' on the same pin "
+        "states a tight pin there; state the same in both, or leave it out of one"
+    )
+    with pytest.raises(
+        CaseError, match=r"^joints\.AL: it states a clearance of 0.1 mm in the hole of 'crank', but joint"
+    ):
+        stated(own, 'clearance={crank="0.1 mm"}', name=name, joint="AL")
 
 
 def test_a_slider_has_no_fit():
