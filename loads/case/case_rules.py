@@ -10,6 +10,7 @@ from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
 from alula.geometry.parts.part import Body, FilePart
 from alula.loads.case.core import CoreCase
+from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
 from alula.loads.case.heights import layer_of
 from alula.loads.case.joint_rules import check_clamps, check_clearances, check_friction
@@ -23,6 +24,7 @@ from alula.loads.records.check_spec import (
     Check,
     ClearanceCheck,
     DisplacementCheck,
+    EyeCheck,
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
@@ -253,6 +255,8 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
+    elif isinstance(check, EyeCheck):
+        check_eye_check(case, name, check)
     elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
