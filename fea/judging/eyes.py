@@ -14,7 +14,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.outcomes.eye_modes import Eye, EyeFactors, EyeStrength, Mode, asme_bth_1, en_1993_1_8
+from alula.fea.outcomes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 from alula.geometry.bodies.body import Body, extent
 from alula.geometry.bodies.features import Pin
 from alula.loads.case.case import Case
@@ -69,7 +69,7 @@ def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]
     )
 
 
-def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeCheck) -> dict[Mode, Band]:
+def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeCheck) -> dict[EyeMode, Band]:
     """Return what an eye bears in each mode for all that its pin's clearance and its yield strength may be."""
     material, ring = case.material_of(link), case.body(link).ring(pin)
     own, hole = strength_scatter(material), case.linkage.pin_holes(joints[0])[link]
@@ -78,7 +78,7 @@ def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeChe
     clearances = (hole.nominal, hole.low, hole.high if math.isfinite(hole.high) else hole.nominal)
     found = []
     for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
-        eye = Eye(
+        eye = RoundEye(
             radius=ring.diameter / 2.0,
             hole=pin.diameter + clearance,
             pin=pin.diameter,
@@ -152,7 +152,7 @@ def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatte
     for mode, (value, low, high) in every.items():
         if value < math.inf:
             sources = strength.modes[mode].sources
-            if mode is not Mode.BEARING and math.sin(angle) > STRAIGHT:
+            if mode is not EyeMode.BEARING and math.sin(angle) > STRAIGHT:
                 sources = distinct(sources, (OBLIQUE,))
             own = Band(value=float(value), low=float(low), high=float(high), sources=sources, without=WITHOUT)
             bands[mode] = spread.inverse.on(own)
@@ -218,13 +218,13 @@ def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> Chec
     return outcome.because(mode_of_eye(eye, mode, outcome.reason))
 
 
-def mode_of_eye(eye: EyeFactors, mode: Mode, why: Reason | str) -> Reason:
+def mode_of_eye(eye: EyeFactors, mode: EyeMode, why: Reason | str) -> Reason:
     """Return the eye and the mode that decide, with why.
 
     Parameters
     ----------
     eye : EyeFactors
-    mode : Mode
+    mode : EyeMode
     why : Reason or str
 
     Returns

@@ -26,7 +26,7 @@ ACROSS = 0.25
 angle. Limit analysis of eyes with R from 1.5 to 3.5 hole radii on shanks as wide as they are: 0.22 at most."""
 
 
-class Mode(StrEnum):
+class EyeMode(StrEnum):
     """A way in which an eye ends; its value says for people what it is."""
 
     NET_SECTION = "tension beside the hole"
@@ -39,7 +39,7 @@ class Mode(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Eye:
+class RoundEye:
     """A round eye about a pin.
 
     Attributes
@@ -80,7 +80,7 @@ class Eye:
         return straight - (self.radius - math.sqrt(self.radius**2 - to_side**2))
 
 
-def asme_bth_1(eye: Eye, yield_strength: float, ultimate_strength: float) -> dict[Mode, float]:
+def asme_bth_1(eye: RoundEye, yield_strength: float, ultimate_strength: float) -> dict[EyeMode, float]:
     """Return what an eye bears in each mode by the strengths that ASME BTH-1 divides by its design factor.
 
     The standard divides bearing by its design factor N_d, and all others by 1.20 N_d.
@@ -93,7 +93,7 @@ def asme_bth_1(eye: Eye, yield_strength: float, ultimate_strength: float) -> dic
 
     Returns
     -------
-    dict of Mode to float
+    dict of EyeMode to float
         Forces [N].
 
     References
@@ -105,15 +105,15 @@ def asme_bth_1(eye: Eye, yield_strength: float, ultimate_strength: float) -> dic
     about = eye.beside
     effective = min(about, about * 0.6 * ultimate_strength / yield_strength * math.sqrt(eye.hole / about))
     return {
-        Mode.NET_SECTION: eye.loose * 2.0 * effective * one_mm,
-        Mode.DISHING: eye.loose * 2.0 * 4.0 * eye.wall * one_mm,
-        Mode.FRACTURE: eye.loose * (1.13 * about + 0.92 * about / (1.0 + about / eye.hole)) * one_mm,
-        Mode.SHEAR_OUT: 0.70 * 2.0 * eye.shear_plane * one_mm,
-        Mode.BEARING: 1.25 * yield_strength * eye.pin * eye.thickness,
+        EyeMode.NET_SECTION: eye.loose * 2.0 * effective * one_mm,
+        EyeMode.DISHING: eye.loose * 2.0 * 4.0 * eye.wall * one_mm,
+        EyeMode.FRACTURE: eye.loose * (1.13 * about + 0.92 * about / (1.0 + about / eye.hole)) * one_mm,
+        EyeMode.SHEAR_OUT: 0.70 * 2.0 * eye.shear_plane * one_mm,
+        EyeMode.BEARING: 1.25 * yield_strength * eye.pin * eye.thickness,
     }
 
 
-def en_1993_1_8(eye: Eye, yield_strength: float, pin_yield: float) -> dict[Mode, float]:
+def en_1993_1_8(eye: RoundEye, yield_strength: float, pin_yield: float) -> dict[EyeMode, float]:
     """Return what an eye bears by EN 1993-1-8, without partial factors.
 
     Table 3.9, type A, asks for a ≥ F/(2 t f_y) + 2 d_0/3 from the hole to the end and c ≥ F/(2 t f_y) + d_0/3 to the
@@ -129,7 +129,7 @@ def en_1993_1_8(eye: Eye, yield_strength: float, pin_yield: float) -> dict[Mode,
 
     Returns
     -------
-    dict of Mode to float
+    dict of EyeMode to float
         Forces [N].
 
     References
@@ -138,9 +138,9 @@ def en_1993_1_8(eye: Eye, yield_strength: float, pin_yield: float) -> dict[Mode,
     """
     one_mm = 2.0 * eye.thickness * yield_strength
     return {
-        Mode.END: one_mm * max(eye.beside - 2.0 * eye.hole / 3.0, 0.0),
-        Mode.SIDE: one_mm * max(eye.beside - eye.hole / 3.0, 0.0),
-        Mode.BEARING: 1.5 * eye.thickness * eye.pin * min(yield_strength, pin_yield),
+        EyeMode.END: one_mm * max(eye.beside - 2.0 * eye.hole / 3.0, 0.0),
+        EyeMode.SIDE: one_mm * max(eye.beside - eye.hole / 3.0, 0.0),
+        EyeMode.BEARING: 1.5 * eye.thickness * eye.pin * min(yield_strength, pin_yield),
     }
 
 
@@ -152,14 +152,14 @@ class EyeStrength:
     ----------
     name : str
         Of its point.
-    modes : mapping of Mode to Band
+    modes : mapping of EyeMode to Band
         Forces along its shank [N].
     shanks : tuple of (float, float)
         Unit vectors from its hole to what holds it, in the link's frame; one of an eye that ends a bar.
     """
 
     name: str
-    modes: Mapping[Mode, Band]
+    modes: Mapping[EyeMode, Band]
     shanks: tuple[tuple[float, float], ...]
 
     def off_shank(self, force: Real) -> Real:
@@ -181,7 +181,7 @@ class EyeStrength:
         pressed, drawn = angles.max(axis=0), angles.min(axis=0)
         return np.asarray(np.where(pressed >= math.pi - INTO_SHANK, pressed, drawn))
 
-    def factors(self, force: Real) -> tuple[dict[Mode, Real], Real]:
+    def factors(self, force: Real) -> tuple[dict[EyeMode, Real], Real]:
         """Return by what each mode bears more than a pin's force, and the angle of the force.
 
         Parameters
@@ -192,14 +192,14 @@ class EyeStrength:
         Returns
         -------
         tuple of (dict, ndarray)
-            Mode -> value, least and largest of its factor (3, ...), ∞ where it does not arise; ``off_shank`` (...).
+            EyeMode -> value, least and largest of its factor (3, ...), ∞ where it does not arise; ``off_shank`` (...).
         """
         size, angle = np.linalg.norm(force, axis=-1), self.off_shank(force)
         found = {}
         for mode, strength in self.modes.items():
             counts = size > 0.0
             bears = np.stack([np.full_like(size, x) for x in (strength.value, strength.low, strength.high)])
-            if mode is not Mode.BEARING:
+            if mode is not EyeMode.BEARING:
                 counts = counts & (angle < math.pi - INTO_SHANK)
                 bears[1] *= 1.0 - ACROSS * np.sin(angle)
             found[mode] = np.divide(bears, size, out=np.full_like(bears, np.inf), where=counts)
@@ -218,7 +218,7 @@ class EyeFactors:
         Of the pin [N].
     angle : float
         From the pull straight off the shank [degrees].
-    factors : mapping of Mode to Band
+    factors : mapping of EyeMode to Band
         Of the modes that arise; none without a force.
     """
 
@@ -227,10 +227,10 @@ class EyeFactors:
     eye: str
     force: float
     angle: float
-    factors: Mapping[Mode, Band]
+    factors: Mapping[EyeMode, Band]
 
     @property
-    def worst(self) -> tuple[Mode, Band] | None:
+    def worst(self) -> tuple[EyeMode, Band] | None:
         """The mode whose least factor is the least, and the band of the least of all; None without a force."""
         if not self.factors:
             return None

@@ -16,7 +16,6 @@ from alula.loads.case.heights import layer_of
 from alula.loads.case.joint_rules import check_clamps, check_clearances, check_friction
 from alula.loads.case.layers import check_layers, pin_masses
 from alula.loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
-from alula.loads.case.places import check_moving, check_point
 from alula.loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from alula.loads.case.toleranced import toleranced
 from alula.loads.records.check_spec import (
@@ -39,6 +38,7 @@ from alula.loads.records.settings import WaysToHold
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.statics import Drive, check_drive
 from alula.loads.text.explain import require
+from alula.loads.text.places import check_moving, check_point
 
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""

@@ -179,8 +179,8 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "play": play_record(case.forces.play),
         "thrust": [{"joint": joint, "force": data(thrust)} for joint, thrust in thrusts(case.forces, deformed).items()],
         "pins": pin_record(case),
-        "eyes": eye_record(case),
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
+        **({"eyes": eye_record(case)} if case.eyes else {}),
     }
 
 

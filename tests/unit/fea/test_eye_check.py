@@ -14,7 +14,7 @@ from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.judging.eyes import eye_factors, worst_pose
 from alula.fea.motion.envelope_outcomes import eye_outcomes
 from alula.fea.motion.link_history import link_histories
-from alula.fea.outcomes.eye_modes import Mode
+from alula.fea.outcomes.eye_modes import EyeMode
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import EyeCheck
 from alula.loads.states.case_motion import solve_case_motion
@@ -35,12 +35,18 @@ def test_a_pulled_bar_by_hand():
     outcome = level(found)
     assert outcome.value.value == pytest.approx(NET / 500.0)
     assert (outcome.limit, outcome.verdict) == (2.4, Verdict.PASS)
-    assert str(Mode.NET_SECTION) in told(outcome.reason)
+    assert str(EyeMode.NET_SECTION) in told(outcome.reason)
     [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
     assert eye.force == pytest.approx(500.0)
     assert eye.angle == pytest.approx(0.0, abs=1e-6)
-    assert set(eye.factors) == {Mode.NET_SECTION, Mode.DISHING, Mode.FRACTURE, Mode.SHEAR_OUT, Mode.BEARING}
-    assert min(eye.factors.values(), key=lambda band: band.low) == eye.factors[Mode.NET_SECTION]
+    assert set(eye.factors) == {
+        EyeMode.NET_SECTION,
+        EyeMode.DISHING,
+        EyeMode.FRACTURE,
+        EyeMode.SHEAR_OUT,
+        EyeMode.BEARING,
+    }
+    assert min(eye.factors.values(), key=lambda band: band.low) == eye.factors[EyeMode.NET_SECTION]
 
 
 def two_eyes(tables, narrow, thin):
@@ -61,11 +67,11 @@ def test_each_load_case_has_its_worst_eye(narrow, thin):
     assert 2.0 * effective * 3.0 * 260.0 > fracture
     found = {eye.eye: eye for eye in result["pull"].eyes if eye.link == "level"}
     assert pulled.value.value == pytest.approx(min(band.value for band in found[narrow].factors.values()))
-    assert found[narrow].factors[Mode.FRACTURE].value == pytest.approx(fracture / 500.0)
+    assert found[narrow].factors[EyeMode.FRACTURE].value == pytest.approx(fracture / 500.0)
     assert found[thin].worst[1].low > pulled.value.low
     assert f"eye at {narrow}" in told(pulled.reason)
     assert pushed.value.value == pytest.approx(1.25 * 240.0 * 5.0 * 2.0 / 100.0)
-    assert f"{Mode.BEARING} of the eye at {thin}" in told(pushed.reason)
+    assert f"{EyeMode.BEARING} of the eye at {thin}" in told(pushed.reason)
 
 
 def test_the_band_holds_loads_strength_and_clearance():
@@ -82,7 +88,7 @@ def test_the_band_holds_loads_strength_and_clearance():
     def bears(strength, hole):
         return 2.0 * 2.0 * strength * ((12.0 - hole) / 2.0 - hole / 3.0) / 500.0
 
-    side = eye.factors[Mode.SIDE]
+    side = eye.factors[EyeMode.SIDE]
     assert side.value == pytest.approx(bears(240.0, 5.2))
     # Play of the pins changes the force by some tenths of a percent besides.
     assert side.low == pytest.approx(bears(220.0, 5.3) / 1.25, rel=5e-3)
@@ -102,7 +108,7 @@ def test_page_and_file_have_every_mode():
     [record] = [one for one in check_record(result, sections)["load_cases"]["pull"]["eyes"] if one["eye"] == "O"]
     assert record["link"] == "level"
     found = {one["mode"]: one["factor"]["value"] for one in record["modes"]}
-    assert found[str(Mode.NET_SECTION)] == pytest.approx(NET / 500.0)
+    assert found[str(EyeMode.NET_SECTION)] == pytest.approx(NET / 500.0)
 
 
 def test_over_a_motion_the_worst_pose_counts():
