@@ -141,8 +141,28 @@ def eye_factors(
                 sources=distinct(*(x.told for x in more)),
             )
         )
-        found = [_factors(one, strength, plate, spread) for plate in plates]
-        yield min(found, key=lambda of: math.inf if of.worst is None else of.worst[1].low)
+        yield worse_of(one, strength, plates, spread)
+
+
+def worse_of(one: Asked, strength: EyeStrength, plates: Sequence[LinkLoads], spread: Scatter) -> EyeFactors:
+    """Return by what an eye bears more than its pin's force on the worse of its plates.
+
+    Parameters
+    ----------
+    one : Asked
+        Of its link.
+    strength : EyeStrength
+    plates : sequence of LinkLoads
+        As of ``eye_factors``.
+    spread : Scatter
+        Of the force.
+
+    Returns
+    -------
+    EyeFactors
+    """
+    found = [_factors(one, strength, plate, spread) for plate in plates]
+    return min(found, key=lambda of: math.inf if of.worst is None else of.worst[1].low)
 
 
 def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatter) -> EyeFactors:

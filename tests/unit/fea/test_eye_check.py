@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,9 +10,13 @@ from edited_cases import edited
 from eye_case import checked, eyes
 
 from alula.fea.asked.asked import asked
+from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
-from alula.fea.common.verdict import Quantity, Verdict
-from alula.fea.judging.eyes import eye_factors, worst_pose
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import Quantity, Subject, Verdict
+from alula.fea.judging.bearing import sharing
+from alula.fea.judging.eyes import eye_factors, strengths, worse_of, worst_pose
 from alula.fea.motion.envelope_outcomes import eye_outcomes
 from alula.fea.motion.link_history import link_histories
 from alula.fea.outcomes.eye_modes import EyeMode
@@ -100,6 +105,48 @@ def test_the_plates_of_a_pair_bear_half_each():
         tables["links"]["level"] |= {"count": 2, "apart": "6 mm"}
 
     assert level(checked(eyes(pair))).value.value == pytest.approx(2.0 * NET / 500.0)
+
+
+def test_a_fork_bears_on_both_cheeks_and_dishes_as_one_of_them():
+    def forked(tables):
+        tables["parts"]["bar"] |= {"thickness": "4 mm", "eye_thickness": "4 mm"}
+        tables["links"]["level"]["eyes"] = {"O": {"fork": "2 mm", "fork_depth": "8 mm"}}
+
+    [eye] = [eye for eye in checked(eyes(forked)).eyes if (eye.link, eye.eye) == ("level", "O")]
+    assert eye.factors[EyeMode.NET_SECTION].value == pytest.approx(NET / 500.0)
+    assert eye.factors[EyeMode.DISHING].value == pytest.approx(2.0 * 4.0 * 1.0 * 2.0 * 260.0 / 500.0)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_worse_of_two_plates_counts_and_the_direction_of_its_force(order):
+    """One plate is drawn straight by 500 N; the other by 600 N at 30° to that, which takes off an eighth at worst."""
+    case, result = eyes(), checked(eyes())
+    body = case.body("level")
+    loads = link_loads("pull", "level", body, result.forces.reactions, result.loads)
+
+    def plate(force):
+        wrench = np.array([*force, 0.0, 0.0, 0.0, 0.0])
+        return replace(loads, pins=tuple(replace(pin, wrench=wrench) for pin in loads.pins if pin.name == "B"))
+
+    [one] = asked(case, EyeCheck, subject=Subject.link("level"))
+    plates = [plate((500.0, 0.0)), plate((600.0 * math.cos(math.pi / 6.0), 300.0))]
+    spread = Scatter(low=0.9, high=1.25, sources=(Source(kind=SourceKind.PLAY),))
+    [strength] = [eye for eye in strengths(case, "level", one.check) if eye.name == "B"]
+    found = worse_of(one, strength, plates[::order], spread)
+    net = found.factors[EyeMode.NET_SECTION]
+    assert (found.force, found.angle) == pytest.approx((600.0, 30.0))
+    assert net.value == pytest.approx(NET / 600.0)
+    assert (net.low, net.high) == pytest.approx((NET / 600.0 * 0.875 / 1.25, NET / 600.0 / 0.9))
+    assert {source.kind for source in net.sources} == {SourceKind.PLAY, SourceKind.DIRECTION}
+    assert {source.kind for source in found.factors[EyeMode.BEARING].sources} == {SourceKind.PLAY}
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_of_all_ways_of_sharing_couples_the_one_that_presses_most_counts(order):
+    wrenches = np.zeros((3, 6))
+    wrenches[:, :2] = (3.0, 0.0), (0.0, 4.0), (2.0, 0.0)
+    assert sharing(eyes(), "B", "level", [wrenches[0], *wrenches[1:][::order]]).high == pytest.approx(4.0 / 3.0)
+    assert sharing(eyes(), "B", "level", [wrenches[1], *wrenches[::2][::order]]) == Scatter()
 
 
 def test_page_and_file_have_every_mode():
