@@ -12,7 +12,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
-from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.common.source import Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.outcomes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 from alula.geometry.bodies.body import Body, extent
@@ -76,6 +76,7 @@ def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeChe
     pin_yield = min(case.pin_material(joint).yield_strength or math.inf for joint in joints)
     assert material.yield_strength is not None
     clearances = (hole.nominal, hole.low, hole.high if math.isfinite(hole.high) else hole.nominal)
+    play = (play_source({joints[0]: clearances[2]}),) if clearances[1] < clearances[2] else ()
     found = []
     for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
         eye = RoundEye(
@@ -91,7 +92,7 @@ def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeChe
             found.append(asme_bth_1(eye, strength, material.ultimate_strength))
         else:
             found.append(en_1993_1_8(eye, strength, pin_yield))
-    return {mode: Band.around(found[0][mode], tuple(one[mode] for one in found), *own.told) for mode in found[0]}
+    return {mode: Band.around(found[0][mode], tuple(one[mode] for one in found), *own.told, *play) for mode in found[0]}
 
 
 def _shanks(body: Body, point: str) -> tuple[tuple[float, float], ...]:

@@ -95,6 +95,7 @@ def test_the_band_holds_loads_strength_and_clearance():
 
     side = eye.factors[EyeMode.SIDE]
     assert side.value == pytest.approx(bears(240.0, 5.2))
+    assert {source.kind for source in side.sources} == {SourceKind.LOAD, SourceKind.STRENGTH, SourceKind.PLAY}
     # Play of the pins changes the force by some tenths of a percent besides.
     assert side.low == pytest.approx(bears(220.0, 5.3) / 1.25, rel=5e-3)
     assert side.high == pytest.approx(bears(300.0, 5.1) / 0.8, rel=5e-3)
