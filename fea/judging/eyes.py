@@ -3,6 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -235,7 +236,8 @@ def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> Chec
     if not loaded:
         return one.outcome(load_case, Band.exact(math.inf, WITHOUT), NO_FORCE)
     eye, mode, _ = min(loaded, key=lambda of: of[2].low)
-    outcome = one.outcome(load_case, Band.least([band for _, _, band in loaded]))
+    worst = Band.least([band for _, _, band in loaded])
+    outcome = one.outcome(load_case, replace(worst, without=WITHOUT))
     return outcome.because(mode_of_eye(eye, mode, outcome.reason))
 
 
