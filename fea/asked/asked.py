@@ -20,6 +20,7 @@ from alula.loads.records.check_spec import (
     BearingCheck,
     ClearanceCheck,
     DisplacementCheck,
+    EyeCheck,
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
@@ -36,6 +37,7 @@ _QUANTITIES = {
     SustainedCheck: Quantity.SUSTAINED_STRESS,
     PinCheck: Quantity.SAFETY_FACTOR,
     BearingCheck: Quantity.SAFETY_FACTOR,
+    EyeCheck: Quantity.EYES,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     ClearanceCheck: Quantity.CLEARANCE,
     FrequencyCheck: Quantity.FREQUENCY_RATIO,
@@ -273,7 +275,7 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck():
+        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

@@ -17,6 +17,7 @@ from alula.loads.text.caveat import Caveat, Topic
 STRENGTH = (
     Quantity.SAFETY_FACTOR,
     Quantity.LAYERS,
+    Quantity.EYES,
     Quantity.SUSTAINED_STRESS,
     Quantity.FATIGUE_STRESS,
     Quantity.FATIGUE_LIFE,

@@ -8,7 +8,7 @@ from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
-from alula.fea.asked.asked import asked, asked_of
+from alula.fea.asked.asked import Asked, asked, asked_of
 from alula.fea.asked.at_temperature import as_known
 from alula.fea.beam.theory import CantileverCheck, uniform_cantilever
 from alula.fea.buckling.buckling import buckling_outcomes
@@ -29,7 +29,8 @@ from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
 from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
-from alula.fea.judging.bearing import bearing_outcome
+from alula.fea.judging.bearing import bearing_outcome, sharing
+from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
@@ -40,6 +41,7 @@ from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, s
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
+from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
@@ -61,7 +63,7 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, PinCheck
+from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, EyeCheck, PinCheck
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.shares import parse_accuracy
 
@@ -326,9 +328,11 @@ class _LoadCase:
             *buckling_outcomes(case, load_case, columns, moved),
             *solid_buckling_outcomes(case, load_case, solids),
         )
+        eyes = self._eyes(reactions)
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
+            *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *whole,
@@ -352,7 +356,24 @@ class _LoadCase:
             checks=tuple(checks),
             work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
+            eyes=tuple(eye for _, found in eyes for eye in found),
         )
+
+    def _eyes(self, reactions: Reactions) -> list[tuple[Asked, tuple[EyeFactors, ...]]]:
+        """Return the checks that ask for eyes, each with those of its link."""
+        found, ways = [], (reactions, *self.forces.sharings)
+        for one in asked(self.case, EyeCheck):
+            link = one.subject.name
+            growth = {
+                joint: self.uneven.joints.get(joint, Scatter()).times(
+                    sharing(self.case, joint, link, [way.joints[joint].wrench for way in ways])
+                )
+                for joints in eyes_of(self.case, link).values()
+                for joint in joints
+            }
+            plates = [loads for loads, _ in self.plates[link]]
+            found.append((one, tuple(eye_factors(self.case, self.load_case, one, plates, growth))))
+        return found
 
 
 class _SolidAnswers:

@@ -37,6 +37,7 @@ class SourceKind(StrEnum):
     FRICTION = "friction of joints"
     BUILD = "direction of building"
     CLAMP = "edge of a clamp"
+    DIRECTION = "direction of the force"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -108,6 +108,8 @@ class Quantity(StrEnum):
     SAFETY_FACTOR = "safety factor", "", Sense.AT_LEAST
     LAYERS = "safety factor of the layers", "", Sense.AT_LEAST
     """Of a printed part: against tension normal to its layers and shear along them."""
+    EYES = "safety factor of the eyes", "", Sense.AT_LEAST
+    """Of a link: what the weakest mode of its weakest eye bears over the force of the pin."""
     SUSTAINED_STRESS = "sustained stress", "MPa", Sense.AT_MOST
     DEFLECTION = "deflection from its pins", "mm", Sense.AT_MOST
     """Of a link by itself: displacement from the line through its own pins, as if these stayed."""

@@ -17,6 +17,7 @@ from alula.fea.beam.cut_free import seat
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
@@ -54,6 +55,26 @@ def pressing(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
             aside = 2.0 * along / distance
             found[link] = np.maximum(*(np.linalg.norm(force + side * aside, axis=-1) for side in (1.0, -1.0)))
     return found
+
+
+def sharing(case: Case, joint: str, link: str, wrenches: Sequence[Real]) -> Scatter:
+    """Return what other ways in which pins may share couples make of the force that presses a link's eye most.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+    wrenches : sequence of ndarray, shape (6,)
+        What the first link does to the second, first that which stands [N, N mm].
+
+    Returns
+    -------
+    Scatter
+        More than 1 only of pairs of plates, whose plates bear couples.
+    """
+    stands, *others = (float(pressing(case, joint, wrench)[link]) for wrench in wrenches)
+    most = max(others, default=stands)
+    return Scatter(high=most / stands, sources=COUPLES) if most > stands > 0.0 else Scatter()
 
 
 def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], load: Scatter) -> tuple[str, Band]:

@@ -15,7 +15,8 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.other_case import widened
-from alula.fea.judging.bearing import bearing_outcome, pressing
+from alula.fea.judging.bearing import bearing_outcome, pressing, sharing
+from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, worst_pose
 from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
@@ -30,6 +31,7 @@ from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.records.check_spec import (
     BearingCheck,
+    EyeCheck,
     LimitLoadCheck,
     PinCheck,
     SafetyFactorCheck,
@@ -40,7 +42,7 @@ from alula.loads.statics.joint_reaction import JointReaction
 BEYOND_CARD = reason("repetitions_beyond_card")
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck)
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, LimitLoadCheck)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
@@ -197,14 +199,66 @@ def _joint(
     """Outcome of a joint under every load case, at the pose where its pin or its eyes bear most."""
     joint = one.subject.name
     for load_case, solved in moved.forces.items():
-        growth = joint_growth(moved, load_case, joint, evaluated)
-        if load_case in grown and joint in grown[load_case].joints:
-            growth = growth.times(grown[load_case].joints[joint])
+        growth = _growth(moved, load_case, joint, evaluated, grown)
         worst = _worst_bearing if isinstance(one.check, BearingCheck) else _worst_pin
         pose, outcome = worst(moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
         yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
+
+
+def _growth(
+    moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_], grown: Mapping[str, MotionGrowth]
+) -> Scatter:
+    """Return what may become of a joint's greatest force besides scattered loads."""
+    growth = joint_growth(moved, load_case, joint, evaluated)
+    if load_case in grown and joint in grown[load_case].joints:
+        growth = growth.times(grown[load_case].joints[joint])
+    return growth
+
+
+def eye_outcomes(
+    moved: CaseMotion,
+    loaded: Mapping[str, Sequence[LinkLoads]],
+    evaluated: NDArray[np.bool_],
+    grown: Mapping[str, MotionGrowth] | None = None,
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of the eyes of every link that a check asks for, at the pose where they bear least.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    loaded : mapping of str to sequence of LinkLoads
+        Link -> what acts on it, one record per load case and plate.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    grown : mapping of str to MotionGrowth, optional
+        Load case -> what the deformed shape makes of joint forces; nothing when left out.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    case = moved.case
+    for one in asked(case, EyeCheck):
+        link = one.subject.name
+        for load_case in moved.forces:
+            plates = [loads for loads in loaded.get(link, ()) if loads.name == load_case]
+            if not plates:
+                continue
+            pose = worst_pose(case, one, plates, evaluated)
+            joints = [joint for every in eyes_of(case, link).values() for joint in every]
+            growth = {joint: _growth(moved, load_case, joint, evaluated, grown or {}) for joint in joints}
+            if case.links[link].count == 2:
+                forces = forces_at(moved, load_case, pose)
+                ways = (forces.reactions, *forces.sharings)
+                for joint in joints:
+                    every = [way.joints[joint].wrench for way in ways]
+                    growth[joint] = growth[joint].times(sharing(case, joint, link, every))
+            here = [loads.chosen(pose) for loads in plates]
+            found = tuple(eye_factors(case, load_case, one, here, growth))
+            outcome = _complete(eye_outcome(load_case, one, found), evaluated)
+            yield outcome.because(reason("eyes_over_motion", when=_when(moved, pose), why=outcome.reason))
 
 
 def _worst_bearing(

@@ -15,6 +15,7 @@ from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
@@ -288,6 +289,8 @@ class LoadCaseResult:
         The drive with and without friction; None where no joint has any.
     loads : tuple of Load
         All that acts on the links, friction included.
+    eyes : tuple of EyeFactors
+        Of every eye of the links whose eyes a check asks for.
     """
 
     name: str
@@ -301,6 +304,7 @@ class LoadCaseResult:
     checks: tuple[CheckOutcome, ...]
     work: DriveWork | None = None
     loads: tuple[Load, ...] = ()
+    eyes: tuple[EyeFactors, ...] = ()
 
     @property
     def reactions(self) -> Reactions:

@@ -23,7 +23,14 @@ from alula.fea.outcomes.result import CheckResult, HandResult, LoadCaseResult
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
+from alula.loads.records.check_spec import (
+    BearingCheck,
+    DisplacementCheck,
+    EyeCheck,
+    LimitLoadCheck,
+    PinCheck,
+    SafetyFactorCheck,
+)
 
 MODULI = ("youngs_modulus", "sustained_modulus")
 STRENGTHS = (
@@ -36,7 +43,7 @@ STRENGTHS = (
     "strength",
 )
 """Entries of a card, each with its range where it has one."""
-_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, LimitLoadCheck)
+_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, LimitLoadCheck)
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
 """One or the other says whether the linkage as a whole holds the load."""
 _Key = tuple[str, Quantity, Subject]

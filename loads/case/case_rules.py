@@ -10,12 +10,12 @@ from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
 from alula.geometry.parts.part import Body, FilePart
 from alula.loads.case.core import CoreCase
+from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
 from alula.loads.case.heights import layer_of
 from alula.loads.case.joint_rules import check_clamps, check_clearances, check_friction
 from alula.loads.case.layers import check_layers, pin_masses
 from alula.loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
-from alula.loads.case.places import check_moving, check_point
 from alula.loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from alula.loads.case.toleranced import toleranced
 from alula.loads.records.check_spec import (
@@ -23,6 +23,7 @@ from alula.loads.records.check_spec import (
     Check,
     ClearanceCheck,
     DisplacementCheck,
+    EyeCheck,
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
@@ -37,6 +38,7 @@ from alula.loads.records.settings import WaysToHold
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.statics import Drive, check_drive
 from alula.loads.text.explain import require
+from alula.loads.text.places import check_moving, check_point
 
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""
@@ -253,6 +255,8 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
+    elif isinstance(check, EyeCheck):
+        check_eye_check(case, name, check)
     elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(

@@ -6,7 +6,6 @@ import numpy as np
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.core import CoreCase
-from alula.loads.case.places import check_moving, check_point
 from alula.loads.records.aero import AirPatch, check_air
 from alula.loads.records.carried import CarriedBody, CarriedSpread
 from alula.loads.records.check_spec import FrequencyCheck
@@ -14,6 +13,7 @@ from alula.loads.records.flapping import WIDEST, Wing, check_flapping
 from alula.loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.explain import require
+from alula.loads.text.places import check_moving, check_point
 from alula.loads.text.reason import reason
 
 Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing

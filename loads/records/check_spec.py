@@ -72,6 +72,26 @@ class BearingCheck(CaseModel):
         return self.minimum or (6.67 if self.flight_depends else 3.33)
 
 
+BTH_1 = "ASME BTH-1"
+
+
+class EyeCheck(CaseModel):
+    """What the eyes of each link bear, over the forces of their pins, must be at least the minimum in every mode.
+
+    Modes are tension beside the hole, dishing, fracture and shear beyond the pin, and bearing. It is for round eyes of
+    bars and tubes, of ductile metals that are not printed.
+    """
+
+    type: Literal["eye"]
+    minimum: Annotated[float, Field(gt=0)]
+    """The least factor. ASME BTH-1 asks for 1.20 times its design factor of 2 or 3; partial factors of EN 1993-1-8 are
+    not in the number."""
+    standard: Literal["ASME BTH-1", "EN 1993-1-8"] = "ASME BTH-1"
+    """Whose formulas: those of ASME BTH-1 are against ultimate strength, those of EN 1993-1-8 against yield."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out."""
+
+
 class MotorCheck(CaseModel):
     """The motor must cover the drive power over the [motion], in every load case with a speed.
 
@@ -176,6 +196,7 @@ Check = Annotated[
     | SustainedCheck
     | PinCheck
     | BearingCheck
+    | EyeCheck
     | LimitLoadCheck
     | ClearanceCheck
     | FrequencyCheck

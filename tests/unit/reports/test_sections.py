@@ -7,9 +7,11 @@ from html import unescape
 
 import pytest
 import told
+from eye_case import eyes
 from solved import by_hand
 from told import console_parts, ends_of, flat, numbers_of, values_of
 
+from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.sections.markup import as_html, as_plain, bold, code, link, sub
@@ -27,7 +29,16 @@ CASES = (
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case[0])
 def test_every_number_stands_with_the_same_digits_wherever_it_is_told(case):
-    result = by_hand(*case)
+    hold_same_digits(by_hand(*case))
+
+
+def test_every_number_of_eyes_stands_with_the_same_digits():
+    result = check_case(eyes(), fidelity="beam")
+    assert '"modes"' in told.as_json(result)
+    hold_same_digits(result)
+
+
+def hold_same_digits(result):
     sections = told.sections(result)
     page = flat(unescape(re.sub("<[^>]+>", " ", told.render(result))))
     console = flat(told.printed(result, width=400).replace("\u00a0", " "))

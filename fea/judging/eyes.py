@@ -1,0 +1,257 @@
+"""Outcome of the check of eyes: every mode of every round eye of a link, under the force of its pin."""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.asked.asked import Asked
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
+from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.source import Source, SourceKind, distinct, play_source
+from alula.fea.common.verdict import CheckOutcome
+from alula.fea.outcomes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
+from alula.geometry.bodies.body import Body, extent
+from alula.geometry.bodies.features import Pin
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import BTH_1, EyeCheck
+
+WITHOUT = reason("scatter_of_eye_formulas_unread")
+OBLIQUE = Source(kind=SourceKind.DIRECTION, detail=reason("across_its_shank"))
+NO_FORCE = reason("no_force_on_eyes")
+STRAIGHT = 1e-9
+"""Sine of the angle below which a force is along the shank but for rounding."""
+
+
+def eyes_of(case: Case, link: str) -> dict[str, tuple[str, ...]]:
+    """Return the points at which pins turn in a link, with the joints at each.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    dict of str to tuple of str
+    """
+    found: dict[str, tuple[str, ...]] = {}
+    for joint in case.pinned_joints:
+        if link in case.joints[joint].links:
+            point = case.linkage.point_of(joint, link)
+            found[point] = (*found.get(point, ()), joint)
+    return found
+
+
+def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]:
+    """Return what the eyes of a link bear.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+        With round eyes of a ductile metal (``alula.loads.case.eye_rules``).
+    check : EyeCheck
+
+    Returns
+    -------
+    tuple of EyeStrength
+        Forces on one plate, where the link is a pair of them.
+    """
+    body = case.body(link)
+    return tuple(
+        EyeStrength(name=point, modes=_modes(case, link, body.pin(point), joints, check), shanks=_shanks(body, point))
+        for point, joints in eyes_of(case, link).items()
+    )
+
+
+def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeCheck) -> dict[EyeMode, Band]:
+    """Return what an eye bears in each mode for all that its pin's clearance and its yield strength may be."""
+    material, ring = case.material_of(link), case.body(link).ring(pin)
+    own, hole = strength_scatter(material), case.linkage.pin_holes(joints[0])[link]
+    pin_yield = min(case.pin_material(joint).yield_strength or math.inf for joint in joints)
+    assert material.yield_strength is not None
+    clearances = (hole.nominal, hole.low, hole.high if math.isfinite(hole.high) else hole.nominal)
+    play = (play_source({joints[0]: clearances[2]}),) if clearances[1] < clearances[2] else ()
+    found = []
+    for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
+        eye = RoundEye(
+            radius=ring.diameter / 2.0,
+            hole=pin.diameter + clearance,
+            pin=pin.diameter,
+            thickness=ring.thickness,
+            wall=min(high - low for low, high in ring.walls),
+        )
+        strength = share * material.yield_strength
+        if check.standard == BTH_1:
+            assert material.ultimate_strength is not None
+            found.append(asme_bth_1(eye, strength, material.ultimate_strength))
+        else:
+            found.append(en_1993_1_8(eye, strength, pin_yield))
+    return {mode: Band.around(found[0][mode], tuple(one[mode] for one in found), *own.told, *play) for mode in found[0]}
+
+
+def _shanks(body: Body, point: str) -> tuple[tuple[float, float], ...]:
+    """Return unit vectors from an eye's hole to what holds it: the bar to either side of it, and arms."""
+    pin, (first, last) = body.pin(point), extent(body)
+    if pin.foot is not None:
+        return (_towards(pin, pin.foot),)
+    along = [(side, 0.0) for side, end in ((-1.0, first), (1.0, last)) if pin.x != end]
+    arms = [_towards(pin, (arm.x, arm.y)) for arm in body.pins if arm.foot == (pin.x, pin.y)]
+    return (*along, *arms)
+
+
+def _towards(pin: Pin, place: tuple[float, float]) -> tuple[float, float]:
+    x, y = place[0] - pin.x, place[1] - pin.y
+    return x / math.hypot(x, y), y / math.hypot(x, y)
+
+
+def eye_factors(
+    case: Case, load_case: str, one: Asked, plates: Sequence[LinkLoads], growth: Mapping[str, Scatter]
+) -> Iterator[EyeFactors]:
+    """Yield by what every eye of a link bears more than its pin's force; of a pair, on its worse plate.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    one : Asked
+        Of a link.
+    plates : sequence of LinkLoads
+        What acts on the link at one pose, or on each plate of a pair.
+    growth : mapping of str to Scatter
+        Joint -> how its force grows beside scattered loads (``alula.fea.doubts.load_growth``).
+
+    Yields
+    ------
+    EyeFactors
+    """
+    check, link = one.check, one.subject.name
+    assert isinstance(check, EyeCheck)
+    for strength in strengths(case, link, check):
+        more = [growth.get(joint, Scatter()) for joint in eyes_of(case, link)[strength.name]]
+        spread = load_scatter(case, load_case).times(
+            Scatter(
+                low=min(x.low for x in more),
+                high=max(x.high for x in more),
+                sources=distinct(*(x.told for x in more)),
+            )
+        )
+        yield worse_of(one, strength, plates, spread)
+
+
+def worse_of(one: Asked, strength: EyeStrength, plates: Sequence[LinkLoads], spread: Scatter) -> EyeFactors:
+    """Return by what an eye bears more than its pin's force on the worse of its plates.
+
+    Parameters
+    ----------
+    one : Asked
+        Of its link.
+    strength : EyeStrength
+    plates : sequence of LinkLoads
+        As of ``eye_factors``.
+    spread : Scatter
+        Of the force.
+
+    Returns
+    -------
+    EyeFactors
+    """
+    found = [_factors(one, strength, plate, spread) for plate in plates]
+    return min(found, key=lambda of: math.inf if of.worst is None else of.worst[1].low)
+
+
+def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatter) -> EyeFactors:
+    force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
+    every, angle = strength.factors(force)
+    bands = {}
+    for mode, (value, low, high) in every.items():
+        if value < math.inf:
+            sources = strength.modes[mode].sources
+            if mode is not EyeMode.BEARING and math.sin(angle) > STRAIGHT:
+                sources = distinct(sources, (OBLIQUE,))
+            own = Band(value=float(value), low=float(low), high=float(high), sources=sources, without=WITHOUT)
+            bands[mode] = spread.inverse.on(own)
+    return EyeFactors(
+        check=one.name,
+        link=one.subject.name,
+        eye=strength.name,
+        force=float(np.linalg.norm(force)),
+        angle=math.degrees(float(angle)),
+        factors=bands,
+    )
+
+
+def worst_pose(case: Case, one: Asked, plates: Sequence[LinkLoads], evaluated: NDArray[np.bool_]) -> int:
+    """Return the pose of a motion at which the eyes of a link bear least beyond their pins' forces.
+
+    Parameters
+    ----------
+    case : Case
+    one : Asked
+        Of a link.
+    plates : sequence of LinkLoads
+        What acts on the link, or on each plate of a pair, at n poses.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+
+    Returns
+    -------
+    int
+    """
+    assert isinstance(one.check, EyeCheck)
+    least = np.full(len(evaluated), np.inf)
+    for strength in strengths(case, one.subject.name, one.check):
+        for plate in plates:
+            force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
+            for _, low, _ in strength.factors(np.broadcast_to(force, (len(evaluated), 2)))[0].values():
+                least = np.minimum(least, low)
+    return int(np.argmin(np.where(evaluated, least, np.inf)))
+
+
+def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> CheckOutcome:
+    """Return the outcome of a link: the least factor of all modes of all of its eyes.
+
+    Parameters
+    ----------
+    load_case : str
+        Its name.
+    one : Asked
+        Of a link.
+    found : sequence of EyeFactors
+        Of its eyes.
+
+    Returns
+    -------
+    CheckOutcome
+        The reason names the eye and the mode whose least factor is the least.
+    """
+    loaded = [(eye, *eye.worst) for eye in found if eye.worst is not None]
+    if not loaded:
+        return one.outcome(load_case, Band.exact(math.inf, WITHOUT), NO_FORCE)
+    eye, mode, _ = min(loaded, key=lambda of: of[2].low)
+    worst = Band.least([band for _, _, band in loaded])
+    outcome = one.outcome(load_case, replace(worst, without=WITHOUT))
+    return outcome.because(mode_of_eye(eye, mode, outcome.reason))
+
+
+def mode_of_eye(eye: EyeFactors, mode: EyeMode, why: Reason | str) -> Reason:
+    """Return the eye and the mode that decide, with why.
+
+    Parameters
+    ----------
+    eye : EyeFactors
+    mode : EyeMode
+    why : Reason or str
+
+    Returns
+    -------
+    Reason
+    """
+    return reason("mode_of_eye", eye=eye.eye, mode=str(mode), force=eye.force, angle=eye.angle, why=why)

@@ -1,0 +1,70 @@
+"""Of which links the modes of eyes can be told: formulas are of round eyes, of ductile metals that are not printed."""
+
+from alula.geometry.base.errors import CaseError
+from alula.geometry.materials.plausible import is_plastic
+from alula.geometry.materials.printable import is_printed
+from alula.geometry.parts.straight import Straight
+from alula.loads.case.core import CoreCase
+from alula.loads.records.check_spec import BTH_1, EyeCheck
+from alula.loads.text.explain import require
+
+
+def check_eye_check(case: CoreCase, name: str, check: EyeCheck) -> None:
+    """Check that a check of eyes asks for what its formulas hold for.
+
+    Parameters
+    ----------
+    case : CoreCase
+    name : str
+        Of the check.
+    check : EyeCheck
+
+    Raises
+    ------
+    CaseError
+        For a link of another material or shape, for one without pins, and for a card without the strength.
+    """
+    entry = f"checks.{name}"
+    for link in check.links:
+        require(f"{entry}.links", link, case.checked_links, "is no link with a part")
+    if not case.checked_links:
+        raise CaseError(f"{entry}: no link has a part, so there are no eyes; give a link a part")
+    for link in check.links or case.checked_links:
+        _check_material(case, entry, check, link)
+        _check_shape(case, entry, link)
+
+
+def _check_material(case: CoreCase, entry: str, check: EyeCheck, link: str) -> None:
+    part = case.part_of(link)
+    card, material = part.material, case.all_materials[part.material]
+    printed = part.build_direction is not None or is_printed(material)
+    if printed or material.brittle or is_plastic(card, material):
+        what = "printed" if printed else "brittle" if material.brittle else "a plastic"
+        raise CaseError(
+            f"{entry}.links: the formulas for eyes are those of ductile metals, but link '{link}' is of '{card}', "
+            f"which is {what}; name the other links alone: what its eyes hold is for plastic collapse and layers to say"
+        )
+    if check.standard == BTH_1 and material.ultimate_strength is None:
+        raise CaseError(
+            f"materials.{card}.ultimate_strength: it is missing, and '{entry}' sets the eyes of link '{link}' against "
+            'it; state it, or take the formulas against yield by standard = "EN 1993-1-8"'
+        )
+
+
+def _check_shape(case: CoreCase, entry: str, link: str) -> None:
+    part = case.part_of(link)
+    points = [case.linkage.point_of(name, link) for name in case.pinned_joints if link in case.joints[name].links]
+    if not points:
+        raise CaseError(f"{entry}.links: no pin turns in link '{link}', so it has no eye; name the other links alone")
+    if not isinstance(part, Straight):
+        raise CaseError(
+            f"{entry}.links: the formulas for eyes are those of round eyes of bars and tubes, but link '{link}' is a "
+            f"{part.shape}; name the other links alone"
+        )
+    body = case.body(link)
+    for point in points:
+        if body.ring(body.pin(point)).diameter == 0.0:
+            raise CaseError(
+                f"{entry}.links: the pin at {point} goes through the walls of link '{link}', which has no eye there; "
+                "name the other links alone"
+            )

@@ -1,0 +1,248 @@
+"""The check of eyes: the worst of its eyes, modes, plates, load cases and poses; and what it refuses."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from edited_cases import edited
+from eye_case import checked, eyes
+
+from alula.fea.asked.asked import asked
+from alula.fea.beam.cut_free import link_loads
+from alula.fea.check.run import check_case
+from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import Quantity, Subject, Verdict
+from alula.fea.judging.bearing import sharing
+from alula.fea.judging.eyes import eye_factors, strengths, worse_of, worst_pose
+from alula.fea.motion.envelope_outcomes import eye_outcomes
+from alula.fea.motion.link_history import link_histories
+from alula.fea.outcomes.eye_modes import EyeMode
+from alula.geometry.base.errors import CaseError
+from alula.loads.records.check_spec import EyeCheck
+from alula.loads.states.case_motion import solve_case_motion
+from alula.reports.check.whole_check import check_record, check_sections
+from alula.reports.sentences import told
+
+NET = 2.0 * 3.5 * 0.6 * (260.0 / 240.0) * math.sqrt(5.0 / 3.5) * 2.0 * 260.0
+"""Eyes of 12 mm about pins of 5 mm that fit, 2 mm thick, of aluminium 6061-T6 with 240 and 260 MPa [N]."""
+
+
+def level(result):
+    (found,) = (check for check in result.checks if check.quantity is Quantity.EYES and check.link == "level")
+    return found
+
+
+def test_a_pulled_bar_by_hand():
+    found = checked(eyes())
+    outcome = level(found)
+    assert outcome.value.value == pytest.approx(NET / 500.0)
+    assert (outcome.limit, outcome.verdict) == (2.4, Verdict.PASS)
+    assert math.isnan(outcome.value.told.low)  # no scatter of tests about the formulas is known
+    assert str(EyeMode.NET_SECTION) in told(outcome.reason)
+    [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
+    assert eye.force == pytest.approx(500.0)
+    assert eye.angle == pytest.approx(0.0, abs=1e-6)
+    assert set(eye.factors) == {
+        EyeMode.NET_SECTION,
+        EyeMode.DISHING,
+        EyeMode.FRACTURE,
+        EyeMode.SHEAR_OUT,
+        EyeMode.BEARING,
+    }
+    assert min(eye.factors.values(), key=lambda band: band.low) == eye.factors[EyeMode.NET_SECTION]
+
+
+def two_eyes(tables, narrow, thin):
+    """One eye is narrow and thick, the other wide and thin; a second load case presses into the shanks."""
+    sizes = {narrow: {"diameter": "9 mm", "thickness": "3 mm"}, thin: {"diameter": "16 mm", "thickness": "2 mm"}}
+    tables["links"]["level"]["eyes"] = sizes
+    tables["parts"]["bar"] |= {"width": "6 mm", "fillet_radius": "0.4 mm"}
+    tables["load_cases"]["push"] = {"forces": [{"link": "level", "at": "B", "force": ["-100 N", "0 N"]}]}
+
+
+@pytest.mark.parametrize(("narrow", "thin"), [("O", "B"), ("B", "O")])
+def test_each_load_case_has_its_worst_eye(narrow, thin):
+    """Pulled, the narrow eye tears at 1.5 times its thickness; pressed into the shanks, the thin one bears more."""
+    result = check_case(eyes(lambda tables: two_eyes(tables, narrow, thin)), fidelity="beam").load_cases
+    pulled, pushed = level(result["pull"]), level(result["push"])
+    effective = 2.0 * min(0.6 * (260.0 / 240.0) * math.sqrt(5.0 / 2.0), 1.0)
+    fracture = (1.13 * 2.0 + 0.92 * 2.0 / 1.4) * 3.0 * 260.0
+    assert 2.0 * effective * 3.0 * 260.0 > fracture
+    found = {eye.eye: eye for eye in result["pull"].eyes if eye.link == "level"}
+    assert pulled.value.value == pytest.approx(min(band.value for band in found[narrow].factors.values()))
+    assert found[narrow].factors[EyeMode.FRACTURE].value == pytest.approx(fracture / 500.0)
+    assert found[thin].worst[1].low > pulled.value.low
+    assert f"eye at {narrow}" in told(pulled.reason)
+    assert pushed.value.value == pytest.approx(1.25 * 240.0 * 5.0 * 2.0 / 100.0)
+    assert f"{EyeMode.BEARING} of the eye at {thin}" in told(pushed.reason)
+
+
+def test_the_band_holds_loads_strength_and_clearance():
+    def scattered(tables):
+        tables["load_cases"]["pull"]["scatter"] = [0.8, 1.25]
+        tables["checks"]["eye"]["standard"] = "EN 1993-1-8"
+        tables["joints"]["O"]["clearance"] = {"level": ["0.1 mm", "0.3 mm"]}
+
+    case, name = eyes(scattered), "aluminium-6061-t6"
+    card = case.all_materials[name].model_copy(update={"strength_range": (220.0, 300.0)})
+    found = checked(case.model_copy(update={"materials": {**case.materials, name: card}}))
+    [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
+
+    def bears(strength, hole):
+        return 2.0 * 2.0 * strength * ((12.0 - hole) / 2.0 - hole / 3.0) / 500.0
+
+    side = eye.factors[EyeMode.SIDE]
+    assert side.value == pytest.approx(bears(240.0, 5.2))
+    assert {source.kind for source in side.sources} == {SourceKind.LOAD, SourceKind.STRENGTH, SourceKind.PLAY}
+    # Play of the pins changes the force by some tenths of a percent besides.
+    assert side.low == pytest.approx(bears(220.0, 5.3) / 1.25, rel=5e-3)
+    assert side.high == pytest.approx(bears(300.0, 5.1) / 0.8, rel=5e-3)
+
+
+def test_the_plates_of_a_pair_bear_half_each():
+    def pair(tables):
+        tables["links"]["level"] |= {"count": 2, "apart": "6 mm"}
+
+    assert level(checked(eyes(pair))).value.value == pytest.approx(2.0 * NET / 500.0)
+
+
+def test_a_fork_bears_on_both_cheeks_and_dishes_as_one_of_them():
+    def forked(tables):
+        tables["parts"]["bar"] |= {"thickness": "4 mm", "eye_thickness": "4 mm"}
+        tables["links"]["level"]["eyes"] = {"O": {"fork": "2 mm", "fork_depth": "8 mm"}}
+
+    [eye] = [eye for eye in checked(eyes(forked)).eyes if (eye.link, eye.eye) == ("level", "O")]
+    assert eye.factors[EyeMode.NET_SECTION].value == pytest.approx(NET / 500.0)
+    assert eye.factors[EyeMode.DISHING].value == pytest.approx(2.0 * 4.0 * 1.0 * 2.0 * 260.0 / 500.0)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_worse_of_two_plates_counts_and_the_direction_of_its_force(order):
+    """One plate is drawn straight by 500 N; the other by 600 N at 30° to that, which takes off an eighth at worst."""
+    case, result = eyes(), checked(eyes())
+    body = case.body("level")
+    loads = link_loads("pull", "level", body, result.forces.reactions, result.loads)
+
+    def plate(force):
+        wrench = np.array([*force, 0.0, 0.0, 0.0, 0.0])
+        return replace(loads, pins=tuple(replace(pin, wrench=wrench) for pin in loads.pins if pin.name == "B"))
+
+    [one] = asked(case, EyeCheck, subject=Subject.link("level"))
+    plates = [plate((500.0, 0.0)), plate((600.0 * math.cos(math.pi / 6.0), 300.0))]
+    spread = Scatter(low=0.9, high=1.25, sources=(Source(kind=SourceKind.PLAY),))
+    [strength] = [eye for eye in strengths(case, "level", one.check) if eye.name == "B"]
+    found = worse_of(one, strength, plates[::order], spread)
+    net = found.factors[EyeMode.NET_SECTION]
+    assert (found.force, found.angle) == pytest.approx((600.0, 30.0))
+    assert net.value == pytest.approx(NET / 600.0)
+    assert (net.low, net.high) == pytest.approx((NET / 600.0 * 0.875 / 1.25, NET / 600.0 / 0.9))
+    assert {source.kind for source in net.sources} == {SourceKind.PLAY, SourceKind.DIRECTION}
+    assert {source.kind for source in found.factors[EyeMode.BEARING].sources} == {SourceKind.PLAY}
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_of_all_ways_of_sharing_couples_the_one_that_presses_most_counts(order):
+    wrenches = np.zeros((3, 6))
+    wrenches[:, :2] = (3.0, 0.0), (0.0, 4.0), (2.0, 0.0)
+    assert sharing(eyes(), "B", "level", [wrenches[0], *wrenches[1:][::order]]).high == pytest.approx(4.0 / 3.0)
+    assert sharing(eyes(), "B", "level", [wrenches[1], *wrenches[::2][::order]]) == Scatter()
+
+
+def test_page_and_file_have_every_mode():
+    result = check_case(eyes(), fidelity="beam")
+    sections = check_sections(result)
+    [record] = [one for one in check_record(result, sections)["load_cases"]["pull"]["eyes"] if one["eye"] == "O"]
+    assert record["link"] == "level"
+    found = {one["mode"]: one["factor"]["value"] for one in record["modes"]}
+    assert found[str(EyeMode.NET_SECTION)] == pytest.approx(NET / 500.0)
+
+
+def test_over_a_motion_the_worst_pose_counts():
+    """Every pose by itself, as in a check: none is lower; where the worst is left out, the next one counts."""
+    case = edited("six-bar", ['checks.eye={type="eye", minimum=2.4}', "motion.poses=13"])
+    [load_case], moved = case.load_cases, solve_case_motion(case)
+    loaded = {link: link_histories(moved, link) for link in case.checked_links}
+    evaluated = np.ones(len(moved.motion.angles), dtype=bool)
+    found = {outcome.link: outcome for outcome in eye_outcomes(moved, loaded, evaluated)}
+    assert set(found) == set(case.checked_links)
+    for one in asked(case, EyeCheck):
+        plates = loaded[one.subject.name]
+        singly = [
+            min(eye.worst[1].low for eye in eye_factors(case, load_case, one, [x.chosen(pose) for x in plates], {}))
+            for pose in range(len(evaluated))
+        ]
+        pose = worst_pose(case, one, plates, evaluated)
+        assert singly[pose] == min(singly) < max(singly)
+        assert found[one.subject.name].value.low <= singly[pose] <= found[one.subject.name].value.value
+        left = evaluated.copy()
+        left[pose] = False
+        assert singly[worst_pose(case, one, plates, left)] == min(np.array(singly)[left])
+
+
+def refused(*changes):
+    with pytest.raises(CaseError) as error:
+        eyes(*changes)
+    return str(error.value)
+
+
+def of(material, **more):
+    def change(tables):
+        tables["parts"]["bar"] |= {"material": material, **more}
+
+    return change
+
+
+def bare(tables):
+    """The card of an aluminium without its ultimate strength."""
+    card = {
+        "title": "aluminium", "density": "2700 kg/m^3", "youngs_modulus": "70 GPa", "poissons_ratio": 0.33,
+        "yield_strength": "240 MPa", "strength": "yield", "sources": {}, "status": {},
+    }  # fmt: skip
+    tables["materials"] = {"plain": card}
+    tables["parts"]["bar"]["material"] = "plain"
+
+
+def test_without_an_ultimate_strength_the_sentence_says_what_to_state():
+    assert re.search(r"materials\.plain\.ultimate_strength: .* state it, or .*EN 1993-1-8", refused(bare))
+    by_yield = checked(eyes(bare, lambda tables: tables["checks"]["eye"].update(standard="EN 1993-1-8")))
+    assert level(by_yield).value.value == pytest.approx(2.0 * 2.0 * 240.0 * (3.5 - 10.0 / 3.0) / 500.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (of("pvc-u"), "a plastic"),
+        (of("pla-fdm-xy"), "printed"),
+        (of("resin-405nm"), "printed"),
+        (of("aluminium-6061-t6", build_direction=[0, 0, 1]), "printed"),
+    ],
+)
+def test_plastics_and_prints_are_for_others_to_judge(change, what):
+    assert re.search(rf"links: .* link 'level' .* is {what}; .*plastic collapse and layers", refused(change))
+
+
+def plate(tables):
+    tables["links"]["level"]["part"] = "disc"
+    tables["parts"]["disc"] = {
+        "shape": "disc", "material": "aluminium-6061-t6", "diameter": "140 mm", "thickness": "2 mm",
+        "eye_diameter": "12 mm",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ([lambda tables: tables["checks"]["eye"].update(links=["frame"])], "'frame'"),
+        ([plate], "link 'level' is a disc"),
+    ],
+)
+def test_other_shapes_are_refused(changes, said):
+    assert said in refused(*changes)
+
+
+def test_links_may_be_named():
+    named = eyes(plate, lambda tables: tables["checks"]["eye"].update(links=["rising"]))
+    assert [one.subject.name for one in asked(named, EyeCheck)] == ["rising"]
