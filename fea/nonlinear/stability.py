@@ -119,7 +119,7 @@ def largest_eigenvalue(A: Floats, root: Floats) -> float:
         upper = root.T
 
         def between(x: Floats) -> Floats:
-            """L⁻¹ A L⁻ᵀ x"""
+            """L⁻¹ A L⁻ᵀ x."""
             return np.asarray(dtrsv(upper, A @ dtrsv(upper, x), trans=1))
 
         operator, start = LinearOperator(A.shape, matvec=between, dtype=float), upper @ np.ones(len(A))
