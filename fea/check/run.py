@@ -35,7 +35,7 @@ from alula.fea.judging.link_result import by_hand_shares, link_result, open_rang
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from alula.fea.judging.solid_buckling import solid_buckling_outcomes
-from alula.fea.links.fidelity import DecidedLink, LinkTask, by_hand, decide
+from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
@@ -47,6 +47,7 @@ from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS
+from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import START, Effort, RefinedSolid
 from alula.fea.solid.solution import SolidSolution, require_compressible
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics, with_ends

@@ -93,7 +93,8 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     linear = solve_frame(divided)
     path = EquilibriumPath(divided)
     K, G = (path.free(part) for part in stiffness_parts(path, linear.end_forces, linear.guide_forces))
-    largest = largest_eigenvalue(-(G + G.T) / 2.0, np.linalg.cholesky((K + K.T) / 2.0))
+    root = np.asarray(np.linalg.cholesky((K + K.T) / 2.0), dtype=np.float64)
+    largest = largest_eigenvalue(-(G + G.T) / 2.0, root)
     return 1.0 / largest if largest > 1e-12 else np.inf
 
 
