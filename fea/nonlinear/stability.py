@@ -106,7 +106,7 @@ def largest_eigenvalue(A: Floats, root: Floats) -> float:
     A : ndarray, shape (n, n)
         Symmetric.
     root : ndarray, shape (n, n)
-        L, the lower factor of Cholesky.
+        L, lower triangular.
 
     Returns
     -------
