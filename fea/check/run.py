@@ -3,14 +3,14 @@
 import math
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
 from alula.fea.asked.asked import Asked, asked, asked_of
 from alula.fea.asked.at_temperature import as_known
-from alula.fea.beam.theory import CantileverCheck, uniform_cantilever
+from alula.fea.beam.theory import BeamCheck, CantileverCheck, uniform_cantilever
 from alula.fea.buckling.buckling import buckling_outcomes
 from alula.fea.check.known_stiffness import as_stiff_as_may_be, with_known_stiffness
 from alula.fea.check.point_solids import decide_point
@@ -49,6 +49,7 @@ from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS
+from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import START, Effort, RefinedSolid
 from alula.fea.solid.solution import SolidSolution, require_compressible
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics, with_ends
@@ -128,12 +129,30 @@ class _LoadCase:
     load_case: str
     moved: LargeDisplacement
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
-    growth: Growths
-    grown: Growths
-    uneven: Growths
-    shared: Growths
     size: float
-    doubts: Sequence[Doubt]
+    growth: Growths = field(default_factory=Growths)
+    grown: Growths = field(default_factory=Growths)
+    uneven: Growths = field(default_factory=Growths)
+    shared: Growths = field(default_factory=Growths)
+    doubts: Sequence[Doubt] = ()
+
+    @classmethod
+    def as_stated(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement) -> "_LoadCase":
+        """Return a load case without what is out of proportion."""
+        case, loads = statics.standing[load_case].case, statics.loads[load_case]
+        reactions = statics.reactions[load_case]
+        moved = with_growth(case, load_case, moved, loads)
+        return cls(
+            case=case,
+            statics=statics,
+            load_case=load_case,
+            moved=moved,
+            plates={
+                link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
+                for link in case.checked_links
+            },
+            size=load_size(loads, case.linkage.longest),
+        )
 
     @classmethod
     def of(
@@ -142,33 +161,23 @@ class _LoadCase:
         load_case: str,
         moved: LargeDisplacement,
         doubts: Sequence[Doubt],
-        tilting: Sequence[str] | None = None,
+        told: Sequence[str] | None = None,
     ) -> "_LoadCase":
-        case, loads = statics.standing[load_case].case, statics.loads[load_case]
-        reactions = statics.reactions[load_case]
-        moved = with_growth(case, load_case, moved, loads)
-        plates = {
-            link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
-            for link in case.checked_links
-        }
-        hands = {link: found[0][1] for link, found in plates.items()}
-        forces = statics.forces[load_case]
-        growth = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
+        found = cls.as_stated(statics, load_case, moved)
+        case, loads, moved = found.case, statics.loads[load_case], found.moved
+        hands = {link: plates[0][1] for link, plates in found.plates.items()}
+        forces = found.forces
+        growth = growths(case, load_case, statics.pose, loads, moved, statics.reactions[load_case], hands)
         grown = growth.times(stiffness_doubt(case, load_case, forces, loads))
-        uneven = grown.times(play_doubt(case, load_case, forces, loads))
+        uneven = grown.times(play_doubt(case, load_case, forces, loads, told))
         for doubt in doubts:
             uneven = uneven.times(doubt.growths)
-        return cls(
-            case=case,
-            statics=statics,
-            load_case=load_case,
-            moved=moved,
-            plates=plates,
+        return replace(
+            found,
             growth=growth,
             grown=grown,
             uneven=uneven,
-            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved), links=tilting),
-            size=load_size(loads, case.linkage.longest),
+            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved), links=told),
             doubts=doubts,
         )
 
@@ -401,7 +410,7 @@ def check_case(
     frames: Mapping[str, LargeDisplacement] | None = None,
     only: Collection[str] | None = None,
     bare: bool = False,
-    tilting: Sequence[str] | None = None,
+    told: Sequence[str] | None = None,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
@@ -425,8 +434,9 @@ def check_case(
     bare : bool, optional
         True where only the load cases are wanted, of a case without checks of the linkage's gaps, mass, size, motor and
         frequencies: these numbers and all warnings are left out.
-    tilting : sequence of str, optional
-        Links by hand for which it counts that pins may tilt; the others' bands leave that out. All when left out.
+    told : sequence of str, optional
+        Links by hand whose bands are wanted; those of others leave out that pins may tilt and stand otherwise in their
+        holes. All when left out.
     progress : callable
         Called with a sentence before every stage that may take long.
 
@@ -469,7 +479,7 @@ def check_case(
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {x: _LoadCase.of(statics, x, what, doubts[x], tilting) for x, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what, doubts[x], told) for x, what in moved.items()}
     clock("hand calculations")
     shared = _SolidAnswers()
     decided = _decided(
@@ -519,6 +529,46 @@ def check_case(
     )
 
 
+def links_by_hand(
+    statics: CaseStatics, frames: Mapping[str, LargeDisplacement] | None = None
+) -> dict[str, dict[str, LinkResult]]:
+    """Return the numbers of links by hand as stated: their bands leave out play, air, friction, and pins that tilt.
+
+    Parameters
+    ----------
+    statics : CaseStatics
+    frames : mapping of str to LargeDisplacement, optional
+        As for ``check_case``.
+
+    Returns
+    -------
+    dict of str to dict of str to LinkResult
+        Load case -> link -> its numbers.
+    """
+    found = {}
+    for x, forces in statics.forces.items():
+        moved = frames[x] if frames else examine(statics.standing[x].case, x, forces, statics.loads[x])
+        found[x] = _LoadCase.as_stated(statics, x, moved)
+    every = list(found.values())
+    decided = _decided_by_hand(statics.case, every, statics.case.checked_links)
+    return {x: one.links(decided) for x, one in found.items()}
+
+
+def _tasks(
+    case: Case, load_cases: Sequence[_LoadCase], links: Sequence[str]
+) -> tuple[dict[str, LinkTask], dict[str, dict[str, BeamCheck]]]:
+    """Return what is to be decided of every link on which something acts, and its hand calculations by their loads."""
+    loaded = {link: [cut for one in load_cases if one.acts_on(link) for cut, _ in one.plates[link]] for link in links}
+    tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
+    beams = {link: {cut.name: hand.check for one in load_cases for cut, hand in one.plates[link]} for link in tasks}
+    return tasks, beams
+
+
+def _decided_by_hand(case: Case, load_cases: Sequence[_LoadCase], links: Sequence[str]) -> dict[str, DecidedLink]:
+    tasks, beams = _tasks(case, load_cases, links)
+    return {link: by_hand(task, beams[link]) for link, task in tasks.items()}
+
+
 def _decided(
     case: Case,
     load_cases: Sequence[_LoadCase],
@@ -533,13 +583,9 @@ def _decided(
 ) -> dict[str, DecidedLink]:
     """Decide every link on which something acts, by the model that was asked for."""
     wanted_links = [link for link in case.checked_links if only is None or link in only]
-    loaded = {
-        link: [cut for one in load_cases if one.acts_on(link) for cut, _ in one.plates[link]] for link in wanted_links
-    }
-    tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
-    beams = {link: {cut.name: hand.check for one in load_cases for cut, hand in one.plates[link]} for link in tasks}
     if fidelity in BY_HAND:
-        return {link: by_hand(task, beams[link]) for link, task in tasks.items()}
+        return _decided_by_hand(case, load_cases, wanted_links)
+    tasks, beams = _tasks(case, load_cases, wanted_links)
     if fidelity == "solid":
         for task in tasks.values():
             require_compressible(task.nu)  # before the first mesh

@@ -15,17 +15,18 @@ A tree of mappings; its leaves are values with their dimensions, or words. Roots
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
-from alula.fea.check.run import check_case, effort_of, hand_calculations
+from alula.fea.check.run import check_case, effort_of, hand_calculations, links_by_hand
 from alula.fea.common.reason import reason
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
-from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
+from alula.fea.outcomes.result import CheckResult, LinkResult, SolidResult
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
+from alula.fea.standing.joint_forces import WayToHold, ways_to_hold
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.mechanisms.flapping import FlappingWing
 from alula.geometry.mechanisms.fourbar import FourBar
@@ -140,7 +141,6 @@ def case_tree(
     frames = _frames(case, known)
     parts = Tree(
         statics=lambda: solve_case_statics(case, name),
-        beam=lambda: check_case(case, name=name, fidelity="beam", threads=threads, frames=frames),
         solid=lambda: check_case(
             case, name=name, fidelity="solid", threads=threads, effort=replace(effort_of(case), stated=True)
         ),
@@ -148,7 +148,7 @@ def case_tree(
     branches: dict[str, Callable[[], Any]] = {
         "pose": lambda: _pose(parts["statics"]),
         "statics": lambda: _statics(parts["statics"]),
-        "beam": lambda: _check(parts["beam"]),
+        "beam": lambda: _by_hand(parts["statics"], frames),
         "hand": lambda: {
             key: _leaves(hand, {"moment": "N*mm", "stress": "MPa", "safety_factor": ""})
             for key, hand in hand_calculations(case).items()
@@ -234,25 +234,32 @@ def _audit(statics: CaseStatics, name: str) -> Mapping[str, Any]:
 
 
 def _check(result: CheckResult) -> Mapping[str, Any]:
-    return {title: _load_case(result, load_case) for title, load_case in result.load_cases.items()}
+    for load_case in result.load_cases.values():
+        for name, link in load_case.links.items():
+            if isinstance(link, SolidResult) and link.discretisation.status != "converged":
+                raise CannotRunError(
+                    f"no claim on stress can be judged, since that of {name} has not converged: "
+                    f"its meshes are {link.discretisation.status}"
+                )
+    return {title: _links(result.case, one.links, one.ways_to_hold) for title, one in result.load_cases.items()}
 
 
-def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, Any]:
-    for name, link in load_case.links.items():
-        if isinstance(link, SolidResult) and link.discretisation.status != "converged":
-            raise CannotRunError(
-                f"no claim on stress can be judged, since that of {name} has not converged: "
-                f"its meshes are {link.discretisation.status}"
-            )
-    worst = max(load_case.links.values(), key=_von_mises)
-    points = result.case.links[worst.link].points
+def _by_hand(statics: CaseStatics, frames: Mapping[str, LargeDisplacement] | None) -> Mapping[str, Any]:
+    case, found = statics.case, links_by_hand(statics, frames)
+    ways = {title: ways_to_hold(case, statics.pose, loads) for title, loads in statics.loads.items()}
+    return {title: _links(case, links, ways[title]) for title, links in found.items()}
+
+
+def _links(case: Case, links: Mapping[str, LinkResult], ways: Sequence[WayToHold]) -> Mapping[str, Any]:
+    worst = max(links.values(), key=_von_mises)
+    points = case.links[worst.link].points
     near = min(points, key=lambda point: math.hypot(*(np.array(points[point]) - worst.location[:2])))
     return {
         "largest_stress": Value.of(_von_mises(worst), "MPa"),
-        "least_safety_factor": Value.of(min(map(_safety_factor, load_case.links.values()))),
+        "least_safety_factor": Value.of(min(map(_safety_factor, links.values()))),
         "most_stressed_link": worst.link,
         "most_stressed_joint": near,
-        "held": {held.name: Value.of(held.size, "mm") for held in load_case.ways_to_hold},
+        "held": {held.name: Value.of(held.size, "mm") for held in ways},
         "links": {
             name: {
                 "von_mises": Value.of(_von_mises(link), "MPa"),
@@ -261,7 +268,7 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
                 "moment": Value.of(float(np.hypot(link.beam.m_y, link.beam.m_z).max()), "N*mm"),
             }
             | ({"safety_factor": Value.of(_safety_factor(link))} if math.isfinite(_safety_factor(link)) else {})
-            for name, link in load_case.links.items()
+            for name, link in links.items()
         },
     }
 

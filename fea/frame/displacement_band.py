@@ -18,6 +18,7 @@ import itertools
 import math
 from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -29,7 +30,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.frame.model import NodeLoad
+from alula.fea.frame.model import FrameModel, NodeLoad
 from alula.fea.frame.system import to_ends
 from alula.geometry.bodies.body import Body, hand_section
 from alula.geometry.bodies.features import Pin
@@ -58,7 +59,7 @@ FLANKS = 0.15
 """Share by which the flanks of a slot may be softer, or stiffer, than beams."""
 STIFFEST = 0.01
 """Least flexibility of a link over its beam's: eyes may leave nothing of it."""
-_POINTS = 6
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -294,7 +295,6 @@ def _along_axes(
 ) -> Real:
     """Return how far a point moves along x, y and, where anything moves out of the plane, z: value, least, largest."""
     node = frame.points[at]
-    bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
     beams, bores = give_of_links(case, frame, solids)
     left_out = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
     of_link = {i: beam.link for i, beam in frame.beams.items()}
@@ -304,8 +304,7 @@ def _along_axes(
     planar = not np.any(solution.displacements[:, 2:5])
     found = []
     for axis in range(2 if planar else 3):
-        load = NodeLoad(node=node, wrench=np.eye(6)[axis])
-        unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
+        unit = _under_unit_force(frame.model, node, axis)
 
         def share(own: Collection[str], low: float, high: float, unit: FrameSolution = unit, axis: int = axis) -> Real:
             without = left_out | {i for i in numbers if of_link.get(i, "") not in own}
@@ -319,6 +318,13 @@ def _along_axes(
         parts = [share(others, 1.0, 1.0), *(share(one.links, one.low, one.high) for one in moduli)]
         found.append(np.sum(parts, axis=0))
     return np.array(found)
+
+
+@lru_cache(maxsize=64)
+def _under_unit_force(model: FrameModel, node: int, axis: int) -> FrameSolution:
+    """Return a frame's answer to a unit force alone; bands of a point ask for it again."""
+    bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in model.elements)
+    return solve_frame(replace(model, elements=bare, loads=(NodeLoad(node=node, wrench=np.eye(6)[axis]),)))
 
 
 def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Scatter:
@@ -484,10 +490,9 @@ def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Z
     element, length = loaded.model.elements[i], loaded.model.length(i)
     real, virtual = loaded.internal_forces(i), unit.internal_forces(i)
     flexible = flexibility(element.section, element.young, element.poisson)
-    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
     every = zones or (Zone(start=0.0, end=length, least=np.ones(6), most=np.ones(6)),)
     start, end = (np.minimum([getattr(zone, name) for zone in every], length)[:, None] for name in ("start", "end"))
-    xs, dx = (start + end) / 2.0 + (end - start) / 2.0 * nodes, (end - start) / 2.0 * weights
+    xs, dx = (start + end) / 2.0 + (end - start) / 2.0 * _NODES, (end - start) / 2.0 * _WEIGHTS
     terms = flexible * np.einsum("zq,zqi->zi", dx, real.along(xs) * virtual.along(xs))
     nominal, least, most = np.zeros(6), np.zeros(6), np.zeros(6)
     for zone, term in zip(every, terms, strict=True):

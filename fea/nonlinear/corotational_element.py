@@ -20,6 +20,7 @@ the first and the spins of both, and the twelve of the nodes follow.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -131,11 +132,15 @@ class CorotationalElements:
         ElementResponse
             Forces and geometric stiffness.
         """
+        v, work = self._undeformed
+        return _response(v.map(natural[:, None, :]) - work, -self._at_ends(self.loads))
+
+    @cached_property
+    def _undeformed(self) -> tuple[Jet, Jet]:
+        """Natural deformations, and the work of the line loads on the chord, as the elements stand."""
         m = len(self.lengths)
         displacements, rotations = np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
-        v, _ = self.natural(displacements, rotations)
-        potential = v.map(natural[:, None, :]) - self._work_on_chord(displacements, rotations, self.loads)
-        return _response(potential, -self._at_ends(self.loads))
+        return self.natural(displacements, rotations)[0], self._work_on_chord(displacements, rotations, self.loads)
 
     def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, Jet]:
         """Return the natural deformations and the element's axes.

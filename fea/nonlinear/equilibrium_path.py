@@ -115,7 +115,7 @@ class State:
 
 
 class EquilibriumPath:
-    """The equilibrium path of a frame from load factor 0 to 1.
+    """The equilibrium path of a frame from load factor 0 on.
 
     Its elements may be those of another frame, where these differ by the nodes alone that they end at.
     """
@@ -172,8 +172,8 @@ class EquilibriumPath:
             self._at, self._balanced = (state, natural), {}
         return self._at[1]
 
-    def follow(self, least_step: float, most_iterations: int, *, stable: bool = False) -> None:
-        """Go on to the whole load in steps over which the path bends little, halved where Newton's method fails.
+    def follow(self, least_step: float, most_iterations: int, *, stable: bool = False, to: float = 1.0) -> None:
+        """Go on to a load in steps over which the path bends little, halved where Newton's method fails.
 
         Parameters
         ----------
@@ -183,6 +183,8 @@ class EquilibriumPath:
             Of Newton's method in one step.
         stable : bool, optional
             Whether the path ends where it is not stable any more.
+        to : float, optional
+            Factor on the load.
 
         Raises
         ------
@@ -190,9 +192,9 @@ class EquilibriumPath:
             Where the step falls below ``least_step`` and a 64th of the load that was reached.
         """
         step = first = self._straight()
-        while self.reached < 1.0:
+        while self.reached < to:
             finest = min(least_step, _RESOLUTION * (self.reached or first))
-            target = min(1.0, self.reached + max(step, finest))
+            target = min(to, self.reached + max(step, finest))
             found = self._newton(target, most_iterations)
             buckled = found is not None and stable and not self.is_stable(found[0], target)
             if found is None or buckled:
@@ -202,7 +204,7 @@ class EquilibriumPath:
                 continue
             self.state, iterations = found
             self.reached = target
-            if target < 1.0:
+            if target < to:
                 step = min(2.0 * step if iterations <= 6 else step, self._straight())
 
     def _straight(self) -> float:

@@ -33,9 +33,9 @@ from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.stability import (
     COARSE_SUBDIVISIONS,
     NEAR_BUCKLING,
-    beam_answers,
+    geometric_stiffness,
     largest_eigenvalue,
-    stiffness_parts,
+    pressed_beams,
 )
 from alula.fea.pins.holes import RimFrame
 from alula.fea.pins.states import PinStates
@@ -55,8 +55,6 @@ that of a tie that rolls about the line through the rims that it hangs on."""
 SLIGHT = 0.02
 """Tilt of pins in their holes up to which a linkage that leans keeps its shape, but for what bands of displacement say:
 it changes lengths by half its square."""
-MANY = 120
-"""Unknowns from which on one eigenvalue is sought."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,19 +76,22 @@ class Extended:
     pressed: Floats
     free: Floats
 
-    def factor(self, *, stopped: bool = False) -> float:
+    def factor(self, *, stopped: bool = False, below: float = np.inf) -> float:
         """Return the least factor on the load at which the frame becomes unstable.
 
         Parameters
         ----------
         stopped : bool, optional
             Whether the motions in which it leans are closed.
+        below : float, optional
+            One that is known already. The factors at which the frame is stable are an interval, as the stiffness is
+            linear in them, so that where it is stable at the least of ``STARTS`` and at this, its own is no less.
 
         Returns
         -------
         float
-            0 where it is unstable at all of ``STARTS``. Motions that strain nothing and that no load drives do not
-            count.
+            0 where it is unstable at all of ``STARTS``; ``below`` where it is no less. Motions that strain nothing and
+            that no load drives do not count.
         """
         size = np.diag(self.plain)
         unit = 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
@@ -103,16 +104,23 @@ class Extended:
         if leans.any() and not stopped:
             return 0.0
         closed = Z[:, idle | leans]
-        left = np.eye(len(plain)) - closed @ closed.T
-        plain, pressed = plain + closed @ closed.T, left @ pressed @ left
-        for start in STARTS:
-            whole = plain + start * pressed
+        along = pressed @ closed
+        lost = closed @ (along - closed @ (closed.T @ along) / 2.0).T
+        plain, pressed = plain + closed @ closed.T, pressed - lost - lost.T
+
+        def held(factor: float) -> Floats | None:
             try:
-                np.linalg.cholesky(whole)
+                return np.linalg.cholesky(plain + factor * pressed)
             except np.linalg.LinAlgError:
-                continue
-            largest = largest_eigenvalue(-pressed, whole, many=MANY)
-            return start + 1.0 / largest if largest > 1e-12 else np.inf
+                return None
+
+        if below < np.inf and held(STARTS[-1]) is not None and held(below) is not None:
+            return below
+        for start in STARTS:
+            root = held(start)
+            if root is not None:
+                largest = largest_eigenvalue(-pressed, root)
+                return min(start + 1.0 / largest, below) if largest > 1e-12 else below
         return 0.0
 
 
@@ -125,12 +133,20 @@ class RimPath:
         Of the path's model.
     path : EquilibriumPath
         At its start.
+    further : ndarray, shape (k + g, k + g), optional
+        Stiffness beside that of the path's model.
     """
 
-    def __init__(self, rims: RimFrame, path: EquilibriumPath) -> None:
+    def __init__(self, rims: RimFrame, path: EquilibriumPath, further: Floats | None = None) -> None:
         self.rims, self.path = rims, path
         self._pins = list(rims.frame.pin_beams.values())
         self._moved = path.places.matrices(path.chain.axes(path.state.rotations))[self._pins]
+        plain = path.respond(path.state, 0.0)
+        K, k = path.assemble(plain, path.state, 0.0)[1], plain.tangent[self._pins]
+        K = K if further is None else K + further
+        self._motions, self._stiffness, self._own_stiffness = path.allowed(K), path.free(K), self._own(k)
+        self._pulls = self._motions[: path.chain.count].T @ self._coupled(k)
+        self._follows = -np.linalg.solve(self._stiffness, self._pulls)
 
     def forces(self, tangent: RimTangent) -> FrameSolution:
         """Return the forces in the frame.
@@ -146,9 +162,7 @@ class RimPath:
         """
         return self.rims.solved.solved(self.rims.opened @ tangent.v)
 
-    def extended(
-        self, tangent: RimTangent, state: FrameSolution | None = None, further: Floats | None = None
-    ) -> Extended:
+    def extended(self, tangent: RimTangent, state: FrameSolution | None = None) -> Extended:
         """Return stiffness and geometric stiffness in a state, with the motions that rims leave.
 
         Parameters
@@ -157,46 +171,42 @@ class RimPath:
             Of the state.
         state : FrameSolution, optional
             Its forces, where they are known.
-        further : ndarray, shape (k + g, k + g), optional
-            Stiffness beside that of the path's model.
 
         Returns
         -------
         Extended
         """
-        path, pins, ways = self.path, self._pins, tangent.ways
+        path, pins, ways, motions = self.path, self._pins, tangent.ways, self._motions
         state = state or self.forces(tangent)
-        plain, pressed = beam_answers(path, state.end_forces)
-        K, G = stiffness_parts(path, state.end_forces, state.guide_forces, (plain, pressed))
-        K = K if further is None else K + further
-        motions = path.allowed(K)
-        allowed = motions[: path.chain.count]
-        k, k_g = plain.tangent[pins], (pressed.tangent[pins] + pressed.tangent[pins].swapaxes(1, 2)) / 2.0
-        work = np.zeros_like(k)
+        pressed = pressed_beams(path, state.end_forces)
+        G = path.free(geometric_stiffness(path, pressed, state.guide_forces))
+        k_g = (pressed.tangent[pins] + pressed.tangent[pins].swapaxes(1, 2)) / 2.0
+        work = np.zeros_like(k_g)
         for end in (0, 1):
             local = state.end_forces[pins, end].reshape(-1, 2, 3, 1)
             forces, moments = (path.elements.axes[pins, None] @ local)[..., 0].swapaxes(0, 1)
             turn, shift = slice(6 * end + 3, 6 * end + 6), slice(6 * end, 6 * end + 3)
             work[:, turn, shift] = _turning(forces)
             work[:, turn, turn] = _turning(moments) / 2.0
-        own = ways.T @ self._own(k) @ ways
         own_pressed = ways.T @ self._own(k_g) @ ways + np.diag(tangent.stiffness)
-        felt = _felt(own, own_pressed)
-        K, coupled, own = path.free(K), allowed.T @ self._coupled(k) @ ways @ felt, felt.T @ own @ felt
-        by_pins = -np.linalg.solve(K, coupled)
+        felt = _felt(ways.T @ self._own_stiffness @ ways, own_pressed)
+        taken = ways @ felt
+        coupled, by_pins, own = self._pulls @ taken, self._follows @ taken, taken.T @ self._own_stiffness @ taken
         alone, freed = np.linalg.eigh(own + coupled.T @ by_pins)
         freed = freed[:, alone < FREE * np.abs(own).max(initial=0.0)]
-        pressing = allowed.T @ self._coupled(k_g + work) @ ways @ felt
+        pressing = motions[: path.chain.count].T @ self._coupled(k_g + work) @ taken
         return Extended(
             allowed=motions,
-            plain=_bordered(K, coupled, own),
-            pressed=_bordered(path.free(G), pressing, felt.T @ own_pressed @ felt),
+            plain=_bordered(self._stiffness, coupled, own),
+            pressed=_bordered(G, pressing, felt.T @ own_pressed @ felt),
             free=np.vstack([by_pins @ freed, freed]),
         )
 
     def _own(self, stiffness: Floats) -> Floats:
         """(4 h, 4 h) of pins' beams by the variables of the rims."""
-        return np.asarray(np.einsum("pic,pij,pjd->cd", self.rims.ends, stiffness, self.rims.ends, optimize=True))
+        ends = self.rims.ends
+        width = ends.shape[2]
+        return np.asarray(ends.reshape(-1, width).T @ (stiffness @ ends).reshape(-1, width))
 
     def _coupled(self, stiffness: Floats) -> Floats:
         """(k, 4 h) forces on the frame's unknowns by the variables of the rims."""
@@ -302,7 +312,9 @@ def rim_factors(pins: PinStates) -> RimFactors:
     first, *others = pins.tangents
     stopped, wide = first.tilt <= SLIGHT, [first, *(one for one in others if one.tilt > SLIGHT)]
     coarse = divided(pins, COARSE_SUBDIVISIONS)
-    found = [coarse.extended(one).factor(stopped=stopped and one is first) for one in wide]
+    found = list[float]()
+    for one in wide:  # what is no less than the least so far is not told
+        found.append(coarse.extended(one).factor(stopped=stopped and one is first, below=min(found, default=np.inf)))
     least = int(np.argmin(found))
     ends = found[0], found[least]
     if 0.0 < ends[1] < NEAR_BUCKLING:

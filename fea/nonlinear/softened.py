@@ -5,13 +5,18 @@ it make the same shape, and forces that differ by that factor.
 """
 
 import math
+from copy import copy
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.nonlinear.corotational import solve_large_displacement
-from alula.fea.nonlinear.equilibrium_path import CorotationalSolution, NoEquilibriumError
+from alula.fea.nonlinear.corotational import solve_large_displacement, subdivide
+from alula.fea.nonlinear.equilibrium_path import CorotationalSolution, EquilibriumPath, NoEquilibriumError, State
+
+Floats = NDArray[np.float64]
 
 PATH_SUBDIVISIONS = 2
 LEAST_STEP = 1.0 / 512.0
@@ -40,10 +45,33 @@ def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> floa
     if not math.isfinite(factor):
         return math.inf
     try:
-        found = followed(frame, factor)
+        found = followed(frame, factor).displacements if frame.model.springs else _displacements(frame, factor)
     except NoEquilibriumError:
         return math.inf
-    return float(np.linalg.norm(frame.at_points(found.displacements)[link, point]))
+    return float(np.linalg.norm(frame.at_points(found)[link, point]))
+
+
+def _displacements(frame: LinkageFrame, factor: float) -> Floats:
+    """Displacements (n, 3) of the nodes of a frame without springs, on from the nearest load that it was followed to.
+
+    Points of one linkage differ little in their factors, and all of its paths are one.
+    """
+    start, known = _path(frame)
+    nearest = max(one for one in known if one <= factor)
+    path = copy(start)
+    path.state, path.reached = known[nearest], nearest
+    try:
+        path.follow(LEAST_STEP * factor, MOST_ITERATIONS, stable=True, to=factor)
+    finally:
+        known[path.reached] = path.state
+    return path.state.displacements
+
+
+@lru_cache(maxsize=32)
+def _path(frame: LinkageFrame) -> tuple[EquilibriumPath, dict[float, State]]:
+    """Return the path of a frame at its start, and its states by the factors on the loads that it was followed to."""
+    path = EquilibriumPath(subdivide(frame.model, PATH_SUBDIVISIONS))
+    return path, {0.0: path.state}
 
 
 def followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:

@@ -63,8 +63,8 @@ def growth(factor: float) -> float:
     return factor * (1.0 - 2.0 / math.sqrt(3.0) * math.cos(math.acos(-SNAP / factor) / 3.0))
 
 
-_MANY = 1000
-"""Unknowns from which on one eigenvalue is sought, in place of all."""
+_MANY, _ROUNDS = 120, 50
+"""Unknowns from which on one eigenvalue is sought, in place of all, and restarts that this may take: as long as all."""
 _ROUNDING = 1e-9
 _FAR = 1e6
 """Factor from which on two terms of the series are exact to rounding."""
@@ -93,35 +93,44 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     linear = solve_frame(divided)
     path = EquilibriumPath(divided)
     K, G = (path.free(part) for part in stiffness_parts(path, linear.end_forces, linear.guide_forces))
-    largest = largest_eigenvalue(-(G + G.T) / 2.0, (K + K.T) / 2.0)
+    root = np.asarray(np.linalg.cholesky((K + K.T) / 2.0), dtype=np.float64)
+    largest = largest_eigenvalue(-(G + G.T) / 2.0, root)
     return 1.0 / largest if largest > 1e-12 else np.inf
 
 
-def largest_eigenvalue(A: Floats, B: Floats, many: int = _MANY) -> float:
-    """Return the largest λ of A x = λ B x; of many unknowns by Lanczos, which needs one factorisation of B.
+def largest_eigenvalue(A: Floats, root: Floats) -> float:
+    """Return the largest λ of A x = λ L Lᵀ x; of many unknowns by Lanczos.
 
     Parameters
     ----------
-    A, B : ndarray, shape (n, n)
-        Symmetric; B positive definite.
-    many : int, optional
-        Unknowns from which on Lanczos is taken.
+    A : ndarray, shape (n, n)
+        Symmetric.
+    root : ndarray, shape (n, n)
+        L, lower triangular.
 
     Returns
     -------
     float
     """
-    from scipy.linalg import cho_factor, cho_solve, eigh
+    from scipy.linalg import eigh, solve_triangular
+    from scipy.linalg.blas import dtrsv
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-    if len(A) > many:
-        factor = cho_factor(B)
-        inverse = LinearOperator(A.shape, matvec=lambda x: cho_solve(factor, x), dtype=float)
+    if len(A) > _MANY:
+        upper = root.T
+
+        def between(x: Floats) -> Floats:
+            """L⁻¹ A L⁻ᵀ x."""
+            return np.asarray(dtrsv(upper, A @ dtrsv(upper, x), trans=1))
+
+        operator, start = LinearOperator(A.shape, matvec=between, dtype=float), upper @ np.ones(len(A))
         try:
-            return float(eigsh(A, 1, B, which="LA", Minv=inverse, v0=np.ones(len(A)), return_eigenvectors=False)[0])
+            found = eigsh(operator, 1, which="LA", v0=start, maxiter=_ROUNDS, return_eigenvectors=False)
+            return float(found[0])
         except ArpackNoConvergence:
             pass  # where nothing buckles, the largest of them lie close together about zero
-    return float(eigh(A, B, eigvals_only=True)[-1])
+    half = solve_triangular(root, A, lower=True)
+    return float(eigh(solve_triangular(root, half.T, lower=True), eigvals_only=True)[-1])
 
 
 def beam_answers(path: EquilibriumPath, end_forces: Floats) -> tuple[ElementResponse, ElementResponse]:
@@ -138,11 +147,25 @@ def beam_answers(path: EquilibriumPath, end_forces: Floats) -> tuple[ElementResp
     -------
     tuple of 2 ElementResponse
     """
-    start, f = path.state, end_forces
+    return path.respond(path.state, 0.0), pressed_beams(path, end_forces)
+
+
+def pressed_beams(path: EquilibriumPath, end_forces: Floats) -> ElementResponse:
+    """Return what the beams of a frame as it stands answer by the forces in them and on them.
+
+    Parameters
+    ----------
+    path, end_forces
+        As of ``beam_answers``.
+
+    Returns
+    -------
+    ElementResponse
+    """
+    f = end_forces
     first, last = (path.elements.loads @ path.elements.axes)[..., 0].T
     mean = (f[:, 1, 0] - f[:, 0, 0]) / 2.0 + (last - first) * path.elements.lengths / 12.0
-    natural = np.column_stack([mean, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]])
-    return path.respond(start, 0.0), path.elements.geometric(natural)
+    return path.elements.geometric(np.column_stack([mean, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]))
 
 
 def stiffness_parts(
@@ -169,11 +192,28 @@ def stiffness_parts(
     tuple of 2 ndarray
         K and K_g (k + g, k + g) with the guides' rows and columns, for ``EquilibriumPath.free``.
     """
-    start = path.state
     plain, pressed = answers or beam_answers(path, end_forces)
-    K = path.assemble(plain, start, 0.0)[1]
-    loaded = replace(start, guide_forces=guide_forces)
-    bent = path.assemble(pressed, loaded, 1.0)[1]
+    return path.assemble(plain, path.state, 0.0)[1], geometric_stiffness(path, pressed, guide_forces)
+
+
+def geometric_stiffness(path: EquilibriumPath, pressed: ElementResponse, guide_forces: Floats) -> Floats:
+    """Return the geometric stiffness of a frame as it stands.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        Of the frame, at its start.
+    pressed : ElementResponse
+        Of ``pressed_beams``.
+    guide_forces : ndarray, shape (g,)
+        As of ``stiffness_parts``.
+
+    Returns
+    -------
+    ndarray, shape (k + g, k + g)
+    """
+    start = path.state
+    bent = path.assemble(pressed, replace(start, guide_forces=guide_forces), 1.0)[1]
     if path.model.springs:
         # Their stiffness is in K already; what their forces make of it is left.
         axes = path.chain.axes(start.rotations)
@@ -183,7 +223,7 @@ def stiffness_parts(
     for load in path.model.loads:
         numbers = [step.number for step in path.chain.nodes[load.node]]
         np.add.at(bent, np.ix_(numbers, numbers), axes[numbers] @ load.stiffness @ axes[numbers].T)
-    return K, bent
+    return bent
 
 
 def linkage_factor(frame: LinkageFrame) -> float:

@@ -209,8 +209,8 @@ class Trials:
         float
             1 or more where it keeps it; 0 where hand calculation does not judge it then.
         """
-        tilting = None if _whole(check) else _links([check])  # a linkage that holds its load is looked at in full next
-        plain, found = self._plain(check.load_case), self._checked(check.load_case, change, tilting)
+        wanted = None if _whole(check) else _links([check])  # a linkage that holds its load is looked at in full next
+        plain, found = self._plain(check.load_case), self._checked(check.load_case, change, wanted)
         after = None if found is None else _outcomes(found).get(_key(check))
         if plain is None or found is None or after is None or (found.gives_way and check.subject != LINKAGE):
             return 0.0
@@ -246,14 +246,14 @@ class Trials:
         by_hand = all(isinstance(link, HandResult) for link in case.links.values())
         return case if by_hand else self._checked(load_case, Scaled())
 
-    def _checked(self, load_case: str, change: Change, tilting: tuple[str, ...] | None = None) -> LoadCaseResult | None:
-        """A load case with a change, with what tilting pins make of some links, or of all."""
-        key = (load_case, change, None if (load_case, change, None) in self._done else tilting)
+    def _checked(self, load_case: str, change: Change, wanted: tuple[str, ...] | None = None) -> LoadCaseResult | None:
+        """A load case with a change, with the whole bands of some links, or of all."""
+        key = (load_case, change, None if (load_case, change, None) in self._done else wanted)
         if key not in self._done:
             self._done[key] = self._check(*key)
         return self._done[key]
 
-    def _check(self, load_case: str, change: Change, tilting: tuple[str, ...] | None) -> LoadCaseResult | None:
+    def _check(self, load_case: str, change: Change, wanted: tuple[str, ...] | None) -> LoadCaseResult | None:
         try:
             case = change.on(self.result.case)
         except CaseError:
@@ -261,7 +261,7 @@ class Trials:
         checks = {name: check for name, check in case.all_checks.items() if isinstance(check, _STATIC)}
         alone = case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "checks": checks})
         try:
-            found = check_case(alone, name=self.result.name, fidelity="beam", threads=1, bare=True, tilting=tilting)
+            found = check_case(alone, name=self.result.name, fidelity="beam", threads=1, bare=True, told=wanted)
         except (CaseError, CannotRunError):
             return None
         return found.load_cases[load_case]

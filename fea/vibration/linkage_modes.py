@@ -183,10 +183,10 @@ def on_rims(case: Case, found: LinkageModes, masses: Mapping[str, PartMass]) -> 
     own = _Held.of(case, found.load_case, found.frame, masses, SUBDIVISIONS)
     tangent = pins.tangent(pins.radii.value, pins.value)
     path = EquilibriumPath(own.model)
-    state = RimPath(pins.rims.divided(own.divided, own.parents), path)
+    state = RimPath(pins.rims.divided(own.divided, own.parents), path, own.drive(path))
     forces = state.forces(tangent)
     guides = forces.guide_forces if own.stiffness is None else _released(case, found.frame, own.divided, forces)[1]
-    known = state.extended(tangent, replace(forces, guide_forces=guides), own.drive(path))
+    known = state.extended(tangent, replace(forces, guide_forces=guides))
     modes, count = tuple[Mode, ...](), len(found.modes)
     with suppress(CannotRunError):  # where pins lean that have no mass of their own
         Z, M = known.allowed, own.mass.bordered(path)

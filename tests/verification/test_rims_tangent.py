@@ -90,6 +90,17 @@ def test_without_clearance_the_factor_is_that_of_tight_pins(material):
         assert path.extended(small.tangents[0]).factor() == pytest.approx(tight, rel=near)
 
 
+def test_a_factor_is_told_where_it_is_less_than_one_that_is_known():
+    pins = with_clearance(pins_of(loaded(PLA, ["0 N", "-5 N"])), 0.01)
+    known = divided(pins, COARSE_SUBDIVISIONS).extended(pins.tangents[0])
+    factor = known.factor()
+    assert 0.0 < factor < math.inf
+    for share in (0.5, 0.999):
+        assert known.factor(below=share * factor) == share * factor
+    for share in (1.001, 2.0):
+        assert known.factor(below=share * factor) == pytest.approx(factor, rel=1e-9)
+
+
 def test_condensed_to_its_rims_the_divided_frame_is_that_of_the_programme():
     pins = pins_of(loaded(PLA, ["0 N", "-1 N"]))
     path = divided(pins, COARSE_SUBDIVISIONS)

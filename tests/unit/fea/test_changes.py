@@ -101,9 +101,7 @@ def test_a_trial_looks_at_tilting_pins_in_the_links_that_it_compares_alone():
     """Numbers of the link that is compared, of pins and of the linkage stay; bands of the other links leave it out."""
     case = read_case("six-bar")
     every, few = (
-        check_case(case, name=case.origin, fidelity="beam", threads=1, bare=True, tilting=links)
-        .load_cases["wind"]
-        .checks
+        check_case(case, name=case.origin, fidelity="beam", threads=1, bare=True, told=links).load_cases["wind"].checks
         for links in (None, ("connector",))
     )
     pairs = list(zip(every, few, strict=True))

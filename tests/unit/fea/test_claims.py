@@ -11,8 +11,10 @@ from pydantic import ValidationError
 
 import alula.fea.check.run
 import alula.fea.claims.data
+from alula.fea.check.run import links_by_hand
 from alula.fea.claims.audit import Finding, Names, check_claim
 from alula.fea.claims.sources import check_claims
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.geometry.mechanisms.ornithopter import motors
 from alula.loads.case.case_file import read_case
@@ -42,6 +44,18 @@ TREE = {
     },
     "beam": {"stress": Value.of(3.64, "MPa")},
 }
+
+
+def test_links_by_hand_alone_have_the_values_of_a_whole_check():
+    result = solved.by_hand("owl-wing-static")
+    for load_case, links in links_by_hand(solve_case_statics(result.case, result.name)).items():
+        whole = result.load_cases[load_case].links
+        assert list(links) == list(whole)
+        for link, found in links.items():
+            for name in ("von_mises_max", "principal_max", "displacement_max", "safety_factor"):
+                band, checked = getattr(found, name), getattr(whole[link], name)
+                assert band.value == checked.value
+                assert checked.low <= band.low <= band.high <= checked.high
 
 
 def claim(published: str, **entries: object) -> Claim:

@@ -1,5 +1,6 @@
 """When a displacement is large, and what acts on each link on the deformed shape."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -16,7 +17,7 @@ from alula.fea.frame.build import build_frame
 from alula.fea.nonlinear.corotational import solve_large_displacement
 from alula.fea.nonlinear.deformed_links import balanced, bent, in_slots
 from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, examine, span
-from alula.fea.nonlinear.softened import PATH_SUBDIVISIONS
+from alula.fea.nonlinear.softened import PATH_SUBDIVISIONS, displaced, followed
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError, CaseError
@@ -48,6 +49,15 @@ def test_the_span_is_the_largest_distance_of_two_points():
     pose = read_case("owl-wing-static").solve_pose()
     assert span(pose) == pytest.approx(np.linalg.norm(pose.points["A"] - pose.points["H"]))
     assert span(pose) == pytest.approx(294.2, abs=0.05)
+
+
+def test_displacements_under_several_loads_are_those_of_a_path_of_its_own_to_each():
+    frame = examined(under([0, -0.25]))[0].frame
+    factors = (0.12, 0.1, 0.17, 0.1, 0.15, 1.0, 0.18)  # it gives way before the sixth
+    alone = [np.linalg.norm(frame.at_points(followed(frame, x).displacements)["CH", "H"]) for x in factors if x < 1.0]
+    found = [displaced(frame, "CH", "H", x) for x in factors]
+    assert found[5] == math.inf
+    assert found[:5] + found[6:] == pytest.approx(alone, rel=1e-7)
 
 
 def test_small_displacements_leave_the_undeformed_pose_alone():
