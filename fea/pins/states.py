@@ -156,14 +156,21 @@ class PinStates:
         -------
         RimTangent
         """
-        lengths = np.array([hole.high - hole.low for hole in self.rims.holes])
-        return tangent_of(self.radii.of(shares[None])[0][0], v, self.rims.g - self.rims.K @ v, lengths)
+        return tangent_of(self.radii.of(shares[None])[0][0], v, self.rims.g - self.rims.K @ v)
 
     @property
     def tangents(self) -> tuple[RimTangent, ...]:
         """Those of the values first, then of ``states``."""
         told = zip(*self._told, strict=True)
         return (self.tangent(self.radii.value, self.value), *(self.tangent(shares, v) for shares, v in told))
+
+    @property
+    def reaches(self) -> Real:
+        """(n + 1,) up to how far rims let a point move, wherever pins stand in them, of the same states [mm]."""
+        moved = self.rims.solved.displacements(self.rims.opened)[:, :3]
+        by_rims = np.linalg.norm(moved.reshape(*moved.shape[:2], -1, 2), axis=3)
+        each = np.einsum("nai,si->sna", by_rims, self.radii.of(np.vstack([self.radii.value, self._told[0]]))[0])
+        return np.asarray(np.linalg.norm(each, axis=2).max(axis=1))
 
     @cached_property
     def answers(self) -> tuple[FrameSolution, ...]:

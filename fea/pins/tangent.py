@@ -35,8 +35,6 @@ class RimTangent:
         How many rims touch.
     force : float
         The largest at a rim [N].
-    tilt : float
-        The largest of a pin in its hole that rims allow [rad].
     """
 
     v: Real
@@ -44,10 +42,9 @@ class RimTangent:
     stiffness: Real
     touching: int
     force: float
-    tilt: float
 
 
-def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real) -> RimTangent:
+def tangent_of(radii: Real, v: Real, forces: Real) -> RimTangent:
     """Return how pins may move on from a state.
 
     Parameters
@@ -58,8 +55,6 @@ def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real) -> RimTangent:
         Where pins stand [mm].
     forces : ndarray, shape (4 h,)
         At the rims [N].
-    lengths : ndarray, shape (h,)
-        Of the holes [mm].
 
     Returns
     -------
@@ -84,5 +79,4 @@ def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real) -> RimTangent:
         stiffness=np.array(stiffness),
         touching=touching,
         force=largest,
-        tilt=float((radii.reshape(-1, 2).sum(axis=1) / lengths).max(initial=0.0)),
     )
