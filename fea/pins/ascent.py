@@ -75,6 +75,7 @@ def _learn(inverse: Real, own: Index, step: Real, change: Real) -> None:
     bent = along > 1e-10 * np.sqrt(np.einsum("ni,ni->n", step, step) * size)
     own, step, change, along, size = own[bent], step[bent], change[bent], along[bent], size[bent]
     eye = np.eye(step.shape[1])
-    known = np.where(inverse[own].any(axis=(1, 2))[:, None, None], inverse[own], (along / size)[:, None, None] * eye)
+    new = ~np.any(inverse[own], axis=(1, 2), keepdims=True)
+    known = np.where(new, (along / size)[:, None, None] * eye, inverse[own])
     left = eye - step[:, :, None] * change[:, None, :] / along[:, None, None]
     inverse[own] = left @ known @ left.swapaxes(1, 2) + step[:, :, None] * step[:, None, :] / along[:, None, None]

@@ -201,7 +201,7 @@ class PinStates:
         return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])
 
     def _followed(self, starts: Real, aims: Real, close: float, paths: int, near: float) -> Real:
-        """Shares at which functions aᵀ v of where pins stand are largest, of all that are met, then the ends of ways."""
+        """Shares where functions aᵀ v of where pins stand are largest, of all that are met, then where ways end."""
         met, reached = [starts], [self._stands(starts, close)[1].v @ aims.T]
         spread = np.ptp(reached[0], axis=0)
         first = np.argsort(-_graded(reached[0], spread), axis=0, kind="stable")[:paths].ravel()
