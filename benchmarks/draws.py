@@ -5,7 +5,7 @@
 Each linkage has four, six or eight links in layers of their own; of each hole is stated a range of its clearance, a
 press, one range for both of a joint's holes, a fit, or nothing. Each draw takes a clearance for every hole from what is
 stated of it, at its ends as often as between them. Told are the draws outside the bands: of the couples that pins bear,
-of joint forces, of links' stress by hand and of the displacement of a point.
+of joint forces, of links' stress by hand, of the displacement of a point, and of the lowest frequency.
 """
 
 import argparse
@@ -24,18 +24,24 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
 from alula.fea.doubts.force_doubt import measures, sharing_answers, stress_by_hand
+from alula.fea.frame.build import build_frame
 from alula.fea.pins.states import PinStates, unstated
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
 from alula.fea.standing.thrust import thrusts
+from alula.fea.vibration.linkage_modes import LinkageModes, linkage_modes, on_rims
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
+from alula.loads.states.actions import acting_loads, placed
+from alula.loads.states.masses import part_masses
 
 Real = NDArray[np.float64]
 RESULTS = Path(__file__).with_name("results") / "draws.json"
 SAME = 2e-3
-"""Share of the largest of its kind by which a draw may lie outside: that to which states are told apart, twice."""
+"""Share of a band's larger end by which a draw may lie outside without being told."""
 DIRECTIONS = 40
 """In which the draws are sought whose stress counts: it is a convex function of what acts on a link."""
+VIBRATING = 20
+"""Draws of which the frequency is found."""
 
 
 def linkage(seed: int) -> Case:
@@ -48,6 +54,20 @@ def linkage(seed: int) -> Case:
     Returns
     -------
     Case
+    """
+    return validate(tables(seed))
+
+
+def tables(seed: int) -> dict[str, Any]:
+    """Return the tables of a random linkage.
+
+    Parameters
+    ----------
+    seed : int
+
+    Returns
+    -------
+    dict
     """
     draw = np.random.default_rng(seed)
     dyads = int(draw.integers(3))
@@ -75,7 +95,7 @@ def linkage(seed: int) -> Case:
     force = cmath.rect(draw.uniform(2.0, 20.0), turn)
     data["load_cases"] = {"l": {"forces": [{"link": last, "at": tip, "force": [f"{force.real} N", f"{force.imag} N"]}]}}
     data["checks"] = {"point": {"type": "displacement", "link": last, "at": tip, "maximum": "1 mm"}}
-    return validate({"schema_version": 1, "title": f"linkage {seed}", "large_displacement": "off", **data})
+    return {"schema_version": 1, "title": f"linkage {seed}", "large_displacement": "off", **data}
 
 
 def _tables(
@@ -267,6 +287,47 @@ def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Itera
             yield from _beyond("displacement", one.value.low, one.value.high, moved)
 
 
+def vibrating(data: Mapping[str, Any], seed: int = 0) -> list[Outside]:
+    """Draw clearances of a linkage, state them, and return the band of its lowest frequency where a draw leaves it.
+
+    Parameters
+    ----------
+    data : mapping
+        Its tables.
+    seed : int, optional
+
+    Returns
+    -------
+    list of Outside
+    """
+    case = validate(dict(data))
+    pins = solve_case_statics(case).forces["l"].pins
+    if pins is None:
+        return []
+    band = _modes(case).modes[0].frequency
+    holes = [number for one in pins.radii.numbers for number in one]
+    names = [hole for one in pins.radii.clearances for hole in one.holes]
+    drawn = []
+    for radii in pins.radii.of(shares(pins, VIBRATING, seed))[0]:
+        joints = {name: dict(joint) for name, joint in data["joints"].items()}
+        for joint in joints.values():
+            for entry in ("clearance", "fit", "tight_in"):
+                joint.pop(entry, None)
+            joint["clearance"] = dict.fromkeys(joint["links"], "0 mm")
+        for (joint, link), number in zip(names, holes, strict=True):
+            joints[joint]["clearance"][link] = f"{2.0 * float(radii[2 * number])!r} mm"
+        rims = _modes(validate({**data, "joints": joints})).rims
+        drawn.append(rims.frequency.value if rims is not None and rims.frequency is not None else 0.0)
+    return list(_beyond("frequency", band.low, band.high, np.array(drawn)))
+
+
+def _modes(case: Case) -> LinkageModes:
+    masses = part_masses(case)
+    loads = acting_loads(case, case.load_cases["l"], placed(case.solve_pose(), 0.0), masses)
+    frame = build_frame(case, case.solve_pose(), loads, held=case.pinned_drive)
+    return on_rims(case, linkage_modes(case, "l", frame, masses), masses)
+
+
 def main() -> None:
     """Draw, tell what lies outside, and keep it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -275,7 +336,7 @@ def main() -> None:
     asked, kept = parser.parse_args(), {}
     for seed in range(asked.first, asked.first + asked.linkages):
         case = linkage(seed)
-        found = outside(case, asked.draws, seed)
+        found = [*outside(case, asked.draws, seed), *vibrating(tables(seed), seed)]
         kept[seed] = {"links": len(case.links), "draws": asked.draws, "outside": [vars(one) for one in found]}
         told = "; ".join(f"{one.of}: {one.draws} by up to {one.excess:.2%}" for one in found)
         print(f"linkage {seed}, {len(case.links)} links: {told or 'none outside'}", flush=True)

@@ -233,6 +233,23 @@ class FactorisedFrame:
         units = np.array([self.system.natural_unit(i // 6)[i % 6] for i in rows])
         return np.asarray((unknowns[rows].T * units).T)
 
+    def displacements(self, unknowns: Floats) -> Floats:
+        """Return the displacements of nodes from scaled unknowns.
+
+        Parameters
+        ----------
+        unknowns : ndarray, shape (k, c)
+            As ``opened`` gives them.
+
+        Returns
+        -------
+        ndarray, shape (n, 6, c)
+            Global axes [mm, rad].
+        """
+        known, number = self._equations, self.system.number
+        moved = np.vstack([(unknowns[known.size :].T * known.scale * self.system.unit).T, np.zeros_like(unknowns[:1])])
+        return np.asarray(moved[np.where(number >= 0, number, -1)].reshape(-1, 6, unknowns.shape[1]))
+
     @property
     def own(self) -> Floats:
         """(k,) scaled unknowns under the frame's loads."""

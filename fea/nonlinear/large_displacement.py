@@ -44,10 +44,9 @@ from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
 from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
 from alula.fea.nonlinear.softened import followed
-from alula.fea.nonlinear.stability import ON_RIMS, SNAP, dead_point_factor, linkage_factor
+from alula.fea.nonlinear.stability import LARGE, ON_RIMS, SNAP, dead_point_factor, linkage_factor, span
 from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load, PointLoad
 from alula.loads.statics.statics import Reactions
@@ -58,8 +57,6 @@ if TYPE_CHECKING:
 
 Real = NDArray[np.float64]
 
-LARGE = 0.05
-"""Share of the span above which a displacement is large."""
 LEAST_FACTOR = 10.0
 """Factor to buckling or to a dead point below which equilibrium is sought on the deformed shape."""
 LEAST_LINEAR = 3.0
@@ -283,23 +280,6 @@ class LargeDisplacement:
         if factor.unknowable:
             return factor
         return replace(factor, value=min(factor.value, 1.0), low=min(factor.low, 1.0), high=min(factor.high, 1.0))
-
-
-def span(pose: Pose) -> float:
-    """Return the largest distance between two points of the pose.
-
-    Parameters
-    ----------
-    pose : Pose
-        The linkage's pose.
-
-    Returns
-    -------
-    float
-        Distance [mm].
-    """
-    xy = np.array(list(pose.points.values()))
-    return float(np.linalg.norm(xy[:, None] - xy[None], axis=-1).max())
 
 
 def examine(

@@ -15,9 +15,11 @@ hangs on has exactly no stiffness.
 
 Where motions are left that nothing but T holds, the frame may be unstable under any load: then it leans until further
 rims touch. Yet with every pin in its discs it has a stable state at every factor below that with tight pins, since the
-discs are bounded and the frame is stable for each place in them. So clearances that let pins tilt by no more than
-``SLIGHT`` cannot lose the linkage: the low end knows only wider ones, beside the value, of which a lean within
-``SLIGHT`` counts as stopped.
+discs are bounded and the frame is stable for each place in them. How far it leans on the way there the discs bound as
+well: wherever pins stand, virtual work tells up to how far a point moves (``alula.fea.outcomes.free_motion``). Where
+that is small, by the ``LARGE`` of the span that parts small displacements from large ones, the lean changes no shape
+and ends, and such clearances cannot lose the linkage: the low end knows only wider ones, beside the value, of which a
+lean that is small counts as stopped.
 """
 
 import math
@@ -32,10 +34,12 @@ from alula.fea.nonlinear.corotational import SUBDIVISIONS, subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.stability import (
     COARSE_SUBDIVISIONS,
+    LARGE,
     NEAR_BUCKLING,
     geometric_stiffness,
     largest_eigenvalue,
     pressed_beams,
+    span,
 )
 from alula.fea.pins.holes import RimFrame
 from alula.fea.pins.states import PinStates
@@ -52,9 +56,6 @@ FREE = 1e-10
 IDLE = 1e-7
 """Work of forces in a motion that strains nothing, over that of all of its parts, below which it is rounding, such as
 that of a tie that rolls about the line through the rims that it hangs on."""
-SLIGHT = 0.02
-"""Tilt of pins in their holes up to which a linkage that leans keeps its shape, but for what bands of displacement say:
-it changes lengths by half its square."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -240,9 +241,9 @@ class RimFactors:
     Attributes
     ----------
     value : float
-        Of the stated clearances; 0 where it leans at once by more than ``SLIGHT``.
+        Of the stated clearances; 0 where it leans at once, by more than is small.
     low : float
-        The least, of all that clearances may be, but for those that let pins tilt by no more than that.
+        The least, of all that clearances may be, but for those that let no point move by more than is small.
     """
 
     value: float
@@ -310,7 +311,8 @@ def rim_factors(pins: PinStates) -> RimFactors:
     RimFactors
     """
     first, *others = pins.tangents
-    stopped, wide = first.tilt <= SLIGHT, [first, *(one for one in others if one.tilt > SLIGHT)]
+    stopped, *small = pins.reaches <= LARGE * span(pins.rims.frame.pose)
+    wide = [first, *(one for one, held in zip(others, small, strict=True) if not held)]
     coarse = divided(pins, COARSE_SUBDIVISIONS)
     found = list[float]()
     for one in wide:  # what is no less than the least so far is not told

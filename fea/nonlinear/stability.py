@@ -36,8 +36,27 @@ ON_RIMS = Source(kind=SourceKind.COUPLES, detail=reason("tight_or_on_rims"))
 
 COARSE_SUBDIVISIONS, NEAR_BUCKLING = 2, 30.0
 """Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``."""
+LARGE = 0.05
+"""Share of the span above which a displacement is large."""
 SNAP = 3.0 * math.sqrt(3.0)
 """Linear factor at which a shallow toggle snaps through."""
+
+
+def span(pose: Pose) -> float:
+    """Return the largest distance between two points of the pose.
+
+    Parameters
+    ----------
+    pose : Pose
+        The linkage's pose.
+
+    Returns
+    -------
+    float
+        Distance [mm].
+    """
+    xy = np.array(list(pose.points.values()))
+    return float(np.linalg.norm(xy[:, None] - xy[None], axis=-1).max())
 
 
 def growth(factor: float) -> float:

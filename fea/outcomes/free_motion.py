@@ -29,7 +29,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
-from alula.fea.pins.clearances import apart_at_rims, loose_holes
+from alula.fea.pins.clearances import apart_at_rims, furthest, loose_holes
 from alula.fea.pins.holes import known_hole, rims_of, shortest
 from alula.geometry.linkage.play import Reach
 from alula.loads.case.case import Case
@@ -66,25 +66,6 @@ class RimReach(Reach):
         """
         along = (np.conj(direction)[:, None, None, None, None] * self.axes).real
         return np.asarray(furthest(along, self.apart).max(axis=-1).sum(axis=-1))
-
-
-def furthest(forces: Real, apart: Real) -> Real:
-    """Return how far holes let a point move, by the forces at their rims that a unit force there makes.
-
-    Parameters
-    ----------
-    forces : ndarray, shape (..., 2, 2)
-        At both rims, times c/2.
-    apart : ndarray, shape (...)
-        How far a pin's places at both rims may be apart, over c/2.
-
-    Returns
-    -------
-    ndarray, shape (...)
-    """
-    each = np.linalg.norm(forces, axis=-1)
-    both = np.linalg.norm(forces.sum(axis=-2), axis=-1)
-    return np.asarray(np.minimum(each.sum(axis=-1), both + apart * each.min(axis=-1)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

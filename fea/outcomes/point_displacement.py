@@ -21,9 +21,9 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.frame.displacement_band import OneModulus, point_bounds
-from alula.fea.nonlinear.large_displacement import LARGE, LargeDisplacement
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.softened import displaced
-from alula.fea.nonlinear.stability import SNAP, growth
+from alula.fea.nonlinear.stability import LARGE, SNAP, growth
 from alula.fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
 from alula.fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
 from alula.fea.outcomes.result import LinkResult, SolidResult

@@ -321,3 +321,22 @@ def radii_of(
             numbers.append(own)
             kept.append(one)
     return Radii(numbers=tuple(numbers), count=len(order), clearances=tuple(kept), heads=heads)
+
+
+def furthest(forces: Real, apart: Real) -> Real:
+    """Return how far holes let a point move, by the forces at their rims that a unit force there makes.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (..., 2, 2)
+        At both rims, times c/2.
+    apart : ndarray, shape (...)
+        How far a pin's places at both rims may be apart, over c/2.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
+    each = np.linalg.norm(forces, axis=-1)
+    both = np.linalg.norm(forces.sum(axis=-2), axis=-1)
+    return np.asarray(np.minimum(each.sum(axis=-1), both + apart * each.min(axis=-1)))

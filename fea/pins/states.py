@@ -1,8 +1,9 @@
 """How pins may stand between layers: the state of the stated clearances, and those in which links bear most and least.
 
 What each hole may be between is open. A joint force is a function of the radii that is neither convex nor monotonic,
-so that its ends are sought: for each couple that a pin carries into a link, upwards and downwards, the shares of what
-is open go to that end of their range to which the slope points, until they stay.
+so that its ends are sought: each couple that a pin carries into a link is followed upwards and downwards
+(``alula.fea.pins.ascent``), on the path of the interior point method first, where rims do not quite touch. All states
+that are met on the way tell of all couples.
 """
 
 from collections.abc import Collection
@@ -14,7 +15,8 @@ from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.pins.clearances import Radii, clearances_of, head_gaps, pin_size, radii_of
+from alula.fea.pins.ascent import ascend
+from alula.fea.pins.clearances import Radii, clearances_of, furthest, head_gaps, pin_size, radii_of
 from alula.fea.pins.holes import RimFrame, rims_of
 from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
 from alula.fea.pins.tangent import RimTangent, tangent_of
@@ -23,26 +25,23 @@ from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
+Index = NDArray[np.int64]
 
-ROUNDS = 6
-"""At most, in which shares go to the ends of their ranges."""
 LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
 """Shares of all that is open at which the search starts, beside the values. These states are kept whether or not some
 couple is largest in them: a link's stress is least where its couples are small together, as on tight pins."""
-DRAWS = 200
-"""Further states at which the search starts, drawn at random, most clearances at an end or near the lower one. Of
-a four-bar with seven open holes 2,000 other draws left couples by up to 34 % with 24 of them and two ascents, by up to
-1 % with these (``benchmarks/draws.py``)."""
-ASCENTS = 3
-"""How many of the starts each couple is followed from, the largest ones."""
-PARTS = (1.0, 0.3, 0.1, 0.03, 0.01)
-"""Of the way to the ends of ranges, tried in turn until a couple grows."""
-ALIKE = 1e-3
-"""Share of a couple by which it must grow to count."""
-FLAT = 1e-6
-"""Slope, over the steepest, that tells nothing."""
+DRAWS = 400
+"""Further states at which the search starts, drawn at random, most clearances at an end or near the lower one."""
+STAGES = ((1e-3, 4, 1e-3), (1e-4, 2, 1e-4))
+"""Of the search, one after the other: the residual at which its states end, from how many of the largest ones each
+couple is followed, and down to which gain, over the range of the starts. Some way before rims touch, couples are smooth
+functions of the radii with fewer local ends, and their slopes are known to 1e-6 and better; at 1e-8 they are known to
+1e-3 alone, where it is open whether a rim touches."""
 ROUGH = 1e-8
-"""Residual at which the states of the search end."""
+"""Residual at which couples are known to 1e-10, so that it tells in which of the states found they are largest."""
+ALIKE = 1e-6
+"""Share of a couple by which states are told apart: of those within it the first one stands for all, whatever rounding
+makes of them."""
 NOTHING = 1e-9
 """Share of the largest couple below which there is none but by rounding."""
 LEAST_RADIUS = 1e-7
@@ -156,15 +155,28 @@ class PinStates:
         -------
         RimTangent
         """
-        lengths = np.array([hole.high - hole.low for hole in self.rims.holes])
         radii = self.radii.of(shares[None])[0][0]
-        return tangent_of(radii, v, self.rims.g - self.rims.K @ v, lengths, self.radii.ties)
+        return tangent_of(radii, v, self.rims.g - self.rims.K @ v, self.radii.ties)
 
     @property
     def tangents(self) -> tuple[RimTangent, ...]:
         """Those of the values first, then of ``states``."""
         told = zip(*self._told, strict=True)
         return (self.tangent(self.radii.value, self.value), *(self.tangent(shares, v) for shares, v in told))
+
+    @property
+    def reaches(self) -> Real:
+        """(n + 1,) up to how far rims let a point move, wherever pins stand in them, of the same states [mm]."""
+        moved = self.rims.solved.displacements(self.rims.opened)[:, :3]
+        by_rims, holes = moved.reshape(*moved.shape[:2], -1, 2, 2), len(self.rims.holes)
+        found = []
+        for radii in self.radii.of(np.vstack([self.radii.value, self._told[0]]))[0]:
+            radius, apart = radii[: 2 * holes : 2], np.full(holes, 2.0)
+            between = self.radii.ties[:, 0] // 2
+            apart[between] = np.minimum(2.0, radii[2 * holes :] / np.maximum(radius[between], LEAST_RADIUS))
+            each = (radius * furthest(by_rims, apart)).sum(axis=2)
+            found.append(np.linalg.norm(each, axis=1).max())
+        return np.array(found)
 
     @cached_property
     def answers(self) -> tuple[FrameSolution, ...]:
@@ -184,48 +196,39 @@ class PinStates:
         ndarray, shape (n, k)
         """
         value = self.radii.value
-        aims = self._by_rims[np.abs(self._by_rims).max(axis=1) > self.rims.noise]
-        aims = np.vstack([aims, -aims])
+        aims = _unlike(self._by_rims[np.abs(self._by_rims).max(axis=1) > self.rims.noise])
         if not len(value) or not len(aims):
             return value[None]
+        aims = np.vstack([aims, -aims])
         alike = np.outer(LEVELS, np.ones(len(value)))
         starts = np.vstack([value, alike, _drawn(DRAWS, len(value))])
-        reached = self._stands(starts)[1].v @ aims.T
-        order = np.argsort(-reached, axis=0)[:ASCENTS]
-        shares, best = starts[order.ravel()], np.take_along_axis(reached, order, axis=0).ravel()
-        aims = np.tile(aims, (len(order), 1))
-        going = np.arange(len(aims))
-        for _ in range(ROUNDS):
-            ends = self._ends(shares[going], aims[going])
-            rest = np.ones(len(going), dtype=bool)
-            for part in PARTS:
-                own = going[rest]
-                tried = shares[own] + part * (ends[rest] - shares[own])
-                known, state = np.unique(tried, axis=0, return_inverse=True)
-                now = (self._stands(known)[1].v[state] * aims[own]).sum(axis=1)
-                better = now > best[own] + ALIKE * np.abs(best[own])
-                shares[own[better]], best[own[better]] = tried[better], now[better]
-                rest[np.flatnonzero(rest)[better]] = False
-                if not rest.any():
-                    break
-            going = going[~rest]
-            if not len(going):
-                break
-        return np.vstack([value, alike, np.unique(shares, axis=0)])
+        for close, paths, near in STAGES:
+            starts = self._followed(starts, aims, close, paths, near)
+        reached = self._stands(starts, ROUGH)[1].v @ aims.T
+        return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])
 
-    def _stands(self, shares: Real) -> tuple[Real, InDiscs]:
-        """Radii, and where pins stand, near enough to tell which state is worse."""
+    def _followed(self, starts: Real, aims: Real, close: float, paths: int, near: float) -> Real:
+        """Shares where functions aᵀ v of where pins stand are largest, of all that are met, then where ways end."""
+        met, reached = [starts], [self._stands(starts, close)[1].v @ aims.T]
+        spread = np.ptp(reached[0], axis=0)
+        first = np.argsort(-_graded(reached[0], spread), axis=0, kind="stable")[:paths].ravel()
+        aim = np.tile(np.arange(len(aims)), paths)
+
+        def evaluate(shares: Real, which: Index) -> tuple[Real, Real]:
+            known, state = _distinct(shares)
+            radii, at = self._stands(known, close)
+            by_radii = slopes(self.rims.K, radii, at, state, aims[aim[which]], self.radii.ties)
+            met.append(known)
+            reached.append(at.v @ aims.T)
+            return reached[-1][state, aim[which]], np.einsum("akr,ar->ak", self.radii.of(known)[1][state], by_radii)
+
+        ends = ascend(starts[first], evaluate, near * spread[aim])
+        largest = _graded(np.vstack(reached), spread).argmax(axis=0)
+        return _distinct(np.vstack([np.vstack(met)[np.unique(largest)], ends]))[0]
+
+    def _stands(self, shares: Real, close: float) -> tuple[Real, InDiscs]:
         radii = np.maximum(self.radii.of(shares)[0], LEAST_RADIUS)
-        return radii, least_in_discs(self.rims.K, self.rims.g, radii, ROUGH, self.radii.ties)
-
-    def _ends(self, shares: Real, aims: Real) -> Real:
-        """The ends of shares' ranges to which each aim rises, from each of its shares."""
-        known, state = np.unique(shares, axis=0, return_inverse=True)
-        radii, at = self._stands(known)
-        by_radii = slopes(self.rims.K, radii, at, state, aims, self.radii.ties)
-        rising = np.einsum("akr,ar->ak", self.radii.of(known)[1][state], by_radii)
-        telling = np.abs(rising) > FLAT * np.abs(rising).max(axis=1, keepdims=True)
-        return np.where(telling, (rising > 0.0).astype(float), shares)
+        return radii, least_in_discs(self.rims.K, self.rims.g, radii, close, self.radii.ties)
 
 
 def _drawn(count: int, shares: int) -> Real:
@@ -234,10 +237,29 @@ def _drawn(count: int, shares: int) -> Real:
     return np.asarray(np.choose(kind, (between, np.zeros_like(between), np.ones_like(between), between**6)))
 
 
-def _telling(couples: Real) -> NDArray[np.int64]:
-    """Numbers of the fewest states found that hold every couple's ends (n, c) to ``ALIKE`` of its size."""
-    size = np.maximum(np.abs(couples).max(axis=0), NOTHING * np.abs(couples).max(initial=0.0))
-    near = np.hstack([couples >= couples.max(axis=0) - ALIKE * size, couples <= couples.min(axis=0) + ALIKE * size])
+def _distinct(rows: Real) -> tuple[Real, Index]:
+    """Rows without those that stood before, in their order, and the number of each one's among them."""
+    _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    return rows[first[order]], np.argsort(order)[number.ravel()]
+
+
+def _unlike(aims: Real) -> Real:
+    """Those rows that are no multiples of others."""
+    unit = aims / np.linalg.norm(aims, axis=1, keepdims=True)
+    kept = [k for k in range(len(unit)) if not (np.abs(unit[:k] - unit[k]).max(axis=1) < ALIKE).any()]
+    return np.asarray(aims[kept])
+
+
+def _graded(values: Real, size: Real) -> Real:
+    """Values (n, c) in steps of ``ALIKE`` of their sizes (c,), so that rounding does not tell which one is largest."""
+    return np.round(values / (ALIKE * np.maximum(size, NOTHING * size.max(initial=0.0) or 1.0)))
+
+
+def _telling(couples: Real) -> Index:
+    """Numbers of the fewest states found that hold every couple's ends (n, c)."""
+    steps = _graded(couples, np.abs(couples).max(axis=0))
+    near = np.hstack([steps == steps.max(axis=0), steps == steps.min(axis=0)])
     found, rest = list[int](), np.ones(near.shape[1], dtype=bool)
     while rest.any():
         best = int(near[:, rest].sum(axis=1).argmax())

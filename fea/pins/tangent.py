@@ -40,8 +40,6 @@ class RimTangent:
         How many rims touch.
     force : float
         The largest at a rim [N].
-    tilt : float
-        The largest of a pin in its hole that rims and heads allow [rad].
     """
 
     v: Real
@@ -49,10 +47,9 @@ class RimTangent:
     stiffness: Real
     touching: int
     force: float
-    tilt: float
 
 
-def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real, ties: NDArray[np.int64] = NO_TIES) -> RimTangent:
+def tangent_of(radii: Real, v: Real, forces: Real, ties: NDArray[np.int64] = NO_TIES) -> RimTangent:
     """Return how pins may move on from a state.
 
     Parameters
@@ -63,8 +60,6 @@ def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real, ties: NDArray[
         Where pins stand [mm].
     forces : ndarray, shape (4 h,)
         At the rims, with what heads bear as opposite forces at both [N].
-    lengths : ndarray, shape (h,)
-        Of the holes [mm].
     ties : ndarray of int, shape (f, 2), optional
         The rims of each hole that heads hold.
 
@@ -73,10 +68,8 @@ def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real, ties: NDArray[
     RimTangent
     """
     rims, apart = radii[: len(v) // 2], radii[len(v) // 2 :]
-    tilts = rims.reshape(-1, 2).sum(axis=1)
     forces, held = forces.reshape(-1, 2).copy(), np.zeros(len(ties))
     for k, (low, high) in enumerate(ties):
-        tilts[low // 2] = min(tilts[low // 2], apart[k])
         held[k] = _of_heads(rims[[low, high]], apart[k], v.reshape(-1, 2)[[low, high]], forces[[low, high]])
         between = held[k] * _along(v.reshape(-1, 2)[high] - v.reshape(-1, 2)[low])
         if apart[k] < TIGHT:  # both rims are one, and heads bear any couple
@@ -105,7 +98,6 @@ def tangent_of(radii: Real, v: Real, forces: Real, lengths: Real, ties: NDArray[
         stiffness=stiff,
         touching=touching,
         force=largest,
-        tilt=float((tilts / lengths).max(initial=0.0)),
     )
 
 

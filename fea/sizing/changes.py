@@ -37,8 +37,8 @@ from alula.fea.common.verdict import (
     Verdict,
     deciding,
 )
-from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
-from alula.fea.nonlinear.stability import SNAP
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement
+from alula.fea.nonlinear.stability import LARGE, SNAP
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.sizing.size_range import size_range
 from alula.fea.sizing.tried import Scaled, Trials, goes_with_load

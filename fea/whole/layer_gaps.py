@@ -26,8 +26,8 @@ from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
-from alula.fea.outcomes.free_motion import furthest, rim_forces
-from alula.fea.pins.clearances import apart_at_rims, loose_holes
+from alula.fea.outcomes.free_motion import rim_forces
+from alula.fea.pins.clearances import apart_at_rims, furthest, loose_holes
 from alula.geometry.clearance.shape import TOUCHING
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import clearances

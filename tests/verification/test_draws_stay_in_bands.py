@@ -4,6 +4,8 @@ The linkages are those of ``benchmarks/draws.py``, which tells the same of 10,00
 bands are sought, and no bounds: what draws may lie outside is what was measured there.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,25 @@ def test_a_band_that_is_too_narrow_is_told(monkeypatch):
     monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", lambda pins: pins.radii.value[None])
     found = draws.outside(draws.linkage(1), 100)
     assert max(one.excess for one in found) > 4.0 * MOST
+
+
+def test_rounding_moves_no_end():
+    """Processors differ by some 1e-16 at each step; here K, g and forces differ by 1e-12."""
+    pins = draws.solve_case_statics(draws.linkage(14)).forces["l"].pins
+    assert pins is not None
+    draw = np.random.default_rng(14)
+
+    def shaken(x):
+        return x * (1.0 + 1e-12 * draw.uniform(-1.0, 1.0, x.shape))
+
+    rims = pins.rims
+    K = shaken(rims.K)
+    rims = replace(rims, K=(K + K.T) / 2.0, g=shaken(rims.g), tight=shaken(rims.tight), by_rims=shaken(rims.by_rims))
+    found, other = (one.couples(one.states) for one in (pins, replace(pins, rims=rims)))
+    assert other == pytest.approx(found, abs=1e-6 * np.abs(found).max())
+    for ends in (np.min, np.max):
+        largest = np.abs(found).max(axis=0)
+        assert (np.abs(ends(found, axis=0) - ends(other, axis=0)) <= 1e-6 * largest + 1e-9 * largest.max()).all()
 
 
 def test_draws_lie_in_what_is_stated():

@@ -16,8 +16,9 @@ from alula.fea.common.verdict import LINKAGE, Verdict
 from alula.fea.frame.build import build_frame
 from alula.fea.nonlinear.corotational import solve_large_displacement
 from alula.fea.nonlinear.deformed_links import balanced, bent, in_slots
-from alula.fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, examine, span
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, examine
 from alula.fea.nonlinear.softened import PATH_SUBDIVISIONS, displaced, followed
+from alula.fea.nonlinear.stability import LARGE, span
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError, CaseError
