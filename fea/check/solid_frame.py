@@ -38,8 +38,7 @@ from alula.fea.refine.error_estimate import estimate_error
 from alula.fea.solid.condensation import CondensedSolid, Give, condense
 from alula.fea.solid.stress import stress_field
 from alula.fea.standing.case_statics import CaseStatics
-from alula.fea.standing.deviation import Deviation
-from alula.fea.standing.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces, on_pins
+from alula.fea.standing.joint_forces import LAYERED_FRAME, OF_SOLIDS, Deviation, JointForces, on_pins
 from alula.geometry.meshing.mesh import MeshSettings, mesh_bodies
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
