@@ -153,7 +153,7 @@ def test_no_link_passes_where_the_linkage_gives_way(result, monkeypatch):
     some = next(one for one in result.checks if one.load_case == "push")
     fails = replace(some, subject=LINKAGE, verdict=Verdict.FAIL)
     monkeypatch.setattr(envelope, "linkage_outcomes", lambda moved, evaluated: [fails])
-    over = envelope._Envelope.of(result.moved, result.evaluated, 1, lambda message: None)
+    over = envelope._Envelope(result.moved, result.evaluated, 1, lambda message: None)
     checks = [one for one in over.outcomes(result.links) if one.subject.kind == "link"]
     verdicts = {name: {one.verdict for one in checks if one.load_case == name} for name in ("spin", "push")}
     assert Verdict.PASS in verdicts["spin"]
