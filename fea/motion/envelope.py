@@ -29,7 +29,7 @@ from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelo
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from alula.fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
 from alula.fea.motion.layered import with_couples
-from alula.fea.motion.link_envelope import LinkMotion, link_motion
+from alula.fea.motion.link_envelope import LinkMotion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
 from alula.fea.motion.loosened import loosened, motion_growth, otherwise
@@ -158,7 +158,7 @@ class _Envelope:
     def _motion(self, link: str, space: DisplacementSpace) -> LinkMotion:
         """Solve one link over the motion on one mesh."""
         case = self.moved.case
-        return link_motion(
+        return LinkMotion(
             space,
             link=link,
             body=case.body(link),

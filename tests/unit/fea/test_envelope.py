@@ -32,7 +32,7 @@ from alula.fea.motion.envelope import envelope_case, evaluated_poses
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
-from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
+from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.mesh_factors import MeshFactors
 from alula.fea.outcomes.pins import stress_at, stress_of
@@ -448,11 +448,11 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
     space = displacement_space(mesh_body(case.body("rocker"), START.scaled(4.0)), order=1)
 
     def solve():
-        return link_motion(
+        return LinkMotion(
             space, link="rocker", body=case.body("rocker"), material=case.material_of("rocker"),
             histories=[replace(history, pins=tuple(pins))],
-            evaluated=np.ones(25, dtype=bool), stated="eye-faces", returns=True, threads=1,
-        ).envelope(fatigue=False)  # fmt: skip
+            evaluated=np.ones(25, dtype=bool), stated="eye-faces", returns=True,
+        ).envelope()  # fmt: skip
 
     if refused:
         with pytest.raises(CannotRunError, match="the loads leave a resultant"):
