@@ -367,7 +367,8 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
         return Band(value=value, low=min(ends), high=max(ends), sources=COUPLES)
 
     shear = found.shear * max(one.shear / (plain.shear or math.inf) for one in (plain, *others))
-    return replace(found, shear=shear, **{name: widened(name) for name in ("moment", "bending", "equivalent")})
+    moment, bending, equivalent = map(widened, ("moment", "bending", "equivalent"))
+    return replace(found, moment=moment, bending=bending, shear=shear, equivalent=equivalent)
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:
