@@ -14,6 +14,7 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
 from alula.fea.judging.bearing import bearing_outcome, pressing
 from alula.fea.judging.judge import link_outcome
@@ -24,7 +25,7 @@ from alula.fea.motion.buckling_history import axial_compression, factors_over_mo
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
-from alula.fea.motion.loosened import MotionGrowth, column_growth, joint_growth
+from alula.fea.motion.loosened import column_growth, joint_growth
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
@@ -48,7 +49,7 @@ def envelope_outcomes(
     moved: CaseMotion,
     links: Mapping[str, LinkEnvelope],
     evaluated: NDArray[np.bool_],
-    grown: Mapping[str, MotionGrowth] | None = None,
+    grown: Mapping[str, Growths] | None = None,
     *,
     lasting: bool = False,
 ) -> list[CheckOutcome]:
@@ -60,7 +61,7 @@ def envelope_outcomes(
     links : mapping of str to LinkEnvelope
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    grown : mapping of str to MotionGrowth, optional
+    grown : mapping of str to Growths, optional
         Load case -> what the deformed shape makes of joint forces; nothing when left out.
     lasting : bool, optional
         Whether repetitions of the motion are asked for, so that fatigue that is not known leaves a link undecided.
@@ -192,7 +193,7 @@ def fatigue_outcomes(
 
 
 def _joint(
-    moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, MotionGrowth]
+    moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
 ) -> Iterator[CheckOutcome]:
     """Outcome of a joint under every load case, at the pose where its pin or its eyes bear most."""
     joint = one.subject.name
@@ -255,7 +256,7 @@ def column_outcomes(
     moved: CaseMotion,
     loaded: Mapping[str, Sequence[LinkLoads]],
     evaluated: NDArray[np.bool_],
-    grown: Mapping[str, MotionGrowth] | None = None,
+    grown: Mapping[str, Growths] | None = None,
 ) -> Iterator[CheckOutcome]:
     """Yield the least buckling factor of every link that is compressed at some pose, and where it is.
 
@@ -266,7 +267,7 @@ def column_outcomes(
         Link -> what acts on it, one record per load case.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    grown : mapping of str to MotionGrowth, optional
+    grown : mapping of str to Growths, optional
         Load case -> what the deformed shape makes of columns; nothing when left out.
 
     Yields
