@@ -1,6 +1,5 @@
 """From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -11,7 +10,7 @@ from alula.fea.asked.asked import Asked, asked
 from alula.fea.buckling.buckling import column_outcome, worst_column
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
-from alula.fea.common.reason import Reason, reason, together
+from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
@@ -123,7 +122,7 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
     for load_case, over in envelope.load_cases.items():
         found = envelope.layers.get(load_case)
         if found is not None:
-            where = reason("at_pose_and_place", pose=_when(moved, found.pose), place=tuple(map(float, found.location)))
+            where = reason("at_pose_and_place", pose=moved.when(found.pose), place=tuple(map(float, found.location)))
             yield layers_judged(case, load_case, one, found.safety_factor, where)
         elif material.strength_across_layers is None:
             yield one.outcome(load_case, Band.unknown(), no_strength(material.title))
@@ -205,7 +204,7 @@ def _joint(
         pose, outcome = worst(moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
-        yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
+        yield outcome.because(reason("under_force", force=force, when=moved.when(pose), why=outcome.reason))
 
 
 def _worst_bearing(
@@ -288,16 +287,11 @@ def column_outcomes(
             columns = [column for column in found if column is not None]
             if columns:
                 column = min(columns, key=lambda one: one.value)
-                outcome = column_outcome(moved.case, load_case, link, column, where=_when(moved, column.pose))
+                outcome = column_outcome(moved.case, load_case, link, column, where=moved.when(column.pose))
                 spread = column_growth(moved, load_case, link, evaluated)
                 if grown and link in grown[load_case].columns:
                     spread = spread.times(grown[load_case].columns[link])
                 yield _complete(widened(outcome, spread), evaluated)
-
-
-def _when(moved: CaseMotion, pose: int) -> Reason:
-    angle = math.degrees(float(moved.motion.angles[pose]))
-    return reason("pose_of_motion", coordinate=moved.motion.coordinate.name, value=angle, unit="deg")
 
 
 def _complete(outcome: CheckOutcome, evaluated: NDArray[np.bool_]) -> CheckOutcome:
