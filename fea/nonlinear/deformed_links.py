@@ -180,11 +180,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
             shear = normal * (moved[last] - moved[first]) / (x1 - x0)
             extra[first][1:3] += shear[1:]
             extra[last][1:3] -= shear[1:]
-    return replace(
-        loads,
-        pins=tuple(replace(pin, wrench=pin.wrench + extra[pin.name]) for pin in loads.pins),
-        ends=tuple(replace(end, wrench=end.wrench + extra[end.name]) for end in loads.ends),
-    )
+    return loads.with_wrenches(one.wrench + extra[one.name] for one in (*loads.pins, *loads.ends))
 
 
 def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
@@ -210,16 +206,12 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
     CannotRunError
         Where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
     """
-    places = [place for place, _ in loads.wrenches]
+    places, wrenches = map(list, zip(*loads.wrenches, strict=True))
     reach = max(float(np.linalg.norm(place - places[0])) for place in places)
     total = loads.resultant()
     size = sum(float(np.linalg.norm(part[:3])) for part in loads.parts())
     if size <= NOTHING * whole:
-        return replace(
-            loads,
-            pins=tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins),
-            ends=tuple(replace(end, wrench=np.zeros(6)) for end in loads.ends),
-        )
+        return loads.with_wrenches(np.zeros(6) for _ in loads.wrenches)
     left = max(float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:])) / reach if reach else 0.0)
     if left > LARGEST_SHIFT * size:
         raise CannotRunError(
@@ -227,15 +219,9 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
             f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
             "stiffen the link"
         )
-    clamps = [i for i, end in enumerate(loads.ends) if end.clamped or not loads.pins]
-    if clamps:
-        holds = max(clamps, key=lambda i: float(np.linalg.norm(loads.ends[i].wrench[3:])))
-        ends, end = list(loads.ends), loads.ends[holds]
-        ends[holds] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
-        return replace(loads, ends=tuple(ends))
-    takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
-    strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
-    pins = list(loads.pins)
-    taken = shifted(-total, -pins[strongest].centre)
-    pins[strongest] = replace(pins[strongest], wrench=pins[strongest].wrench + taken)
-    return replace(loads, pins=tuple(pins))
+    clamps = [i for i, end in enumerate(loads.ends, len(loads.pins)) if end.clamped or not loads.pins]
+    pins = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
+    takes, part = (clamps, slice(3, 6)) if clamps else (pins, slice(3))
+    holds = max(takes, key=lambda i: float(np.linalg.norm(wrenches[i][part])))
+    wrenches[holds] = wrenches[holds] + shifted(-total, -places[holds])
+    return loads.with_wrenches(wrenches)
