@@ -24,6 +24,7 @@ from alula.fea.motion.buckling_history import axial_compression, factors_over_mo
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
+from alula.fea.motion.linkage_history import when
 from alula.fea.motion.loosened import column_growth, joint_growth
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from alula.geometry.base.ties import first_largest
@@ -122,7 +123,7 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
     for load_case, over in envelope.load_cases.items():
         found = envelope.layers.get(load_case)
         if found is not None:
-            where = reason("at_pose_and_place", pose=moved.when(found.pose), place=tuple(map(float, found.location)))
+            where = reason("at_pose_and_place", pose=when(moved, found.pose), place=tuple(map(float, found.location)))
             yield layers_judged(case, load_case, one, found.safety_factor, where)
         elif material.strength_across_layers is None:
             yield one.outcome(load_case, Band.unknown(), no_strength(material.title))
@@ -204,7 +205,7 @@ def _joint(
         pose, outcome = worst(moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
-        yield outcome.because(reason("under_force", force=force, when=moved.when(pose), why=outcome.reason))
+        yield outcome.because(reason("under_force", force=force, when=when(moved, pose), why=outcome.reason))
 
 
 def _worst_bearing(
@@ -287,7 +288,7 @@ def column_outcomes(
             columns = [column for column in found if column is not None]
             if columns:
                 column = min(columns, key=lambda one: one.value)
-                outcome = column_outcome(moved.case, load_case, link, column, where=moved.when(column.pose))
+                outcome = column_outcome(moved.case, load_case, link, column, where=when(moved, column.pose))
                 spread = column_growth(moved, load_case, link, evaluated)
                 if grown and link in grown[load_case].columns:
                     spread = spread.times(grown[load_case].columns[link])

@@ -68,6 +68,24 @@ class LinkageOverMotion:
     displacement_pose: int
 
 
+def when(moved: CaseMotion, pose: int) -> Reason:
+    """Tell which pose of a motion one is.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    pose : int
+        Its number.
+
+    Returns
+    -------
+    Reason
+    """
+    coordinate = moved.motion.coordinate
+    at = float(coordinate.measure.told(moved.motion.angles[pose]))
+    return reason("pose_of_motion", coordinate=coordinate.name, value=at, unit=coordinate.measure.unit)
+
+
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
     """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
@@ -103,7 +121,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         if not found:
             continue
         least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
-        how, remedy = reason("unstable_at_pose", pose=moved.when(i), factor=least), reason("check_that_pose")
+        how, remedy = reason("unstable_at_pose", pose=when(moved, i), factor=least), reason("check_that_pose")
         slack = stated_scatter(case, load_case).times(eyes)
         pins = forces_at(moved, load_case, i).pins if case.layered else None
         rims = None if pins is None else rim_factors(pins)
@@ -209,7 +227,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
     """
     for one in asked(moved.case, LimitLoadCheck):
         for load_case, over in found.items():
-            pose = moved.when(over.limit_pose) if over.limit_pose >= 0 else None
+            pose = when(moved, over.limit_pose) if over.limit_pose >= 0 else None
             counts = {"looked_at": len(over.poses), "poses": len(moved.motion.angles)}
             where = reason("least_of_poses", **counts, pose=pose)
             yield limit_load_outcome(one, load_case, over.limit_load, where)

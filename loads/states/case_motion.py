@@ -36,7 +36,7 @@ from alula.loads.statics.friction import Presses
 from alula.loads.statics.momentum import LinkageMomentum, linkage_momentum
 from alula.loads.statics.statics import Drive
 from alula.loads.text.caveat import Caveat, Topic
-from alula.loads.text.reason import Reason, reason
+from alula.loads.text.reason import reason
 
 Real = NDArray[np.float64]
 
@@ -145,21 +145,6 @@ class CaseMotion:
         if ground not in self.case.linkage.joints[name].links:
             return None, 0j
         return name, complex(*self.case.linkage.links[ground].points[self.case.linkage.point_of(name, ground)])
-
-    def when(self, pose: int) -> Reason:
-        """Tell which pose of the motion one is.
-
-        Parameters
-        ----------
-        pose : int
-            Its number.
-
-        Returns
-        -------
-        Reason
-        """
-        at, motion = float(self.motion.told(self.motion.angles[pose])), self.motion
-        return reason("pose_of_motion", coordinate=motion.coordinate.name, value=at, unit=motion.unit)
 
     @property
     def locks(self) -> tuple[str, ...]:
