@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -168,10 +169,10 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     LinkLoads
         Loads with the pairs of forces.
     """
-    stations = [(float(pin.centre[0]), pin.name, pin.wrench) for pin in loads.pins]
-    stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
-    stations.sort(key=lambda station: station[0])
-    normal, extra = 0.0, {name: np.zeros(6) for _, name, _ in stations}
+    names = [*(pin.name for pin in loads.pins), *(end.name for end in loads.ends)]
+    held = list(zip(names, loads.wrenches, strict=True))
+    stations = sorted(((float(place[0]), name, wrench) for name, (place, wrench) in held), key=itemgetter(0))
+    normal, extra = 0.0, {name: np.zeros(6) for name in names}
     for _, name, wrench in stations:
         extra[name][3:] += np.cross(moved[name], [0.0, wrench[1], wrench[2]])
     for (x0, first, wrench), (x1, last, _) in itertools.pairwise(stations):
@@ -180,7 +181,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
             shear = normal * (moved[last] - moved[first]) / (x1 - x0)
             extra[first][1:3] += shear[1:]
             extra[last][1:3] -= shear[1:]
-    return loads.with_wrenches(one.wrench + extra[one.name] for one in (*loads.pins, *loads.ends))
+    return loads.with_wrenches(wrench + extra[name] for name, (_, wrench) in held)
 
 
 def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
