@@ -8,7 +8,7 @@ points in another order.
 import re
 import shutil
 import subprocess
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TextIO
 
@@ -69,7 +69,7 @@ def write_deck(
     nodes, components = np.nonzero(np.abs(loads) > 1e-12 * np.abs(loads).max())
     try:
         with path.open("w", encoding="ascii", errors="replace") as deck:
-            _write_mesh(deck, space, title)
+            write_mesh(deck, space, title)
             for name, members in _sets(space, supports).items():
                 deck.write(f"*NSET, NSET={name}\n")
                 deck.writelines(_lines(members))
@@ -87,67 +87,16 @@ def write_deck(
         raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another folder") from None
 
 
-def write_frequency_deck(
-    path: Path,
-    space: DisplacementSpace,
-    *,
-    E: float,
-    nu: float,
-    density: float,
-    equations: Sequence[Sequence[tuple[int, float]]],
-    further: int,
-    supports: NDArray[np.int64],
-    count: int,
-    title: str,
-) -> None:
-    """Write the vibration of a link's model as a CalculiX input deck (mm, N, MPa, tonne, s).
+def write_mesh(deck: TextIO, space: DisplacementSpace, title: str) -> None:
+    """Begin a deck with the nodes and elements of a link's mesh, in the sets NALL and EALL.
 
     Parameters
     ----------
-    path : Path
-        File to be written.
+    deck : TextIO
     space : DisplacementSpace
-        The link's mesh.
-    E, nu, density : float
-        Young's modulus [MPa], Poisson's ratio and density [tonne/mm³].
-    equations : sequence of sequence of (int, float)
-        Sums of unknowns, 3 node + component, times factors that are zero; each leaves its first unknown to the others.
-    further : int
-        Number of nodes without element that stand after those of the mesh, of which equations may speak.
-    supports : ndarray of int
-        Fixed unknowns.
-    count : int
-        Of frequencies, rigid motions included.
     title : str
         First line of the deck, for people.
-
-    Raises
-    ------
-    CannotRunError
-        If the file cannot be written.
     """
-    first = len(space.nodes) + 1
-    try:
-        with path.open("w", encoding="ascii", errors="replace") as deck:
-            _write_mesh(deck, space, title)
-            if further:
-                deck.write("*NODE, NSET=FURTHER\n")
-                deck.writelines(f"{i}, 0., 0., 0.\n" for i in range(first, first + further))
-            for equation in equations:
-                deck.write(f"*EQUATION\n{len(equation)}\n")
-                terms = [f"{u // 3 + 1}, {u % 3 + 1}, {factor:.12e}" for u, factor in equation]
-                deck.writelines(f"{', '.join(terms[i : i + 4])}\n" for i in range(0, len(terms), 4))
-            deck.write(f"*MATERIAL, NAME=MATERIAL\n*ELASTIC\n{E:.12e}, {nu:.12e}\n*DENSITY\n{density:.12e}\n")
-            deck.write("*SOLID SECTION, ELSET=EALL, MATERIAL=MATERIAL\n")
-            if len(supports):
-                deck.write("*BOUNDARY\n")
-                deck.writelines(f"{u // 3 + 1}, {u % 3 + 1}, {u % 3 + 1}\n" for u in supports.tolist())
-            deck.write(f"*STEP\n*FREQUENCY\n{count}\n*NODE FILE\nU\n*END STEP\n")
-    except OSError as error:
-        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another folder") from None
-
-
-def _write_mesh(deck: TextIO, space: DisplacementSpace, title: str) -> None:
     deck.write(f"*HEADING\n{' '.join(title.split())[:80]}\n*NODE, NSET=NALL\n")
     deck.writelines(f"{i}, {x:.12e}, {y:.12e}, {z:.12e}\n" for i, (x, y, z) in enumerate(space.nodes.tolist(), 1))
     deck.write(f"*ELEMENT, TYPE={'C3D4' if space.order == 1 else 'C3D10'}, ELSET=EALL\n")
@@ -260,38 +209,6 @@ def read_dat(path: Path, *, nodes: int, elements: int, points: int) -> tuple[NDA
     if not (np.isfinite(displacement).all() and np.isfinite(stress).all()):
         raise CannotRunError(f"CalculiX's file '{path.name}' holds values that are missing or not finite")
     return displacement, stress
-
-
-def read_frequencies(path: Path) -> NDArray[np.float64]:
-    """Read the natural frequencies of a .dat file.
-
-    Parameters
-    ----------
-    path : Path
-        The .dat file.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        Frequencies, rising; negative where the square is [Hz].
-
-    Raises
-    ------
-    CannotRunError
-        Where there are none.
-    """
-    try:
-        text = path.read_text(encoding="ascii", errors="replace")
-    except OSError:
-        raise CannotRunError(f"CalculiX left no file '{path.name}'") from None
-    # Number of the mode, square, radians per time, cycles per time, and their imaginary part for a negative square.
-    number = r"\s+(-?\d\.\d+E[+-]\d+)"
-    rest = text.partition("E I G E N V A L U E   O U T P U T")[2]
-    rows = re.findall(rf"^\s+\d+{number * 4}\s*$", rest.split("P A R T I C I P A T I O N")[0], flags=re.MULTILINE)
-    if not rows:
-        raise CannotRunError(f"CalculiX's file '{path.name}' holds no natural frequencies")
-    squares = np.array([float(row[0]) for row in rows])
-    return np.asarray(np.sign(squares) * np.sqrt(np.abs(squares)) / (2.0 * np.pi))
 
 
 def _blocks(path: Path) -> dict[str, list[str]]:

@@ -33,13 +33,12 @@ from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.point_displacement import point_outcome
-from alula.fea.outcomes.point_shares import condensable
+from alula.fea.outcomes.point_shares import LoadedLinkage, condensable
 from alula.fea.refine.error_estimate import estimate_error
 from alula.fea.solid.condensation import CondensedSolid, Give, condense
 from alula.fea.solid.stress import stress_field
 from alula.fea.standing.case_statics import CaseStatics
-from alula.fea.standing.deviation import Deviation
-from alula.fea.standing.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces, on_pins
+from alula.fea.standing.joint_forces import LAYERED_FRAME, OF_SOLIDS, Deviation, JointForces, on_pins
 from alula.geometry.meshing.mesh import MeshSettings, mesh_bodies
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
@@ -134,8 +133,9 @@ def with_solids(
 
 def _leave_a_point_open(case: Case, load_case: str, moved: LargeDisplacement, forces: JointForces) -> bool:
     """Whether centre lines leave the check of a point open; what was followed on its deformed shape keeps them."""
+    loaded = LoadedLinkage(case=case, load_case=load_case, moved=moved, links={}, free={}, forces=forces)
     return not moved.followed and any(
-        point_outcome(case, one, load_case, moved, {}, {}, forces).verdict is Verdict.UNDECIDED
+        point_outcome(loaded, one).verdict is Verdict.UNDECIDED
         for one in asked(case, DisplacementCheck, quantity=Quantity.DISPLACEMENT)
     )
 

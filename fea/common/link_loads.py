@@ -4,6 +4,7 @@ The input of hand calculation, of solid models and of envelopes. A leading axis 
 there are several.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -164,6 +165,22 @@ class LinkLoads:
             lines=tuple(chosen(line, poses) for line in self.lines),
             inertia=None if self.inertia is None else chosen(self.inertia, poses),
         )
+
+    def with_wrenches(self, wrenches: Iterable[Real]) -> "LinkLoads":
+        """Return the loads with other wrenches of pins and ends.
+
+        Parameters
+        ----------
+        wrenches : iterable of ndarray, shape (..., 6)
+            About the same places, in the order of ``LinkLoads.wrenches``.
+
+        Returns
+        -------
+        LinkLoads
+        """
+        found = iter(wrenches)
+        pins = tuple(replace(pin, wrench=next(found)) for pin in self.pins)
+        return replace(self, pins=pins, ends=tuple(replace(end, wrench=next(found)) for end in self.ends))
 
     def parts(self) -> list[Real]:
         """Return the wrench (..., 6) of every load about the origin of the link's frame [N, N mm]."""

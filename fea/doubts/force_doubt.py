@@ -18,7 +18,7 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.plates import plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import COUPLES, Source
-from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.doubts.load_growth import Growths, telling
 from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.standing.joint_forces import JointForces
@@ -156,7 +156,9 @@ def _growths(
         plain, *others = (_by_hand(case, link, borne) for borne in one.every)
         stress[link] = one.stress(plain[0], [other[0] for other in others])
         displacement[link] = one.displacement(plain[1], [other[1] for other in others])
-    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(stated, changes, rule)))
+    return Growths(
+        stress=telling(stress), displacement=telling(displacement), joints=telling(_joints(stated, changes, rule))
+    )
 
 
 def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -292,7 +294,3 @@ def _summed(sources: tuple[Source, ...]) -> Rule:
         return Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources)
 
     return around
-
-
-def _open(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
-    return {name: one for name, one in found.items() if one.high - one.low > LEAST}

@@ -11,7 +11,7 @@ which bounds it as well where no deformed shape was found.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -67,15 +67,25 @@ class Growths:
         -------
         Growths
         """
-        pairs = (
-            *((self.stress, other.stress), (self.displacement, other.displacement)),
-            *((self.joints, other.joints), (self.columns, other.columns)),
-        )
-        stress, displacement, joints, columns = (
-            {name: one.get(name, Scatter()).times(two.get(name, Scatter())) for name in {**one, **two}}
-            for one, two in pairs
-        )
-        return Growths(stress=stress, displacement=displacement, joints=joints, columns=columns)
+        found = {}
+        for kind in ("stress", "displacement", "joints", "columns"):
+            one, two = getattr(self, kind), getattr(other, kind)
+            found[kind] = {name: one.get(name, Scatter()).times(two.get(name, Scatter())) for name in {**one, **two}}
+        return Growths(**found)
+
+
+def telling(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
+    """Return the growths that are wide enough to be told.
+
+    Parameters
+    ----------
+    found : mapping of str to Scatter
+
+    Returns
+    -------
+    dict of str to Scatter
+    """
+    return {name: one for name, one in found.items() if one.high - one.low > LEAST}
 
 
 Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
@@ -113,11 +123,12 @@ def growths(
     """
     low, high = _slack(case, load_case, hands)
     plain = by_hand_numbers(hands, moved.reactions or reactions)
+    stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     if moved.state == "small":
-        return _of_small(case, load_case, loads, moved, reactions, plain, high)
+        return stated.of_small(moved, plain, high)
     if low == high or moved.state not in ("deformed", "off", "unknown"):
         return Growths()
-    least, most = (_at(case, load_case, pose, loads, reactions, factor) for factor in (low, high))
+    least, most = (stated.at(pose, factor) for factor in (low, high))
     found = []
     for i, kind in enumerate(plain):
         # Displacement is in proportion to load over modulus, which its own scatter holds.
@@ -166,13 +177,14 @@ def beyond_undeformed(
         With upper ends that are infinite where the linkage gives way.
     """
     high, plain = _slack(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
+    stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     if moved.state == "small":
-        return _of_small(case, load_case, loads, moved, reactions, plain, high)
+        return stated.of_small(moved, plain, high)
     if moved.gives_way:
         return _told([dict.fromkeys(kind, (1.0, math.inf)) for kind in plain])
-    every: list[Numbers | None] = [_by_hand(case, load_case, moved, reactions, loads)]
+    every: list[Numbers | None] = [stated.by_hand(moved)]
     if high > 1.0:
-        every.append(_at(case, load_case, pose, loads, reactions, high))
+        every.append(stated.at(pose, high))
     found = []
     for i, before in enumerate(plain):
         least = NOTHING * max(before.values(), default=0.0)
@@ -209,55 +221,48 @@ def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:
     return Growths(stress=stress, displacement=displacement, joints=joints)
 
 
-def _of_small(
-    case: Case,
-    load_case: str,
-    loads: Sequence[Load],
-    moved: LargeDisplacement,
-    reactions: Reactions,
-    plain: Numbers,
-    high: float,
-) -> Growths:
-    """Growth of the numbers of the undeformed pose, at the largest load over modulus."""
-    nominal, most = (growth(moved.factor / times) - 1.0 if moved.factor else 0.0 for times in (1.0, high))
-    if moved.grown is None:
-        return _told([dict.fromkeys(kind, (1.0 / (1.0 + most), 1.0 + most)) for kind in plain])
-    rise = max(most / nominal if nominal > 0.0 else high, 1.0)
-    found = []
-    for before, after in zip(plain, _by_hand(case, load_case, moved.grown, reactions, loads), strict=True):
-        least = NOTHING * max(before.values(), default=0.0)
-        over = {name: rise * (after[name] / value - 1.0) if value > least else 0.0 for name, value in before.items()}
-        found.append({name: (max(1.0 + min(x, 0.0), 0.0), 1.0 + max(x, 0.0)) for name, x in over.items()})
-    return _told(found)
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Stated:
+    """A load case as stated, and what becomes of its numbers by hand."""
 
+    case: Case
+    load_case: str
+    loads: Sequence[Load]
+    reactions: Reactions
 
-def _by_hand(
-    case: Case, load_case: str, moved: LargeDisplacement, reactions: Reactions, loads: Sequence[Load]
-) -> Numbers:
-    cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
-    hands = {link: plates_by_hand(case, link, borne)[0][1] for link, borne in cut.items()}
-    return by_hand_numbers(hands, moved.reactions or reactions)
+    def of_small(self, moved: LargeDisplacement, plain: Numbers, high: float) -> Growths:
+        """Growth of the numbers of the undeformed pose, at the largest load over modulus."""
+        nominal, most = (growth(moved.factor / times) - 1.0 if moved.factor else 0.0 for times in (1.0, high))
+        if moved.grown is None:
+            return _told([dict.fromkeys(kind, (1.0 / (1.0 + most), 1.0 + most)) for kind in plain])
+        rise = max(most / nominal if nominal > 0.0 else high, 1.0)
+        found = []
+        for before, after in zip(plain, self.by_hand(moved.grown), strict=True):
+            least = NOTHING * max(before.values(), default=0.0)
+            over = {n: rise * (after[n] / value - 1.0) if value > least else 0.0 for n, value in before.items()}
+            found.append({name: (max(1.0 + min(x, 0.0), 0.0), 1.0 + max(x, 0.0)) for name, x in over.items()})
+        return _told(found)
 
+    def by_hand(self, moved: LargeDisplacement) -> Numbers:
+        """Numbers of the load case on a shape."""
+        case, name = self.case, self.load_case
+        cut = {link: cut_link(case, link, name, moved, self.reactions, self.loads) for link in case.checked_links}
+        hands = {link: plates_by_hand(case, link, borne)[0][1] for link, borne in cut.items()}
+        return by_hand_numbers(hands, moved.reactions or self.reactions)
 
-def _at(
-    case: Case,
-    load_case: str,
-    pose: Pose,
-    loads: Sequence[Load],
-    reactions: Reactions,
-    factor: float,
-) -> Numbers | None:
-    """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it.
+    def at(self, pose: Pose, factor: float) -> Numbers | None:
+        """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it.
 
-    In the undeformed pose the joint forces are the same.
-    """
-    soft = _softened(case, load_case, factor)
-    try:
-        forces = joint_forces(soft, pose, loads)
-        moved = with_growth(soft, load_case, examine(soft, load_case, forces, loads), loads)
-        return None if moved.gives_way else _by_hand(soft, load_case, moved.grown or moved, reactions, loads)
-    except (CaseError, CannotRunError):
-        return None
+        In the undeformed pose the joint forces are the same.
+        """
+        soft, name = replace(self, case=_softened(self.case, self.load_case, factor)), self.load_case
+        try:
+            forces = joint_forces(soft.case, pose, self.loads)
+            shape = examine(soft.case, name, forces, self.loads)
+            moved = with_growth(soft.case, name, shape, self.loads)
+            return None if moved.gives_way else soft.by_hand(moved.grown or moved)
+        except (CaseError, CannotRunError):
+            return None
 
 
 def by_hand_numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> Numbers:

@@ -12,7 +12,7 @@ from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source
 from alula.fea.common.verdict import CheckOutcome, Quantity
-from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.doubts.load_growth import Growths, telling
 from alula.fea.links.fidelity import hand_bands
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.links.solid_result import link_task
@@ -129,10 +129,6 @@ def shape_of(statics: CaseStatics, other: CaseStatics, load_case: str, moved: La
     return examine(case, load_case, forces, loads, moved.buckling / grown if moved.buckling and far else None)
 
 
-def _telling(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
-    return {name: one for name, one in found.items() if one.high - one.low > LEAST}
-
-
 def widened(outcome: CheckOutcome, spread: Scatter) -> CheckOutcome:
     """Return the outcome of a buckling factor with what a doubt makes of the compression in its band.
 
@@ -216,7 +212,7 @@ class Doubt:
 
         stress, displacement = ({link: of_link(link, i) for link in self.stated.plates} for i in (0, 1))
         joints = {name: of_joint(name) for name in self.stated.reactions.joints}
-        return Growths(stress=_telling(stress), displacement=_telling(displacement), joints=_telling(joints))
+        return Growths(stress=telling(stress), displacement=telling(displacement), joints=telling(joints))
 
     def answers(self, link: str) -> LinkAnswers:
         """Return what acts on a link as stated and in the other answers.

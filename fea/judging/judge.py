@@ -13,6 +13,7 @@ from alula.fea.judging.solid_buckling import solid_buckling
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.pins import PinStress, pin_outcome
 from alula.fea.outcomes.point_displacement import point_outcome
+from alula.fea.outcomes.point_shares import LoadedLinkage
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.standing.joint_forces import JointForces
@@ -65,13 +66,14 @@ def outcomes(
     CaseError
         Where neither check nor material states a limit.
     """
+    loaded = LoadedLinkage(case=case, load_case=load_case, moved=moved, links=links, free=free, forces=forces)
     found: list[CheckOutcome] = []
     for one in asked(case, SafetyFactorCheck, DisplacementCheck, SustainedCheck, PinCheck):
         name = one.subject.name
         if isinstance(one.check, PinCheck):
             found.append(pin_outcome(case, load_case, one, pins[name], (uneven or {}).get(name)))
         elif one.quantity is Quantity.DISPLACEMENT:
-            found.append(point_outcome(case, one, load_case, moved, links, free, forces))
+            found.append(point_outcome(loaded, one))
         else:
             found.append(_of_link(case, load_case, one, links[name]))
     beams = {link: result.beam for link, result in links.items()}

@@ -12,6 +12,7 @@ from alula.fea.common.reason import Reason, reason, together, under_load_cases
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.point_displacement import PointDisplacement
+from alula.fea.outcomes.point_shares import LoadedLinkage
 from alula.fea.outcomes.result import LinkageNumbers, LinkResult
 from alula.fea.standing.case_statics import CaseStatics
 from alula.fea.standing.joint_forces import JointForces
@@ -50,8 +51,9 @@ def linkage_numbers(
     -------
     LinkageNumbers
     """
-    largest = partial(_largest, case, load_case, moved, forces, links or {}, free or {})
-    return LinkageNumbers(case=case, moved=moved, forces=forces, largest=largest)
+    links, free = links or {}, free or {}
+    loaded = LoadedLinkage(case=case, load_case=load_case, moved=moved, links=links, free=free, forces=forces)
+    return LinkageNumbers(case=case, moved=moved, forces=forces, largest=partial(_largest, loaded))
 
 
 def limit_load_outcomes(case: Case, load_case: str, linkage: LinkageNumbers) -> Iterator[CheckOutcome]:
@@ -94,23 +96,17 @@ def limit_load_outcome(one: Asked, load_case: str, factor: Band, where: Reason |
     return found.because(together(factor.without if factor.unknowable else found.reason, where))
 
 
-def _largest(
-    case: Case,
-    load_case: str,
-    moved: LargeDisplacement,
-    forces: JointForces,
-    links: Mapping[str, LinkResult],
-    free: Mapping[str, LinkLoads],
-) -> tuple[Band, Reason | str]:
+def _largest(loaded: LoadedLinkage) -> tuple[Band, Reason | str]:
     """Largest displacement of any place [mm], and that place."""
+    moved, forces = loaded.moved, loaded.forces
     sizes = {key: float(np.linalg.norm(d)) for key, d in moved.points.items()}
     if not sizes or moved.frame is None or moved.solution is None:
         return Band.unknown(moved.reason), ""
     places = {tuple(np.round(moved.points[key], 9)): key for key in sizes}  # the two links at a pin move alike
     most, bands = max(sizes.values()), {}
     for link, point in places.values():
-        if forces.play is not None or sizes[link, point] >= NEARLY * most:
-            told = PointDisplacement.of(case, (link, point), load_case, moved, links, free, forces)
+        if (forces is not None and forces.play is not None) or sizes[link, point] >= NEARLY * most:
+            told = PointDisplacement.at(loaded, link, point)
             if told.why:
                 return Band.unknown(told.why), ""
             bands[link, point] = told.value

@@ -70,23 +70,18 @@ def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDAr
     near = np.flatnonzero(evaluated & (np.minimum(found.value, found.least) < LEAST_FACTOR))
     if not near.size:
         return history
-    pins, ends = ([load.wrench.copy() for load in loads] for loads in (history.pins, history.ends))
+    wrenches = [wrench.copy() for _, wrench in history.wrenches]
     lines: dict[tuple[float, float], Real] = {}
     for pose in near.tolist():
         loads = history.chosen(pose)
         grown = second_order_loads(case, link, loads, stays=False)
-        for own, (_, wrench) in zip((*pins, *ends), grown.wrenches, strict=True):
+        for own, (_, wrench) in zip(wrenches, grown.wrenches, strict=True):
             own[pose] = wrench
         for line in grown.lines[len(loads.lines) :]:
             ends_of_line = lines.setdefault((line.start, line.end), np.zeros((2, history.poses, 3)))
             ends_of_line[:, pose] += line.at_start, line.at_end
     more = [LineLoad(link=link, start=a, end=b, at_start=q[0], at_end=q[1], axes="link") for (a, b), q in lines.items()]
-    return replace(
-        history,
-        pins=tuple(replace(pin, wrench=wrench) for pin, wrench in zip(history.pins, pins, strict=True)),
-        ends=tuple(replace(end, wrench=wrench) for end, wrench in zip(history.ends, ends, strict=True)),
-        lines=(*history.lines, *more),
-    )
+    return replace(history.with_wrenches(wrenches), lines=(*history.lines, *more))
 
 
 def axial_compression(case: Case, link: str, history: LinkLoads) -> tuple[Real, AxialForce]:

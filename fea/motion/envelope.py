@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import copy_context
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,17 +29,16 @@ from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelo
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from alula.fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
 from alula.fea.motion.layered import with_couples
-from alula.fea.motion.link_envelope import LinkMotion, link_motion
+from alula.fea.motion.link_envelope import LinkMotion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
-from alula.fea.motion.loosened import MotionGrowth, loosened, motion_growth, otherwise
+from alula.fea.motion.loosened import loosened, motion_growth, otherwise
 from alula.fea.outcomes.limits import layers_of
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from alula.fea.refine.link_series import STRESS, Measure
 from alula.fea.refine.refinement import START, Effort, refine_links
 from alula.fea.solid.solution import require_compressible
-from alula.fea.superposition.link_answers import LinkAnswers
 from alula.fea.superposition.solid_shares import solid_shares
 from alula.fea.whole.outcomes import KINDS, unloaded_outcomes, whole_numbers
 from alula.fea.whole.rubbed_motion import rubbed_motion, work_between
@@ -57,54 +56,34 @@ TORQUE_GROWTH = 20.0
 """Poses near a dead point are left out if their drive torque exceeds that at the best leverage by this factor."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class _Envelope:
     """A case over its motion, with the loads on every loaded link, one record per load case."""
 
-    moved: CaseMotion
-    evaluated: NDArray[np.bool_]
-    sizes: Mapping[str, float]
-    loaded: Mapping[str, tuple[LinkLoads, ...]]
-    threads: int
-    progress: Progress
-    shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
-    ways: Mapping[tuple[str, str], LinkAnswers] = field(default_factory=dict)
-    grown: Mapping[str, MotionGrowth] = field(default_factory=dict)
-    ended: threading.Event = field(default_factory=threading.Event)
-
-    @classmethod
-    def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
+    def __init__(self, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> None:
         layered = with_couples(moved, evaluated)
-        moved, case, loaded = layered.moved, moved.case, {}
-        sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
+        self.moved, self.ways = layered.moved, layered.ways
+        self.evaluated, self.threads, self.progress = evaluated, threads, progress
+        moved, case = self.moved, self.moved.case
+        self.sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
+        self.loaded: dict[str, tuple[LinkLoads, ...]] = {}
         for link in case.checked_links:
             found = tuple(
                 with_second_order(case, link, history, evaluated)
                 for history in link_histories(moved, link)
-                if acts(history.chosen(evaluated), sizes[history.name], case.linkage.longest)
+                if acts(history.chosen(evaluated), self.sizes[history.name], case.linkage.longest)
             )
             if found:
-                loaded[link] = found
-        grown = motion_growth(moved, loaded, evaluated)
-        bent = {(load_case, link): one for load_case, of in grown.items() for link, one in of.stress.items()}
-        shares: dict[tuple[str, str], Scatter] = {}
+                self.loaded[link] = found
+        self.grown = motion_growth(moved, self.loaded, evaluated)
+        bent = {(load_case, link): one for load_case, of in self.grown.items() for link, one in of.stress.items()}
         # What the edge of a clamp adds counts for the link's largest stress, wherever that is.
-        held = [link for link in loaded if clamped_end(case.body(link)) is not None]
-        edges = {(history.name, link): CLAMP_SCATTER for link in held for history in loaded[link]}
+        held = [link for link in self.loaded if clamped_end(case.body(link)) is not None]
+        edges = {(history.name, link): CLAMP_SCATTER for link in held for history in self.loaded[link]}
+        self.shares: dict[tuple[str, str], Scatter] = {}
         for doubt in (loosened(moved, evaluated), otherwise(moved, evaluated), bent, edges):
             for key, scatter in doubt.items():
-                shares[key] = shares.get(key, Scatter()).times(scatter)
-        return cls(
-            moved=moved,
-            evaluated=evaluated,
-            sizes=sizes,
-            loaded=loaded,
-            threads=threads,
-            progress=progress,
-            shares=shares,
-            ways=layered.ways,
-            grown=grown,
-        )
+                self.shares[key] = self.shares.get(key, Scatter()).times(scatter)
+        self.ended = threading.Event()
 
     @property
     def idle(self) -> tuple[str, ...]:
@@ -179,7 +158,7 @@ class _Envelope:
     def _motion(self, link: str, space: DisplacementSpace) -> LinkMotion:
         """Solve one link over the motion on one mesh."""
         case = self.moved.case
-        return link_motion(
+        return LinkMotion(
             space,
             link=link,
             body=case.body(link),
@@ -258,7 +237,7 @@ def envelope_case(
         raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")
     whole = whole_numbers(case, threads=threads)
     evaluated = _some_poses(moved, growth)
-    over = _Envelope.of(moved, evaluated, threads, progress)
+    over = _Envelope(moved, evaluated, threads, progress)
     moved = over.moved
     clock("motion")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)

@@ -1,6 +1,5 @@
 """From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -11,9 +10,10 @@ from alula.fea.asked.asked import Asked, asked
 from alula.fea.buckling.buckling import column_outcome, worst_column
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
-from alula.fea.common.reason import Reason, reason, together
+from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
 from alula.fea.judging.bearing import bearing_outcome, pressing, sharing
 from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, worst_pose
@@ -25,7 +25,8 @@ from alula.fea.motion.buckling_history import axial_compression, factors_over_mo
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
-from alula.fea.motion.loosened import MotionGrowth, column_growth, joint_growth
+from alula.fea.motion.linkage_history import when
+from alula.fea.motion.loosened import column_growth, joint_growth
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
@@ -50,7 +51,7 @@ def envelope_outcomes(
     moved: CaseMotion,
     links: Mapping[str, LinkEnvelope],
     evaluated: NDArray[np.bool_],
-    grown: Mapping[str, MotionGrowth] | None = None,
+    grown: Mapping[str, Growths] | None = None,
     *,
     lasting: bool = False,
 ) -> list[CheckOutcome]:
@@ -62,7 +63,7 @@ def envelope_outcomes(
     links : mapping of str to LinkEnvelope
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    grown : mapping of str to MotionGrowth, optional
+    grown : mapping of str to Growths, optional
         Load case -> what the deformed shape makes of joint forces; nothing when left out.
     lasting : bool, optional
         Whether repetitions of the motion are asked for, so that fatigue that is not known leaves a link undecided.
@@ -124,7 +125,7 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
     for load_case, over in envelope.load_cases.items():
         found = envelope.layers.get(load_case)
         if found is not None:
-            where = reason("at_pose_and_place", pose=_when(moved, found.pose), place=tuple(map(float, found.location)))
+            where = reason("at_pose_and_place", pose=when(moved, found.pose), place=tuple(map(float, found.location)))
             yield layers_judged(case, load_case, one, found.safety_factor, where)
         elif material.strength_across_layers is None:
             yield one.outcome(load_case, Band.unknown(), no_strength(material.title))
@@ -194,7 +195,7 @@ def fatigue_outcomes(
 
 
 def _joint(
-    moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, MotionGrowth]
+    moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
 ) -> Iterator[CheckOutcome]:
     """Outcome of a joint under every load case, at the pose where its pin or its eyes bear most."""
     joint = one.subject.name
@@ -204,7 +205,7 @@ def _joint(
         pose, outcome = worst(moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
-        yield outcome.because(reason("under_force", force=force, when=_when(moved, pose), why=outcome.reason))
+        yield outcome.because(reason("under_force", force=force, when=when(moved, pose), why=outcome.reason))
 
 
 def _growth(
@@ -309,7 +310,7 @@ def column_outcomes(
     moved: CaseMotion,
     loaded: Mapping[str, Sequence[LinkLoads]],
     evaluated: NDArray[np.bool_],
-    grown: Mapping[str, MotionGrowth] | None = None,
+    grown: Mapping[str, Growths] | None = None,
 ) -> Iterator[CheckOutcome]:
     """Yield the least buckling factor of every link that is compressed at some pose, and where it is.
 
@@ -320,7 +321,7 @@ def column_outcomes(
         Link -> what acts on it, one record per load case.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    grown : mapping of str to MotionGrowth, optional
+    grown : mapping of str to Growths, optional
         Load case -> what the deformed shape makes of columns; nothing when left out.
 
     Yields
@@ -341,16 +342,11 @@ def column_outcomes(
             columns = [column for column in found if column is not None]
             if columns:
                 column = min(columns, key=lambda one: one.value)
-                outcome = column_outcome(moved.case, load_case, link, column, where=_when(moved, column.pose))
+                outcome = column_outcome(moved.case, load_case, link, column, where=when(moved, column.pose))
                 spread = column_growth(moved, load_case, link, evaluated)
                 if grown and link in grown[load_case].columns:
                     spread = spread.times(grown[load_case].columns[link])
                 yield _complete(widened(outcome, spread), evaluated)
-
-
-def _when(moved: CaseMotion, pose: int) -> Reason:
-    angle = math.degrees(float(moved.motion.angles[pose]))
-    return reason("pose_of_motion", coordinate=moved.motion.coordinate.name, value=angle, unit="deg")
 
 
 def _complete(outcome: CheckOutcome, evaluated: NDArray[np.bool_]) -> CheckOutcome:

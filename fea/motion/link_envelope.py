@@ -1,7 +1,7 @@
 """One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,20 +39,20 @@ ELSEWHERE, FATIGUE_ELSEWHERE = (
 )
 
 
-def link_motion(
-    space: DisplacementSpace,
-    *,
-    link: str,
-    body: Body,
-    material: Material,
-    histories: Sequence[LinkLoads],
-    evaluated: NDArray[np.bool_],
-    stated: Transfer,
-    returns: bool,
-    layers: Layers | None = None,
-    threads: int | None = None,
-) -> "LinkMotion":
-    """Solve one link over a motion, on one mesh.
+def _balanced(solved: UnitSolutions) -> None:
+    """Refuse loads that do not balance and supports that react."""
+    for what, values, limit in (
+        ("the loads leave a resultant", solved.imbalance, IMBALANCE_LIMIT),
+        ("the supports of the free body react", solved.reaction, REACTION_LIMIT),
+    ):
+        if not values.max() <= limit:
+            raise CannotRunError(
+                f"{what} of {values.max():.2%} of the load (at most {limit:.1%}): load and stress do not balance"
+            )
+
+
+class LinkMotion:
+    """A link solved over a motion, on one mesh.
 
     Parameters
     ----------
@@ -71,79 +71,47 @@ def link_motion(
         True where the last pose is the first again; else the motion goes there and back.
     layers : Layers, optional
         Of a printed part.
-    threads : int, optional
 
-    Returns
-    -------
-    LinkMotion
+    Attributes
+    ----------
+    measure : LinkMeasure
+        Of all loads of all variants.
+    curves : dict of str to list of VariantCurve
+        Load case -> peaks of its variants.
 
     Raises
     ------
     CannotRunError
         For loads that do not balance, supports that react, or a failing solver.
     """
-    chosen = [history.chosen(evaluated) for history in histories]
-    measure = LinkMeasure.of_units(ElasticLink.of(body, material, layers), space, chosen, threads=threads)
-    _balanced(measure.solved)
-    peaks = measure.peaks(STRESS[material.brittle])
-    curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
-    for variant in measure.variants:
-        stress, node = np.full(len(evaluated), np.nan), np.full(len(evaluated), -1)
-        stress[evaluated], node[evaluated] = peaks.value[variant.loads], peaks.node[variant.loads]
-        curve = VariantCurve(
-            span=variant.law.span, transfer=variant.transfer, stress=stress, node=node, first=variant.loads.start
-        )
-        curves[chosen[variant.record].name].append(curve)
-    return LinkMotion(
-        link=link,
-        measure=measure,
-        material=material,
-        evaluated=evaluated,
-        stated=stated,
-        returns=returns,
-        curves=curves,
-    )
 
-
-def _balanced(solved: UnitSolutions) -> None:
-    """Refuse loads that do not balance and supports that react."""
-    for what, values, limit in (
-        ("the loads leave a resultant", solved.imbalance, IMBALANCE_LIMIT),
-        ("the supports of the free body react", solved.reaction, REACTION_LIMIT),
-    ):
-        if not values.max() <= limit:
-            raise CannotRunError(
-                f"{what} of {values.max():.2%} of the load (at most {limit:.1%}): load and stress do not balance"
+    def __init__(
+        self,
+        space: DisplacementSpace,
+        *,
+        link: str,
+        body: Body,
+        material: Material,
+        histories: Sequence[LinkLoads],
+        evaluated: NDArray[np.bool_],
+        stated: Transfer,
+        returns: bool,
+        layers: Layers | None = None,
+    ) -> None:
+        self.link, self.material, self.evaluated = link, material, evaluated
+        self.stated, self.returns = stated, returns
+        chosen = [history.chosen(evaluated) for history in histories]
+        self.measure = LinkMeasure.of_units(ElasticLink.of(body, material, layers), space, chosen)
+        _balanced(self.measure.solved)
+        peaks = self.measure.peaks(STRESS[material.brittle])
+        self.curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
+        for variant in self.measure.variants:
+            stress, node = np.full(len(evaluated), np.nan), np.full(len(evaluated), -1)
+            stress[evaluated], node[evaluated] = peaks.value[variant.loads], peaks.node[variant.loads]
+            curve = VariantCurve(
+                span=variant.law.span, transfer=variant.transfer, stress=stress, node=node, first=variant.loads.start
             )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LinkMotion:
-    """A link solved over a motion on one mesh.
-
-    Attributes
-    ----------
-    link : str
-    measure : LinkMeasure
-        Of all loads of all variants.
-    material : Material
-    evaluated : ndarray of bool, shape (n,)
-        The poses that count.
-    stated : Transfer
-        How the drive torque enters, by the case.
-    returns : bool
-        True where the last pose is the first again.
-    curves : dict of str to list of VariantCurve
-        Load case -> peaks of its variants.
-    """
-
-    link: str
-    measure: LinkMeasure
-    material: Material
-    evaluated: NDArray[np.bool_]
-    stated: Transfer
-    returns: bool
-    curves: Mapping[str, Sequence[VariantCurve]]
+            self.curves[chosen[variant.record].name].append(curve)
 
     @property
     def worst_poses(self) -> dict[str, int]:
@@ -154,7 +122,6 @@ class LinkMotion:
     def envelope(
         self,
         *,
-        fatigue: bool = True,
         repetitions: float | None = None,
         refined: RefinedSolid | None = None,
         scatter: Mapping[str, Scatter] | None = None,
@@ -163,8 +130,6 @@ class LinkMotion:
 
         Parameters
         ----------
-        fatigue : bool, optional
-            False to leave it out.
         repetitions : float, optional
             Of the motion that are wanted.
         refined : RefinedSolid, optional
@@ -177,7 +142,7 @@ class LinkMotion:
         LinkEnvelope
         """
         solved, material, space = self.measure.solved, self.material, self.measure.solved.space
-        lacking = (missing_data(material) or not_closed(self.evaluated)) if fatigue else reason("not_asked_for")
+        lacking = missing_data(material) or not_closed(self.evaluated)
         found = {}
         for name, curves in self.curves.items():
             series, load = MeshFactors.of(refined, name, material), (scatter or {}).get(name, Scatter())

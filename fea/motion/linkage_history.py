@@ -1,6 +1,5 @@
 """The linkage as a whole over a motion: whether it may give way by its linear frame, and its numbers at some poses."""
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -69,6 +68,24 @@ class LinkageOverMotion:
     displacement_pose: int
 
 
+def when(moved: CaseMotion, pose: int) -> Reason:
+    """Tell which pose of a motion one is.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    pose : int
+        Its number.
+
+    Returns
+    -------
+    Reason
+    """
+    coordinate = moved.motion.coordinate
+    at = float(coordinate.measure.told(moved.motion.angles[pose]))
+    return reason("pose_of_motion", coordinate=coordinate.name, value=at, unit=coordinate.measure.unit)
+
+
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
     """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
@@ -104,10 +121,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         if not found:
             continue
         least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
-        where = reason(
-            "pose_of_motion", coordinate=motion.coordinate.name, value=math.degrees(motion.angles[i]), unit="deg"
-        )
-        how, remedy = reason("unstable_at_pose", pose=where, factor=least), reason("check_that_pose")
+        how, remedy = reason("unstable_at_pose", pose=when(moved, i), factor=least), reason("check_that_pose")
         slack = stated_scatter(case, load_case).times(eyes)
         pins = forces_at(moved, load_case, i).pins if case.layered else None
         rims = None if pins is None else rim_factors(pins)
@@ -213,10 +227,7 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
     """
     for one in asked(moved.case, LimitLoadCheck):
         for load_case, over in found.items():
-            pose = None
-            if over.limit_pose >= 0:
-                at, motion = moved.motion.told(moved.motion.angles[over.limit_pose]), moved.motion
-                pose = reason("pose_of_motion", coordinate=motion.coordinate.name, value=float(at), unit=motion.unit)
+            pose = when(moved, over.limit_pose) if over.limit_pose >= 0 else None
             counts = {"looked_at": len(over.poses), "poses": len(moved.motion.angles)}
             where = reason("least_of_poses", **counts, pose=pose)
             yield limit_load_outcome(one, load_case, over.limit_load, where)

@@ -252,23 +252,6 @@ def _doubt(loose: LooseMotion, load_case: str, link: str, pose: int) -> Growths:
 
 
 @dataclass(frozen=True, kw_only=True)
-class MotionGrowth:
-    """Growth of the largest numbers of a load case over a motion; what does not grow is left out.
-
-    Attributes
-    ----------
-    stress, columns : mapping of str to Scatter
-        Link -> growth of its stress, and of the inverse of its buckling factor.
-    joints : mapping of str to Scatter
-        Joint -> growth of its force.
-    """
-
-    stress: Mapping[str, Scatter] = field(default_factory=dict)
-    columns: Mapping[str, Scatter] = field(default_factory=dict)
-    joints: Mapping[str, Scatter] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
 class _GrownPose:
     """Numbers of a load case in an undeformed pose, and their growth."""
 
@@ -280,7 +263,7 @@ class _GrownPose:
 
 def motion_growth(
     moved: CaseMotion, loaded: Mapping[str, Sequence[LinkLoads]], evaluated: NDArray[np.bool_]
-) -> dict[str, MotionGrowth]:
+) -> dict[str, Growths]:
     """Return what the deformed shape makes of the largest numbers over a motion.
 
     Parameters
@@ -293,7 +276,7 @@ def motion_growth(
 
     Returns
     -------
-    dict of str to MotionGrowth
+    dict of str to Growths
         By load case.
     """
     found = {}
@@ -302,7 +285,7 @@ def motion_growth(
         histories = {link: every for link, every in own.items() if every}
         poses = [_grown_at(moved, load_case, i, histories) for i in _poses(moved, load_case, histories, evaluated)]
         joints = moved.case.linkage.joints_of
-        found[load_case] = MotionGrowth(
+        found[load_case] = Growths(
             stress=_largest_grown([(one.stress, one.growths.stress) for one in poses]),
             columns=_largest_grown(
                 [(one.inverse, {x: _worst(one.growths.joints, joints(x)) for x in one.inverse}) for one in poses]

@@ -200,25 +200,6 @@ class CorotationalElements:
         points.gradient[:, 3:, :3] += np.eye(3)
         return points.map(self._at_ends(loads).reshape(-1, 1, 6))
 
-    def potential(self, displacements: Floats, rotations: Floats, factor: float) -> Jet:
-        """Return the strain energy less the work of the line loads.
-
-        Parameters
-        ----------
-        displacements : ndarray, shape (m, 2, 3)
-            Of both nodes [mm].
-        rotations : ndarray, shape (m, 2, 3, 3)
-            Of both nodes.
-        factor : float
-            Share of the line loads.
-
-        Returns
-        -------
-        Jet
-            (m, 1) [N·mm].
-        """
-        return self._potential(self.natural(displacements, rotations), displacements, rotations, factor * self.loads)
-
     def _potential(self, natural: tuple[Jet, Jet], displacements: Floats, rotations: Floats, loads: Floats) -> Jet:
         v, axes = natural
         if not loads.any():

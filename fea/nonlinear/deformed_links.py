@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -168,10 +169,10 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     LinkLoads
         Loads with the pairs of forces.
     """
-    stations = [(float(pin.centre[0]), pin.name, pin.wrench) for pin in loads.pins]
-    stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
-    stations.sort(key=lambda station: station[0])
-    normal, extra = 0.0, {name: np.zeros(6) for _, name, _ in stations}
+    names = [*(pin.name for pin in loads.pins), *(end.name for end in loads.ends)]
+    held = list(zip(names, loads.wrenches, strict=True))
+    stations = sorted(((float(place[0]), name, wrench) for name, (place, wrench) in held), key=itemgetter(0))
+    normal, extra = 0.0, {name: np.zeros(6) for name in names}
     for _, name, wrench in stations:
         extra[name][3:] += np.cross(moved[name], [0.0, wrench[1], wrench[2]])
     for (x0, first, wrench), (x1, last, _) in itertools.pairwise(stations):
@@ -180,11 +181,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
             shear = normal * (moved[last] - moved[first]) / (x1 - x0)
             extra[first][1:3] += shear[1:]
             extra[last][1:3] -= shear[1:]
-    return replace(
-        loads,
-        pins=tuple(replace(pin, wrench=pin.wrench + extra[pin.name]) for pin in loads.pins),
-        ends=tuple(replace(end, wrench=end.wrench + extra[end.name]) for end in loads.ends),
-    )
+    return loads.with_wrenches(wrench + extra[name] for name, (_, wrench) in held)
 
 
 def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
@@ -210,16 +207,12 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
     CannotRunError
         Where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
     """
-    places = [place for place, _ in loads.wrenches]
+    places, wrenches = map(list, zip(*loads.wrenches, strict=True))
     reach = max(float(np.linalg.norm(place - places[0])) for place in places)
     total = loads.resultant()
     size = sum(float(np.linalg.norm(part[:3])) for part in loads.parts())
     if size <= NOTHING * whole:
-        return replace(
-            loads,
-            pins=tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins),
-            ends=tuple(replace(end, wrench=np.zeros(6)) for end in loads.ends),
-        )
+        return loads.with_wrenches(np.zeros(6) for _ in loads.wrenches)
     left = max(float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:])) / reach if reach else 0.0)
     if left > LARGEST_SHIFT * size:
         raise CannotRunError(
@@ -227,15 +220,9 @@ def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
             f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
             "stiffen the link"
         )
-    clamps = [i for i, end in enumerate(loads.ends) if end.clamped or not loads.pins]
-    if clamps:
-        holds = max(clamps, key=lambda i: float(np.linalg.norm(loads.ends[i].wrench[3:])))
-        ends, end = list(loads.ends), loads.ends[holds]
-        ends[holds] = replace(end, wrench=end.wrench + shifted(-total, -end.point))
-        return replace(loads, ends=tuple(ends))
-    takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
-    strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
-    pins = list(loads.pins)
-    taken = shifted(-total, -pins[strongest].centre)
-    pins[strongest] = replace(pins[strongest], wrench=pins[strongest].wrench + taken)
-    return replace(loads, pins=tuple(pins))
+    clamps = [i for i, end in enumerate(loads.ends, len(loads.pins)) if end.clamped or not loads.pins]
+    pins = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
+    takes, part = (clamps, slice(3, 6)) if clamps else (pins, slice(3))
+    holds = max(takes, key=lambda i: float(np.linalg.norm(wrenches[i][part])))
+    wrenches[holds] = wrenches[holds] + shifted(-total, -places[holds])
+    return loads.with_wrenches(wrenches)

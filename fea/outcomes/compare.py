@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from alula.fea.beam.cut_beam import beam_sections
+from alula.fea.beam.section_stress import SectionStress
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.outcomes.result import SectionComparison
 from alula.fea.solid.stress import StressField
@@ -65,34 +66,42 @@ def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[
     -------
     tuple of SectionComparison
     """
+    found = _at_cuts(body, beam, stress) if beam.cuts else _at_stations(body, beam, stress)
     if beam.cuts:
-        return _compare_cuts(body, beam, stress)
-    bends = float(beam.bending.max()) > BENDS * float(abs(beam.axial).max())
-    scale = float(beam.bending.max()) if bends else float(abs(beam.axial).max())
+        bending, axial = (
+            max((abs(getattr(hand, kind)) for _, hand, _, _ in found), default=0.0) for kind in ("bending", "axial")
+        )
+    else:
+        bending, axial = float(beam.bending.max()), float(abs(beam.axial).max())
+    bends = bending > BENDS * axial
+    kind, scale = ("bending", bending) if bends else ("axial", axial)
     if scale == 0.0:
         return ()
-    section = body.part.section
+    rows = ((x, getattr(hand, kind), bent if bends else pulled) for x, hand, pulled, bent in found)
+    return tuple(
+        SectionComparison(x=x, kind=kind, hand=ours, solid=theirs, difference=(theirs - ours) / scale)
+        for x, ours, theirs in rows
+    )
+
+
+Found = list[tuple[float, SectionStress, float, float]]
+"""Station, stresses by hand, and axial and bending stress of the solid."""
+
+
+def _at_stations(body: Body, beam: BeamCheck, stress: StressField) -> Found:
+    section, found = body.part.section, []
     size = max(section.width, section.height)
-    rows = []
     for x in clear_sections(body):
-        hand = beam.stress_at(x)
         solid = stress.section(x=x, half_length=size / 4, half_y=section.half_y, half_z=section.half_z)
-        if not bends:
-            ours, theirs = hand.axial, solid.axial
-        elif section.round:
-            ours, theirs = hand.bending, math.hypot(solid.bending_y, solid.bending_z)
-        else:
-            ours, theirs = hand.bending, abs(solid.bending_y) + abs(solid.bending_z)
-        rows.append(
-            SectionComparison(
-                x=x, kind="bending" if bends else "axial", hand=ours, solid=theirs, difference=(theirs - ours) / scale
-            )
-        )
-    return tuple(rows)
+        bent = abs(solid.bending_y) + abs(solid.bending_z)
+        if section.round:
+            bent = math.hypot(solid.bending_y, solid.bending_z)
+        found.append((x, beam.stress_at(x), solid.axial, bent))
+    return found
 
 
-def _compare_cuts(body: Body, beam: BeamCheck, stress: StressField) -> tuple[SectionComparison, ...]:
-    """Do the same at the sections of a part from a file where beam theory holds.
+def _at_cuts(body: Body, beam: BeamCheck, stress: StressField) -> Found:
+    """The same at the sections of a part from a file where beam theory holds.
 
     The solid's stress is linear in y and z as fitted: at the centroid, and at the hull's corner that differs most.
     """
@@ -110,16 +119,4 @@ def _compare_cuts(body: Body, beam: BeamCheck, stress: StressField) -> tuple[Sec
         slopes = np.array([solid.bending_z, solid.bending_y]) / [cut.width / 2, cut.height / 2]
         bending = float(np.abs((np.array(cut.hull) - cut.centre) @ slopes).max())
         found.append((cut.x, beam.stress_at(cut.x), solid.axial + float(slopes @ cut.centre), bending))
-    bending, axial = (max((abs(value) for value in values), default=0.0) for values in (
-        [hand.bending for _, hand, _, _ in found], [hand.axial for _, hand, _, _ in found]))  # fmt: skip
-    bends = bending > BENDS * axial
-    scale = bending if bends else axial
-    if scale == 0.0:
-        return ()
-    pairs = [(x, hand.bending, bent) if bends else (x, hand.axial, pulled) for x, hand, pulled, bent in found]
-    return tuple(
-        SectionComparison(
-            x=x, kind="bending" if bends else "axial", hand=ours, solid=theirs, difference=(theirs - ours) / scale
-        )
-        for x, ours, theirs in pairs
-    )
+    return found

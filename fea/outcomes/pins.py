@@ -223,17 +223,8 @@ def pin_stress(
         most = max(most, force * (other.middle - other.low + gap + arm) + moment)
         shear_force = max(shear_force, force * shear)
     least = max(force * gap / 2.0, moment - force * (max(eye.height for eye in eyes) + gap) / 2.0)
-    bent = 32.0 / (math.pi * diameter**3)
-    sheared = _shear_stress(1.0, diameter, poisson)
-    low = max(least * bent, math.sqrt(3.0) * force * sheared)
-    high = max(most * bent, math.sqrt(3.0) * shear_force * sheared)
-    return PinStress(
-        lever=lever,
-        moment=Band(value=most, low=least, high=most, sources=SOURCES),
-        bending=Band(value=most * bent, low=least * bent, high=most * bent, sources=SOURCES),
-        shear=shear_force * sheared,
-        equivalent=Band(value=high, low=low, high=high, sources=SOURCES),
-    )
+    borne = Band(value=most, low=least, high=most, sources=SOURCES)
+    return _stressed(lever, borne, (force, shear_force), diameter, poisson)
 
 
 def fork_pin_stress(
@@ -266,16 +257,21 @@ def fork_pin_stress(
     wrench = np.array([force, 0.0, 0.0, 0.0, moment, 0.0])
     wrench[4] += force * fork.middle
     most, shear = map(float, largest_between((fork, eye), 0.0, -wrench, wrench))
+    borne = Band(value=most, low=force * free / 4.0, high=most, sources=SOURCES)
+    return _stressed(cheek / 2.0 + free + eye.height / 4.0, borne, (force / 2.0, shear), diameter, poisson)
+
+
+def _stressed(lever: float, moment: Band, shears: tuple[float, float], diameter: float, poisson: float) -> PinStress:
+    """Stresses of a pin under a moment and, at the least and at the most, these shear forces."""
     bent, sheared = 32.0 / (math.pi * diameter**3), _shear_stress(1.0, diameter, poisson)
-    least = force * free / 4.0
-    low = max(least * bent, math.sqrt(3.0) * force / 2.0 * sheared)
-    high = max(most * bent, math.sqrt(3.0) * shear * sheared)
+    ends = zip((moment.low, moment.high), shears, strict=True)
+    low, high = (max(bending * bent, math.sqrt(3.0) * shear * sheared) for bending, shear in ends)
     return PinStress(
-        lever=cheek / 2.0 + free + eye.height / 4.0,
-        moment=Band(value=most, low=least, high=most, sources=SOURCES),
-        bending=Band(value=most * bent, low=least * bent, high=most * bent, sources=SOURCES),
-        shear=shear * sheared,
-        equivalent=Band(value=high, low=low, high=high, sources=SOURCES),
+        lever=lever,
+        moment=moment,
+        bending=moment.times(bent),
+        shear=shears[1] * sheared,
+        equivalent=replace(moment, value=high, low=low, high=high),
     )
 
 
@@ -330,19 +326,10 @@ def _stresses_between(case: Case, joint: str, wrenches: NDArray[np.float64]) -> 
     """Stresses of a pin between layers under each of some wrenches (n, 6) on the joint's second link."""
     (diameter, poisson), rise = _pin_of(case, joint), case.linkage.rise(joint)
     first = shifted(-wrenches, np.array([0.0, 0.0, rise]))
-    found = []
-    for moment, shear in zip(*largest_between(eyes(case, joint), rise, first, wrenches), strict=True):
-        bent = 32.0 / (math.pi * diameter**3) * float(moment)
-        sheared = _shear_stress(float(shear), diameter, poisson)
-        stress = PinStress(
-            lever=abs(rise),
-            moment=Band.exact(float(moment)),
-            bending=Band.exact(bent),
-            shear=sheared,
-            equivalent=Band.exact(max(bent, math.sqrt(3.0) * sheared)),
-        )
-        found.append(stress)
-    return found
+    return [
+        _stressed(abs(rise), Band.exact(float(moment)), (float(shear), float(shear)), diameter, poisson)
+        for moment, shear in zip(*largest_between(eyes(case, joint), rise, first, wrenches), strict=True)
+    ]
 
 
 def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: JointForces) -> PinStress:
@@ -380,13 +367,8 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
         return Band(value=value, low=min(ends), high=max(ends), sources=COUPLES)
 
     shear = found.shear * max(one.shear / (plain.shear or math.inf) for one in (plain, *others))
-    return replace(
-        found,
-        moment=widened("moment"),
-        bending=widened("bending"),
-        shear=shear,
-        equivalent=widened("equivalent"),
-    )
+    moment, bending, equivalent = map(widened, ("moment", "bending", "equivalent"))
+    return replace(found, moment=moment, bending=bending, shear=shear, equivalent=equivalent)
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:

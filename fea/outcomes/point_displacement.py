@@ -25,7 +25,7 @@ from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.softened import displaced
 from alula.fea.nonlinear.stability import LARGE, SNAP, growth
 from alula.fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
-from alula.fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
+from alula.fea.outcomes.point_shares import LoadedLinkage, Shares, condensable, has_centre_line, shares_of
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.fea.standing.case_statics import locks_on_tight_pins
 from alula.fea.standing.joint_forces import JointForces
@@ -42,69 +42,49 @@ WORTH_TELLING = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
-class PointDisplacement:
+class PointDisplacement(LoadedLinkage):
     """How far a point moves under a load case, and by which model.
 
     Attributes
     ----------
-    case : Case
-    load_case, link, point : str
-    moved : LargeDisplacement
-        The frame's answer.
+    link, point : str
     shares : Shares
         What every link adds.
-    forces : JointForces or None
-        Joint forces.
     why : Reason or None
         Why nothing tells it; None where something does.
     """
 
-    case: Case
-    load_case: str
     link: str
     point: str
-    moved: LargeDisplacement
     shares: Shares
-    forces: JointForces | None = None
     why: Reason | None = None
 
     @classmethod
-    def of(
-        cls,
-        case: Case,
-        at: tuple[str, str],
-        load_case: str,
-        moved: LargeDisplacement,
-        links: Mapping[str, LinkResult],
-        free: Mapping[str, LinkLoads],
-        forces: JointForces | None = None,
-    ) -> "PointDisplacement":
+    def at(cls, loaded: LoadedLinkage, link: str, point: str) -> "PointDisplacement":
         """Return how far a point moves.
 
         Parameters
         ----------
-        case : Case
-        at : tuple of 2 str
-            Link and point.
-        load_case, moved, links, free, forces
-            As of ``point_outcome``.
+        loaded : LoadedLinkage
+        link, point : str
 
         Returns
         -------
         PointDisplacement
         """
-        link, point = at
+        case, moved = loaded.case, loaded.moved
         displacement, factor, shares = moved.points.get((link, point)), moved.factor, Shares()
         why: Reason | None = reason("frame_gives_no_displacement", why=moved.reason)
         if displacement is not None and moved.state in ("small", "deformed", "off"):
             size, why = float(np.linalg.norm(displacement)), None
             near = factor is not None and factor < SNAP
-            shares = shares_of(case, moved, links, free, link, point, forces)
+            shares = shares_of(loaded, link, point)
             if shares.framed is not None:
                 size = shares.framed.displaced(link, point).value
             blind = [other for other in shares.beams if not has_centre_line(case, other)]
             if blind:
-                untold = free and moved.state == "small" and not isinstance(links[blind[0]], SolidResult)
+                solved = loaded.free and isinstance(loaded.links[blind[0]], SolidResult)
+                untold = loaded.free and moved.state == "small" and not solved
                 why = reason(
                     "solid_tells_how_far_it_gives" if untold else "frame_is_blind",
                     link=blind[0],
@@ -116,9 +96,7 @@ class PointDisplacement:
                 else:
                     what = reason("moves_it_far", displacement=size, most=LARGE)
                 why = reason("linear_frame_not_valid", why=what)
-        return cls(
-            case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, forces=forces, why=why
-        )
+        return cls(**vars(loaded), link=link, point=point, shares=shares, why=why)
 
     def _by(self, cause: Alternatives[LargeDisplacement]) -> Scatter:
         """Return what a cause makes of the ends of the band: the point moves elsewhere, by other links' eyes."""
@@ -388,7 +366,7 @@ class PointDisplacement:
         ends = [displaced(moved.frame, link, point, factor) for factor in (low, high) if factor > 0.0]
         return Band(value=size, low=min(size, *ends) if low > 0.0 else 0.0, high=max(size, *ends), sources=sources)
 
-    def meshes_to_refine(self, limit: float, links: Mapping[str, LinkResult]) -> dict[str, float]:
+    def meshes_to_refine(self, limit: float) -> dict[str, float]:
         """Return the error of displacements that the meshes of links must keep to for a decision.
 
         The links whose meshes leave most open of the point's displacement are to leave equally much, and all of them
@@ -399,8 +377,6 @@ class PointDisplacement:
         ----------
         limit : float
             [mm]
-        links : mapping of str to LinkResult
-            Under the load case.
 
         Returns
         -------
@@ -419,44 +395,28 @@ class PointDisplacement:
         each = _equal_share(list(missing.values()), ROOM * way / width * sum(missing.values()))
         wanted = {}
         for link, open_by in missing.items():
-            result = links[link]
+            result = self.links[link]
             if open_by > each and isinstance(result, SolidResult):
                 wanted[link] = result.discretisation.displacement.index * each / open_by
         return wanted
 
 
-def point_outcome(
-    case: Case,
-    one: Asked,
-    load_case: str,
-    moved: LargeDisplacement,
-    links: Mapping[str, LinkResult],
-    free: Mapping[str, LinkLoads],
-    forces: JointForces | None = None,
-) -> CheckOutcome:
+def point_outcome(loaded: LoadedLinkage, one: Asked) -> CheckOutcome:
     """Return the outcome of how far a point of the linkage moves: linear, or on the deformed shape where that rules.
 
     Parameters
     ----------
-    case : Case
+    loaded : LoadedLinkage
     one : Asked
         Of a point.
-    load_case : str
-        Its name.
-    moved : LargeDisplacement
-        The frame's answer.
-    links : mapping of str to LinkResult
-    free : mapping of str to LinkLoads
-        Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
-    forces : JointForces, optional
-        Joint forces, with the frame of solids where these come from one.
 
     Returns
     -------
     CheckOutcome
     """
-    told = PointDisplacement.of(case, place_of(case, one.name), load_case, moved, links, free, forces)
-    found = one.outcome(load_case, told.value, told.why or "")
+    case, moved = loaded.case, loaded.moved
+    told = PointDisplacement.at(loaded, *place_of(case, one.name))
+    found = one.outcome(loaded.load_case, told.value, told.why or "")
     if told.why:
         return found
     notes: list[Reason | str | None] = [told.no_end, *(() if moved.frame is None else moved.frame.notes)]
@@ -476,7 +436,7 @@ def point_outcome(
         )
         notes += unknown_lengths(case) if tilting is not None else ()
     if found.verdict is Verdict.UNDECIDED:
-        notes += _remedies(told, one.limit, links)
+        notes += _remedies(told, one.limit)
     by_model = reason(
         "displacement_on_deformed_shape" if moved.followed else "displacement_by_linear_theory",
         model=told.shares.model,
@@ -498,17 +458,18 @@ def meshes_to_refine(
     Parameters
     ----------
     case, load_case, moved, links, free, forces
-        As of ``point_outcome``.
+        As of ``LoadedLinkage``.
 
     Returns
     -------
     dict of str to float
         As of ``PointDisplacement.meshes_to_refine``.
     """
+    loaded = LoadedLinkage(case=case, load_case=load_case, moved=moved, links=links, free=free, forces=forces)
     found: dict[str, float] = {}
     for one in asked(case, DisplacementCheck, quantity=Quantity.DISPLACEMENT):
-        told = PointDisplacement.of(case, place_of(case, one.name), load_case, moved, links, free, forces)
-        for link, error in told.meshes_to_refine(one.limit, links).items():
+        told = PointDisplacement.at(loaded, *place_of(case, one.name))
+        for link, error in told.meshes_to_refine(one.limit).items():
             found[link] = min(error, found.get(link, math.inf))
     return found
 
@@ -516,7 +477,7 @@ def meshes_to_refine(
 _NO_MESH = reason("no_mesh_would_decide")
 
 
-def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[Reason]:
+def _remedies(told: PointDisplacement, limit: float) -> list[Reason]:
     """Say what would decide, where something would."""
     if told.free_motion > limit:
         return [reason("less_play_would_decide")]
@@ -525,10 +486,10 @@ def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkRes
     if told.shares.framed is not None:
         exact = Quantity.DISPLACEMENT.sense.verdict(told.band(meshes=0.0), limit)
         return [_NO_MESH if exact is Verdict.UNDECIDED else reason("smaller_mesh_size_would_decide")]
-    wanted = told.meshes_to_refine(limit, links)
+    wanted = told.meshes_to_refine(limit)
     if not told.shares.beams and not wanted:
         return [_NO_MESH]
-    stopped = {link: links[link] for link in wanted}
+    stopped = {link: told.links[link] for link in wanted}
     return [
         reason("refinement_of_link_ended", link=link, why=result.discretisation.stopped)
         for link, result in stopped.items()

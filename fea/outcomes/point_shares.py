@@ -97,38 +97,50 @@ class Shares:
         return {link: tuple(work.band(meshes=meshes, sunk=sunk) for work in works) for link, works in every}
 
 
-def shares_of(
-    case: Case,
-    moved: LargeDisplacement,
-    links: Mapping[str, LinkResult],
-    free: Mapping[str, LinkLoads],
-    link: str,
-    point: str,
-    forces: JointForces | None = None,
-) -> Shares:
+@dataclass(frozen=True, kw_only=True)
+class LoadedLinkage:
+    """A load case with what tells how far points of the linkage move.
+
+    Attributes
+    ----------
+    case : Case
+    load_case : str
+    moved : LargeDisplacement
+        The frame's answer.
+    links : mapping of str to LinkResult
+        Whose solids tell it, where these were solved.
+    free : mapping of str to LinkLoads
+        Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
+    forces : JointForces or None
+        Joint forces; a frame of solids that gave them tells how far points move.
+    """
+
+    case: Case
+    load_case: str
+    moved: LargeDisplacement
+    links: Mapping[str, LinkResult]
+    free: Mapping[str, LinkLoads]
+    forces: JointForces | None = None
+
+
+def shares_of(loaded: LoadedLinkage, link: str, point: str) -> Shares:
     """Return the work that unit loads at a point do on every link, by its solid where one was solved.
 
     Parameters
     ----------
-    case : Case
-    moved : LargeDisplacement
-        The frame's answer under the load case, with a frame.
-    links : mapping of str to LinkResult
-        Under the load case.
-    free : mapping of str to LinkLoads
-        Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
+    loaded : LoadedLinkage
+        With a frame.
     link, point : str
-    forces : JointForces, optional
-        Joint forces; a frame of solids that gave them tells how far points move.
 
     Returns
     -------
     Shares
     """
+    case, moved, forces = loaded.case, loaded.moved, loaded.forces
     assert moved.frame is not None
     if forces is not None and forces.solids:
         return Shares(beams=tuple(other for other in case.checked_links if other not in forces.solids), framed=forces)
-    if not free:
+    if not loaded.free:
         return Shares(beams=case.checked_links)
     pose, held = moved.frame.pose, moved.frame.held
     longest = pose.linkage.longest
@@ -140,14 +152,14 @@ def shares_of(
     beams: list[str] = []
     unsolved: list[str] = []
     driven = False
-    for name, real in free.items():
+    for name, real in loaded.free.items():
         every = zip(reactions, units, strict=True)
         virtual = [link_loads("unit", name, case.body(name), forces, (unit,)) for forces, unit in every]
         if real.size(longest) == 0.0 or max(loads.size(longest) for loads in virtual) <= NOTHING:
             continue
         # A load along a slot, at the pin in it, balances on no solid.
         left = max(np.abs(loads.resultant() / np.repeat([1.0, longest], 3)).max() for loads in virtual)
-        result, body = links[name], case.body(name)
+        result, body = loaded.links[name], case.body(name)
         plain = all(pin.foot is None and pin.slot == 0.0 for pin in body.pins) and has_centre_line(case, name)
         # The plates of a pair between layers bear differently, and one of them does not tell what both give.
         alike = case.links[name].count == 1 or forces is None or forces.pins is None

@@ -95,9 +95,8 @@ def without_rounding(loads: LinkLoads, size: float, length: float) -> LinkLoads:
     """
     if acts(loads, size, length):
         return loads
-    pins = tuple(replace(pin, wrench=np.zeros_like(pin.wrench)) for pin in loads.pins)
-    ends = tuple(replace(end, wrench=np.zeros_like(end.wrench)) for end in loads.ends)
-    return replace(loads, pins=pins, ends=ends, couples=(), lines=(), inertia=None)
+    nothing = loads.with_wrenches(np.zeros_like(wrench) for _, wrench in loads.wrenches)
+    return replace(nothing, couples=(), lines=(), inertia=None)
 
 
 def _size(wrench: Real, length: float) -> float:

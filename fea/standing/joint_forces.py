@@ -12,7 +12,6 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.linkage_frame import out_of_plane
-from alula.fea.standing.deviation import Deviation
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
@@ -38,6 +37,25 @@ OF_SOLIDS = {
     LAYERED_FRAME: "spatial frame of the links' solids in layers, with pins as beams between them",
 }
 """The same where links are no beams but condensed solids."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Deviation:
+    """The answer with one cause of doubt about the links' stiffness at its end.
+
+    Attributes
+    ----------
+    source : Source or None
+        The cause; None for a pin that sinks into its bore, which no band holds.
+    reactions : Reactions
+        Joint forces and drive torque.
+    points : mapping of tuple of 2 str to ndarray
+        (link, point) -> its displacement (3,) [mm].
+    """
+
+    source: Source | None
+    reactions: Reactions
+    points: Mapping[tuple[str, str], Real]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -76,10 +76,7 @@ class VariantNumber:
         -------
         VariantNumber
         """
-        value = float(value)
-        return cls(
-            quantity=quantity, unit=unit, value=value, low=value, high=value, subject=subject, load_case=load_case
-        )
+        return cls.banded(quantity, unit, Band.exact(value), subject, load_case)
 
     @classmethod
     def banded(cls, quantity: str, unit: str, band: Band, subject: str, load_case: str = "") -> "VariantNumber":
@@ -114,18 +111,10 @@ class VariantNumber:
         -------
         VariantNumber
         """
-        return cls(
-            check=outcome.name,
-            subject=str(outcome.subject),
-            load_case=outcome.load_case,
-            quantity=outcome.quantity.value,
-            unit=outcome.unit or "1",
-            value=float(outcome.value.value),
-            low=float(outcome.value.low),
-            high=float(outcome.value.high),
-            limit=float(outcome.limit),
-            verdict=outcome.verdict if outcome.applies else None,
-        )
+        about, unit = str(outcome.subject), outcome.unit or "1"
+        found = cls.banded(outcome.quantity.value, unit, outcome.value, about, outcome.load_case)
+        verdict = outcome.verdict if outcome.applies else None
+        return replace(found, check=outcome.name, limit=float(outcome.limit), verdict=verdict)
 
 
 @dataclass(frozen=True, kw_only=True)

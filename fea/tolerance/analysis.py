@@ -279,19 +279,14 @@ def _numbers(check: SampledCheck, found: Numbers, first: Real, total: Real) -> t
         at = len(check.outcomes) + row
         numbers.append(
             ToleranceNumber(
-                check="",
                 subject="the drive",
                 load_case=load_case,
                 quantity=f"drive {effort.word}",
                 unit=effort.unit,
-                limit=np.nan,
-                at_least=True,
                 nominal=(torque, torque, torque),
                 values=found.torque[row],
                 low=found.torque[row],
                 high=found.torque[row],
-                certain=None,
-                possible=None,
                 first=first[at],
                 total=total[at],
             )

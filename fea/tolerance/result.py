@@ -83,19 +83,19 @@ class ToleranceNumber:
         nothing varies, and where a few samples next to a dead point make all of the variance.
     """
 
-    check: str
+    check: str = ""
     subject: str
     load_case: str
     quantity: str
     unit: str
-    limit: float
-    at_least: bool
+    limit: float = np.nan
+    at_least: bool = True
     nominal: tuple[float, float, float]
     values: Real
     low: Real
     high: Real
-    certain: Probability | None
-    possible: Probability | None
+    certain: Probability | None = None
+    possible: Probability | None = None
     first: Real
     total: Real
 

@@ -103,13 +103,7 @@ class RimModes:
 
 
 def linkage_modes(
-    case: Case,
-    load_case: str,
-    frame: LinkageFrame,
-    masses: Mapping[str, PartMass],
-    *,
-    count: int = 4,
-    subdivisions: int = SUBDIVISIONS,
+    case: Case, load_case: str, frame: LinkageFrame, masses: Mapping[str, PartMass], *, count: int = 4
 ) -> LinkageModes:
     """Return the lowest natural modes of a linkage.
 
@@ -125,8 +119,6 @@ def linkage_modes(
         Of the parts, by link.
     count : int, optional
         Modes.
-    subdivisions : int, optional
-        Elements along the longest beam.
 
     Returns
     -------
@@ -137,7 +129,7 @@ def linkage_modes(
     CannotRunError
         Where the held frame moves without strain, or what moves has no mass.
     """
-    own = _Held.of(case, load_case, frame, masses, subdivisions)
+    own = _Held(case, load_case, frame, masses)
     tight = EquilibriumPath(own.model)
     beams = beam_answers(tight, own.held.end_forces)
 
@@ -180,7 +172,7 @@ def on_rims(case: Case, found: LinkageModes, masses: Mapping[str, PartMass]) -> 
     pins = pin_states(case, found.frame)
     if pins is None:
         return found
-    own = _Held.of(case, found.load_case, found.frame, masses, SUBDIVISIONS)
+    own = _Held(case, found.load_case, found.frame, masses)
     tangent = pins.tangent(pins.radii.value, pins.value)
     path = EquilibriumPath(own.model)
     state = RimPath(pins.rims.divided(own.divided, own.parents), path, own.drive(path))
@@ -203,47 +195,22 @@ def on_rims(case: Case, found: LinkageModes, masses: Mapping[str, PartMass]) -> 
     return replace(found, modes=with_low_ends(found.modes, modes), rims=rims)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class _Held:
     """A linkage in a pose with divided beams, held by its drive, under its loads.
 
     ``divided`` is held rigidly and ``model`` by the drive's stiffness.
     """
 
-    case: Case
-    frame: LinkageFrame
-    divided: FrameModel
-    parents: NDArray[np.int64]
-    held: FrameSolution
-    model: FrameModel
-    guide_forces: Floats
-    stiffness: float | None
-    mass: MassMatrix
-    doubt: FlexibilityDoubt
-
-    @classmethod
-    def of(
-        cls, case: Case, load_case: str, frame: LinkageFrame, masses: Mapping[str, PartMass], subdivisions: int
-    ) -> "_Held":
-        divided, parents = divide(frame, subdivisions)
-        held = solve_frame(divided)
-        model, guide_forces = divided, held.guide_forces
-        stiffness = _drive_stiffness(case, frame)
-        if stiffness is not None:
-            model, guide_forces = _released(case, frame, divided, held)
+    def __init__(self, case: Case, load_case: str, frame: LinkageFrame, masses: Mapping[str, PartMass]) -> None:
+        self.frame, self.stiffness = frame, _drive_stiffness(case, frame)
+        self.divided, self.parents = divide(frame, SUBDIVISIONS)
+        self.held = solve_frame(self.divided)
+        self.model, self.guide_forces = self.divided, self.held.guide_forces
+        if self.stiffness is not None:
+            self.model, self.guide_forces = _released(case, frame, self.divided, self.held)
         carried = case.load_cases[load_case].carried
-        return cls(
-            case=case,
-            frame=frame,
-            divided=divided,
-            parents=parents,
-            held=held,
-            model=model,
-            guide_forces=guide_forces,
-            stiffness=stiffness,
-            mass=mass_matrix(case, frame, model, parents, masses, carried=carried),
-            doubt=FlexibilityDoubt(case, frame, model, parents),
-        )
+        self.mass = mass_matrix(case, frame, self.model, self.parents, masses, carried=carried)
+        self.doubt = FlexibilityDoubt(case, frame, self.model, self.parents)
 
     def drive(self, path: EquilibriumPath) -> Floats:
         """Stiffness of the drive (k + g, k + g)."""

@@ -5,17 +5,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from alula.geometry.linkage.placement import Placement
 from alula.loads.records.applied import Load
 
-Real = NDArray[np.float64]
 End = tuple[str, str]
-"""Link and point; the point is "" for the origin of the link's frame."""
-
-
+"""Link and point."""
 MarkKind = Literal["coil", "cord", "spiral", "wall"]
 
 
@@ -60,11 +54,6 @@ class Acting(ABC):
 
     lasting: ClassVar[bool] = False
 
-    @property
-    def ends(self) -> tuple[End, ...]:
-        """On what it acts: rows and columns of its tangent; of no use without one."""
-        return ()
-
     @abstractmethod
     def loads(self, place: Placement) -> tuple[Load, ...]:
         """Return what it does to the links.
@@ -79,36 +68,6 @@ class Acting(ABC):
         tuple of Load
             At one pose or at those of ``place``.
         """
-
-    def energy(self, place: Placement) -> Real | None:
-        """Return the energy of which its loads are the negative gradient, but for a constant.
-
-        Parameters
-        ----------
-        place : Placement
-            Where the links stand.
-
-        Returns
-        -------
-        array (...) or None
-            [N mm]; None where there is none, since its loads depend on velocities or turn with their link.
-        """
-        return None
-
-    def tangent(self, place: Placement) -> Real | None:
-        """Return the derivative of what it resists, Fx, Fy and Mz at its ends, by the ends' ux, uy and rotation.
-
-        Parameters
-        ----------
-        place : Placement
-            Where the links stand, at one pose.
-
-        Returns
-        -------
-        array (3 k, 3 k) or None
-            Of its k ends [N/mm, N, N mm]; None where its loads do not follow from where the links stand.
-        """
-        return None
 
     def marks(self, place: Placement) -> tuple[ActingMark, ...]:
         """Return how it is drawn; loads without a mark of their own are drawn as arrows.

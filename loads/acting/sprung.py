@@ -88,23 +88,6 @@ class Law:
         """
         return self.stiffness
 
-    def stored(self, size: Real) -> Real:
-        """Return the integral of the effort.
-
-        Parameters
-        ----------
-        size : array (...)
-            [mm, rad]
-
-        Returns
-        -------
-        array (...)
-            [N mm], but for a constant.
-        """
-        if self.stiffness == 0.0:
-            return self.borne(size) * (size - self.size)
-        return np.asarray(self.borne(size) ** 2 / (2.0 * self.stiffness))
-
     def borne(self, size: Real) -> Real:
         """Return the effort.
 
@@ -217,17 +200,6 @@ class Sprung(Acting):
         wrenches[..., [0, 1, 5]] = -effort[..., None] * self.along.gradient(at)
         ends = zip(self.ends, wrenches, strict=True)
         return tuple(PointLoad(link=link, point=point, wrench=wrench) for (link, point), wrench in ends)
-
-    def energy(self, place: Placement) -> Real:
-        """As ``Acting.energy``: what it has stored."""
-        return self.law.stored(self.along.of(place))
-
-    def tangent(self, place: Placement) -> Real:
-        """As ``Acting.tangent``: none of a cord that is slack, or as good as."""
-        size = float(self.along.of(place))
-        if self.law.pulls and self.law.wanted(size) <= 0.0:
-            return np.zeros(2 * (3 * len(self.ends),))
-        return self.bent(places(place, self.ends), float(self.law.wanted(size)), self.law.slope(size))
 
     def bent(self, at: NDArray[np.complex128], effort: float, slope: float) -> Real:
         """Return its tangent where its ends are anywhere.

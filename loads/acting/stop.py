@@ -14,7 +14,7 @@ from alula.geometry.base.model import CaseModel, Name, one_of, refusal
 from alula.geometry.base.units import parse
 from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.linkage.placement import Placement
-from alula.loads.acting.acting import Acting, ActingMark, End
+from alula.loads.acting.acting import Acting, ActingMark
 from alula.loads.acting.sizes import Angle, places, travel
 from alula.loads.records.applied import Load
 
@@ -118,8 +118,7 @@ class Bound(Acting):
     """A stop in a linkage.
 
     What it bears does not follow from where the links stand: it is whatever the balance asks for, and takes the place
-    of the drive's effort there (``alula.loads.states.standing``). So it has no loads of its own; it does not give, and
-    hence has no tangent and stores nothing.
+    of the drive's effort there (``alula.loads.states.standing``). So it has no loads of its own.
 
     Attributes
     ----------
@@ -134,18 +133,9 @@ class Bound(Acting):
     stop: Stop
     angle: Angle
 
-    @property
-    def ends(self) -> tuple[End, ...]:
-        """The points of its joint."""
-        return self.angle.ends
-
     def loads(self, place: Placement) -> tuple[Load, ...]:
         """As ``Acting.loads``: none."""
         return ()
-
-    def energy(self, place: Placement) -> Real:
-        """As ``Acting.energy``: nothing is stored."""
-        return np.zeros(place.shape)
 
     def value(self, place: Placement) -> Real:
         """Return the angle or the travel that it limits.
@@ -187,7 +177,7 @@ class Bound(Acting):
         """As ``Acting.marks``: a wall where the joint's second link comes to, or at its travel."""
         joint, limit = place.linkage.joints[self.stop.joint], self.stop.limit
         first, second = joint.links
-        at, pin = places(place, self.ends)
+        at, pin = places(place, self.angle.ends)
         if limit.measure is Measure.TRAVEL:
             along = place.direction(first) * np.exp(1j * joint.direction)
             at, aside = at + limit.value * along, 0j

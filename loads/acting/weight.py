@@ -2,14 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.linkage.placement import Placement, vector
-from alula.loads.acting.acting import Acting, End
-from alula.loads.acting.sizes import places
+from alula.loads.acting.acting import Acting
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, shifted
 from alula.loads.records.carried import Carried, CarriedSpread
 
@@ -19,9 +17,6 @@ Real = NDArray[np.float64]
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Weight(Acting):
     """Weight of a mass, and its inertia where the place has second rates.
-
-    Inertia follows from accelerations: its work is the change of the kinetic energy, and energy and tangent here are of
-    the weight alone. Where there is inertia, there is none of both.
 
     Attributes
     ----------
@@ -39,13 +34,6 @@ class Weight(Acting):
     gravity: Real
     carried: Carried | None = None
 
-    @property
-    def ends(self) -> tuple[End, ...]:
-        """The point at which it enters, or the origin of its link's frame."""
-        return (
-            (self.link, "" if self.carried is None or isinstance(self.carried, CarriedSpread) else self.carried.at),
-        )
-
     def loads(self, place: Placement) -> tuple[Load, ...]:
         """As ``Acting.loads``: weight and inertia as they enter the link."""
         [force] = inertia_loads(place, {self.link: self.mass}, self.gravity)
@@ -60,10 +48,6 @@ class Weight(Acting):
         arm = vector(turn * complex(*(self.mass.centroid - np.array(points[self.carried.at]))))
         return (PointLoad(link=self.link, point=self.carried.at, wrench=shifted(wrench, arm), arm=arm),)
 
-    def energy(self, place: Placement) -> Real | None:
-        """As ``Acting.energy``: the potential; None where there is inertia."""
-        return self.potential(place) if place.qddot is None else None
-
     def potential(self, place: Placement) -> Real:
         """Return the potential energy of the weight above the global origin.
 
@@ -77,18 +61,8 @@ class Weight(Acting):
         array (...)
             [N mm]
         """
-        return np.asarray(-self.mass.mass * (vector(self._centroid(place)) @ self.gravity))
-
-    def tangent(self, place: Placement) -> Real | None:
-        """As ``Acting.tangent``: how its moment changes with the arm; None where there is inertia."""
-        if place.qddot is not None:
-            return None
-        found = np.zeros((3, 3))
-        found[2, 2] = self.mass.mass * (vector(self._centroid(place) - places(place, self.ends)[0]) @ self.gravity)
-        return found
-
-    def _centroid(self, place: Placement) -> Any:
-        return place.origin(self.link) + place.direction(self.link) * complex(*self.mass.centroid)
+        centroid = place.origin(self.link) + place.direction(self.link) * complex(*self.mass.centroid)
+        return np.asarray(-self.mass.mass * (vector(centroid) @ self.gravity))
 
 
 def inertia_loads(place: Placement, masses: Mapping[str, PartMass], gravity: Real) -> tuple[BodyForce, ...]:

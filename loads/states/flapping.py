@@ -66,7 +66,7 @@ def wing_span(wing: Wing, case: Case) -> tuple[float, float, tuple[float, float]
 
 @dataclass(frozen=True)
 class FlappingAir(Acting):
-    """Air on the wings of a case, which follows from how they move: it has neither energy nor tangent.
+    """Air on the wings of a case, which follows from how they move.
 
     Attributes
     ----------

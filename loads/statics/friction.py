@@ -61,8 +61,8 @@ class Friction(Acting):
     """Friction at all joints at n poses, for one direction of the motion.
 
     It acts, but follows from the joint forces, which all else that acts brings about: it is found after that, for the
-    poses at which it was solved. It is none at rest and turns with the sense of the motion, so that it has neither
-    energy nor tangent, and where the linkage stands does not depend on it.
+    poses at which it was solved. It is none at rest and turns with the sense of the motion, so that where the
+    linkage stands does not depend on it.
 
     Attributes
     ----------

@@ -8,7 +8,7 @@ import solid_meshes
 from turning_load import BODY, POSES, RHO, history
 
 from alula.fea.elements.space import displacement_space
-from alula.fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_motion
+from alula.fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, LinkMotion
 from alula.fea.refine.level import level_of
 from alula.fea.refine.link_series import precision
 from alula.fea.refine.refinement import MeshRecord, RefinedSolid
@@ -37,12 +37,12 @@ def refined_at(mesh, pose):
     )  # fmt: skip
 
 
-def enveloped(mesh, refined, *, fatigue=False):
+def enveloped(mesh, refined):
     space = displacement_space(mesh)
-    found = link_motion(
+    found = LinkMotion(
         space, link="bar", body=BODY, material=MATERIAL, histories=[history(space)],
-        evaluated=np.ones(POSES, dtype=bool), stated="eye-faces", returns=True, threads=1,
-    ).envelope(fatigue=fatigue, refined=refined)  # fmt: skip
+        evaluated=np.ones(POSES, dtype=bool), stated="eye-faces", returns=True,
+    ).envelope(refined=refined)  # fmt: skip
     [load_case] = found.load_cases.values()
     return load_case
 
@@ -66,7 +66,7 @@ def test_a_peak_at_a_pose_that_was_not_refined_for_bears_its_own_estimate(mesh):
     assert elsewhere.stress.high > 1.05 * elsewhere.stress.value
     assert elsewhere.high[elsewhere.pose] == elsewhere.stress.high
     assert elsewhere.safety_factor.low == pytest.approx(MATERIAL.allowable / elsewhere.stress.high)
-    fatigued = enveloped(mesh, replace(confident, precision=settled), fatigue=True).fatigue
+    fatigued = enveloped(mesh, replace(confident, precision=settled)).fatigue
     assert FATIGUE_ELSEWHERE in fatigued.stress.sources
     assert fatigued.stress.high > 1.05 * fatigued.stress.value
 

@@ -6,7 +6,7 @@ from edited_cases import PLANAR
 
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.elements.space import displacement_space
-from alula.fea.motion.link_envelope import link_motion
+from alula.fea.motion.link_envelope import LinkMotion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
@@ -95,10 +95,10 @@ def test_stress_at_every_place_of_the_pin_equals_a_direct_solution() -> None:
 
 def test_the_envelope_of_a_slotted_link_has_its_direct_peaks(case, mesh, history: LinkLoads) -> None:
     material = case.material_of(LINK)
-    found = link_motion(
+    found = LinkMotion(
         displacement_space(mesh), link=LINK, body=case.body(LINK), material=material, histories=[history],
-        evaluated=np.ones(history.poses, dtype=bool), stated="eye-faces", returns=True, threads=1,
-    ).envelope(fatigue=False)  # fmt: skip
+        evaluated=np.ones(history.poses, dtype=bool), stated="eye-faces", returns=True,
+    ).envelope()  # fmt: skip
     for pose in (found.worst.pose, 9, 21):
         for field, variant in zip(direct(mesh, history, pose, material), found.worst.variants, strict=True):
             assert variant.transfer is None

@@ -264,7 +264,7 @@ def over_poses(case: Case) -> dict[Key, Band]:
     """All that an envelope tells without solids; of stress by hand the bands that it gives to that of solids."""
     moved = rubbed_motion(case)
     every = np.ones(len(moved.motion.angles), dtype=bool)
-    over = _Envelope.of(moved, every, 1, lambda message: None)
+    over = _Envelope(moved, every, 1, lambda message: None)
     told = [*over.outcomes({}), *limit_load_outcomes(over.moved, over_motion(over.moved, every))]
     for outcomes in motor_outcomes(case, "motor", case.checks["motor"]).values():  # type: ignore[arg-type]
         told += outcomes

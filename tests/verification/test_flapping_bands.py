@@ -159,7 +159,7 @@ def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
     moved = solve_case_motion(swept())
     every = np.ones(len(moved.motion.angles), dtype=bool)
     shares = otherwise(moved, every)
-    used = _Envelope.of(moved, every, 1, print).shares
+    used = _Envelope(moved, every, 1, print).shares
     assert {key: {SourceKind.AIR} <= {s.kind for s in share.sources} for key, share in used.items()} == dict.fromkeys(
         (("air", link) for link in moved.case.checked_links), True
     )

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
+from calculix_frequencies import calculix_frequencies
 from rocker_case import TOML
 from slotted_lever import slotted_lever
 
 from alula.fea.calculix import program as calculix
-from alula.fea.calculix.frequencies import calculix_frequencies
 from alula.fea.elements.mass import consistent_mass
 from alula.fea.elements.quadrature import surface_quadrature, volume_quadrature
 from alula.fea.elements.space import displacement_space

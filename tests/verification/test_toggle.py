@@ -307,7 +307,7 @@ def turning(force: float, high: float = 1.0, ends: tuple[float, float] = (90.0, 
 
 def over_toggle(case: Case) -> tuple[_Envelope, dict[tuple[str, str], Band], dict[str, Scatter]]:
     """Bands of pins and columns over a motion, and what widens those of its links' stress."""
-    over = _Envelope.of(solve_case_motion(case), np.ones(3, dtype=bool), 1, print)
+    over = _Envelope(solve_case_motion(case), np.ones(3, dtype=bool), 1, print)
     # Stress of links is that of solids, which these bands do without.
     checks = over.outcomes({})
     return over, {(c.name, c.link): c.value for c in checks}, {link: s for (_, link), s in over.shares.items()}

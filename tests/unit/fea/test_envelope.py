@@ -32,7 +32,7 @@ from alula.fea.motion.envelope import envelope_case, evaluated_poses
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
-from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
+from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.mesh_factors import MeshFactors
 from alula.fea.outcomes.pins import stress_at, stress_of
@@ -153,7 +153,7 @@ def test_no_link_passes_where_the_linkage_gives_way(result, monkeypatch):
     some = next(one for one in result.checks if one.load_case == "push")
     fails = replace(some, subject=LINKAGE, verdict=Verdict.FAIL)
     monkeypatch.setattr(envelope, "linkage_outcomes", lambda moved, evaluated: [fails])
-    over = envelope._Envelope.of(result.moved, result.evaluated, 1, lambda message: None)
+    over = envelope._Envelope(result.moved, result.evaluated, 1, lambda message: None)
     checks = [one for one in over.outcomes(result.links) if one.subject.kind == "link"]
     verdicts = {name: {one.verdict for one in checks if one.load_case == name} for name in ("spin", "push")}
     assert Verdict.PASS in verdicts["spin"]
@@ -448,11 +448,11 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
     space = displacement_space(mesh_body(case.body("rocker"), START.scaled(4.0)), order=1)
 
     def solve():
-        return link_motion(
+        return LinkMotion(
             space, link="rocker", body=case.body("rocker"), material=case.material_of("rocker"),
             histories=[replace(history, pins=tuple(pins))],
-            evaluated=np.ones(25, dtype=bool), stated="eye-faces", returns=True, threads=1,
-        ).envelope(fatigue=False)  # fmt: skip
+            evaluated=np.ones(25, dtype=bool), stated="eye-faces", returns=True,
+        ).envelope()  # fmt: skip
 
     if refused:
         with pytest.raises(CannotRunError, match="the loads leave a resultant"):

@@ -9,7 +9,7 @@ from clip_load import Clip, ClippedLoads, ClipPressure
 from turning_load import BODY, POSES, RHO, history
 
 from alula.fea.elements.space import displacement_space
-from alula.fea.motion.link_envelope import link_motion
+from alula.fea.motion.link_envelope import LinkMotion
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
 from alula.fea.tractions import link_tractions
@@ -35,9 +35,9 @@ def test_a_new_kind_of_load_acts_in_checks_and_envelopes(mesh, monkeypatch) -> N
     monkeypatch.setattr(link_tractions, "KINDS", (*link_tractions.KINDS, ClipPressure))
     space = displacement_space(mesh)
     loads = clipped(space)
-    motion = link_motion(
+    motion = LinkMotion(
         space, link="bar", body=BODY, material=CARD, histories=[loads], evaluated=np.ones(POSES, dtype=bool),
-        stated="bore-shear", returns=True, threads=1,
+        stated="bore-shear", returns=True,
     )  # fmt: skip
     pose = POSES - 1
     direct, without = (
