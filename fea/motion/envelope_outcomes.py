@@ -209,7 +209,7 @@ def _joint(
 
 
 def _growth(
-    moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_], grown: Mapping[str, MotionGrowth]
+    moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
 ) -> Scatter:
     """Return what may become of a joint's greatest force besides scattered loads."""
     growth = joint_growth(moved, load_case, joint, evaluated)
@@ -222,7 +222,7 @@ def eye_outcomes(
     moved: CaseMotion,
     loaded: Mapping[str, Sequence[LinkLoads]],
     evaluated: NDArray[np.bool_],
-    grown: Mapping[str, MotionGrowth] | None = None,
+    grown: Mapping[str, Growths] | None = None,
 ) -> Iterator[CheckOutcome]:
     """Yield the outcome of the eyes of every link that a check asks for, at the pose where they bear least.
 
@@ -259,7 +259,7 @@ def eye_outcomes(
             here = [loads.chosen(pose) for loads in plates]
             found = tuple(eye_factors(case, load_case, one, here, growth))
             outcome = _complete(eye_outcome(load_case, one, found), evaluated)
-            yield outcome.because(reason("eyes_over_motion", when=_when(moved, pose), why=outcome.reason))
+            yield outcome.because(reason("eyes_over_motion", when=when(moved, pose), why=outcome.reason))
 
 
 def _worst_bearing(
