@@ -24,6 +24,7 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     MassCheck,
     PinCheck,
+    PlasticCollapseCheck,
     SafetyFactorCheck,
     SizeCheck,
     SustainedCheck,
@@ -37,6 +38,7 @@ _QUANTITIES = {
     PinCheck: Quantity.SAFETY_FACTOR,
     BearingCheck: Quantity.SAFETY_FACTOR,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
+    PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
     ClearanceCheck: Quantity.CLEARANCE,
     FrequencyCheck: Quantity.FREQUENCY_RATIO,
     MassCheck: Quantity.MASS,
@@ -273,7 +275,7 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck():
+        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | PlasticCollapseCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

@@ -18,6 +18,7 @@ STRENGTH = (
     Quantity.SAFETY_FACTOR,
     Quantity.LAYERS,
     Quantity.SUSTAINED_STRESS,
+    Quantity.PLASTIC_COLLAPSE,
     Quantity.FATIGUE_STRESS,
     Quantity.FATIGUE_LIFE,
 )

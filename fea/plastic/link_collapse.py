@@ -12,7 +12,7 @@ extrapolation tells from the coarser one, with the order 1 of displacements that
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,7 +29,6 @@ from alula.fea.solid.solution import NO_PART
 from alula.fea.tractions.link_tractions import LinkTractions, Variant
 from alula.fea.tractions.traction import TRANSFERS, Transfer
 from alula.geometry.base.errors import CannotRunError
-from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
 
@@ -141,13 +140,12 @@ def collapse_of(
     link: ElasticLink,
     law: YieldLaw,
     loads: LinkLoads,
-    settings: MeshSettings,
+    mesh: Callable[[float], TaggedMesh],
     *,
     largest_strain: float = math.inf,
     transfers: Sequence[Transfer] = TRANSFERS,
     threads: int | None = None,
     until: float = math.inf,
-    meshes: Mapping[float, TaggedMesh] | None = None,
 ) -> LinkCollapse:
     """Return the factor on its loads at which a link collapses.
 
@@ -157,8 +155,8 @@ def collapse_of(
     law : YieldLaw
     loads : LinkLoads
         Of one pose.
-    settings : MeshSettings
-        Of the finer mesh.
+    mesh : callable
+        Returns a mesh of the link with edges that many times as long: 1 for the finer one.
     largest_strain : float, optional
         Of the material.
     transfers : sequence of Transfer, optional
@@ -167,8 +165,6 @@ def collapse_of(
         Upper bound on the threads of the solver.
     until : float, optional
         Time by ``time.perf_counter`` after which nothing is begun.
-    meshes : mapping of float to TaggedMesh, optional
-        How much coarser than ``settings`` -> a mesh that is there already.
 
     Returns
     -------
@@ -183,8 +179,7 @@ def collapse_of(
     def space_of(coarser: float) -> DisplacementSpace:
         if time.perf_counter() > until:
             raise NoPlasticStateError("the time limit ended the path")
-        mesh = (meshes or {}).get(coarser) or mesh_body(link.body, settings.scaled(coarser))
-        return displacement_space(mesh)
+        return displacement_space(mesh(coarser))
 
     pose = loads.chosen(None)
 
