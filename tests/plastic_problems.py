@@ -15,9 +15,9 @@ def law(**others) -> YieldLaw:
     return YieldLaw(E=E, nu=NU, strength=YIELD, **others)
 
 
-def loaded(p: solid_problems.Problem, yields: YieldLaw | None = None, *, mean: bool = True) -> ProportionalLoad:
+def loaded(p: solid_problems.Problem, yields: YieldLaw | None = None) -> ProportionalLoad:
     """The load of a problem on its body; supports are those of the problem."""
-    body = PlasticBody.of(p.space, yields or law(), mean=mean)
+    body = PlasticBody.of(p.space, yields or law())
     return ProportionalLoad(body, p.load, np.array(sorted(p.fixed)), threads=1)
 
 
