@@ -13,6 +13,7 @@ from alula.reports.check.links import links_section
 from alula.reports.check.mass_and_size import whole_section
 from alula.reports.check.opinion import opinion_section
 from alula.reports.check.pins import pins_left_out
+from alula.reports.check.plastic_collapse import collapse_section, governing_collapses
 from alula.reports.check.stated import audit_section, case_section, hand_section, limits_section, materials_section
 from alula.reports.check.statics import ground_section, statics_section
 from alula.reports.renderers.page import Page
@@ -23,7 +24,6 @@ from alula.reports.sections.checks import checks_section, has_all, nearest
 from alula.reports.sections.design import design_section
 from alula.reports.sections.frequencies import frequencies_section
 from alula.reports.sections.markup import code
-from alula.reports.sections.plastic_collapse import collapse_section, governing_collapses
 from alula.reports.sections.section import Picture, Section, parts_of
 from alula.reports.sentences.verdicts import besides, brief, checks_of
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE

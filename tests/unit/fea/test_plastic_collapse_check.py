@@ -15,7 +15,7 @@ from alula.fea.judging.plastic_collapse import collapse_outcomes
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.plastic.load_path import NoPlasticStateError
 from alula.geometry.base.errors import CaseError
-from alula.reports.sections.plastic_collapse import collapse_section
+from alula.reports.check.plastic_collapse import collapse_section
 from alula.reports.sections.section import Picture
 from alula.reports.sentences import told
 
