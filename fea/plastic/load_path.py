@@ -320,7 +320,7 @@ def follow(load: ProportionalLoad, *, largest_strain: float = math.inf, like: Lo
         control = RATIO ** len(states) * begin
         state = load.led(before, control, states[-2] if len(states) > 1 else None)
         states.append(state)
-        unloaded = max(unloaded, _unloaded(load.body, before.response, state.response))
+        unloaded = max(unloaded, unloaded_share(load.body, before.response, state.response))
         rise = max(state.factor - before.factor, 0.0)
         if state.plastic_strain > largest_strain:
             below, above, part = _about(load, before, state, largest_strain)
@@ -362,8 +362,20 @@ def _about(
     return below, above, part()
 
 
-def _unloaded(body: PlasticBody, before: PointResponse, now: PointResponse) -> float:
-    """Return the share of the volume that had flowed in which the stress is below the yield stress again."""
+def unloaded_share(body: PlasticBody, before: PointResponse, now: PointResponse) -> float:
+    """Return the share of the volume that had flowed in which the stress is below the yield stress again.
+
+    Parameters
+    ----------
+    body : PlasticBody
+    before, now : PointResponse
+        In two states, one after the other.
+
+    Returns
+    -------
+    float
+        0 where nothing had flowed.
+    """
     flowed = before.past.equivalent > 0.0
     weights = body.weights.reshape(-1)
     stress = body.law.share(now.stress) * body.law.strength / body.law.yield_stress(now.past.equivalent)

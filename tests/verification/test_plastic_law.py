@@ -9,7 +9,7 @@ import solid_meshes
 from plastic_problems import YIELD, E, law, loaded
 
 from alula.fea.elements.space import displacement_space
-from alula.fea.plastic.load_path import TOLERANCE, follow
+from alula.fea.plastic.load_path import TOLERANCE, follow, unloaded_share
 from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.plastic.yield_law import Past
 
@@ -75,6 +75,9 @@ def test_an_even_stress_is_found_exactly_in_distorted_elements():
     np.testing.assert_allclose(state.response.stress[:, 0], 1.25 * YIELD, rtol=1e-3)
     rest = load.loaded(state, 0.0)
     np.testing.assert_allclose(rest.displacement[3 * end], 2.0 * strain, rtol=1e-4)
+    more = load.loaded(state, 1.3 * YIELD)
+    assert unloaded_share(load.body, state.response, more.response) == 0.0
+    assert unloaded_share(load.body, state.response, rest.response) == pytest.approx(1.0)
 
 
 def test_newton_converges_quadratically():
