@@ -41,7 +41,7 @@ ORDER = 1.0
 CAUTION = 1.25
 """On the difference that the order leaves, as Roache's for a grid convergence index."""
 LEAST_RATIO = 1.1
-"""Of the two meshes' mean sizes; below it least sizes made them alike, and their difference says nothing."""
+"""Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
 NOTHING = 1e-12
 """Plastic strain below which a point has not flowed."""
 
@@ -192,6 +192,13 @@ def collapse_of(
         return held, follow(held.problem, largest_strain=largest_strain, like=like)
 
     fine, coarse = space_of(1.0), space_of(COARSER)
+    if _ratio(fine, coarse) < LEAST_RATIO:
+        fine, coarse = space_of(1.0 / COARSER), fine
+    ratio = _ratio(fine, coarse)
+    if ratio < LEAST_RATIO:
+        raise CannotRunError(
+            "meshes of the link are alike whatever size is asked for, so that their error is not known"
+        )
     found = [(variant, *path(fine, variant)) for variant in variants(fine, (WIDE,), transfers)]
     variant, held, worst = min(found, key=lambda one: one[2].factor)
     like = worst if worst.ended == "limit" else None
@@ -200,11 +207,6 @@ def collapse_of(
         for one in variants(coarse, (WIDE, NARROW), transfers)
         if one.transfer == variant.transfer
     )
-    ratio = float((len(fine.cells) / len(coarse.cells)) ** (1.0 / 3.0))
-    if ratio < LEAST_RATIO:
-        raise CannotRunError(
-            "the coarser of two meshes is as fine as the finer one, so that the mesh's error is not known"
-        )
     error = CAUTION * abs(wide[1].factor / worst.factor - 1.0) / (ratio**ORDER - 1.0)
     spread = max(wide[1].factor / narrow[1].factor, 1.0)
     strain, residual = _under_the_load(held, worst, LineReference(fine, link.line))
@@ -228,6 +230,11 @@ def collapse_of(
         unknowns=fine.unknowns,
         solves=sum(one.problem.solves for one in (held, wide[0], narrow[0])),
     )
+
+
+def _ratio(fine: DisplacementSpace, coarse: DisplacementSpace) -> float:
+    """Return how many times as long the edges of a mesh are on average."""
+    return float((len(fine.cells) / len(coarse.cells)) ** (1.0 / 3.0))
 
 
 def _under_the_load(held: _Held, path: LoadPath, reference: LineReference) -> tuple[float | None, float | None]:
