@@ -25,6 +25,7 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     MassCheck,
     PinCheck,
+    PlasticCollapseCheck,
     SafetyFactorCheck,
     SizeCheck,
     SustainedCheck,
@@ -39,6 +40,7 @@ _QUANTITIES = {
     BearingCheck: Quantity.SAFETY_FACTOR,
     EyeCheck: Quantity.EYES,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
+    PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
     ClearanceCheck: Quantity.CLEARANCE,
     FrequencyCheck: Quantity.FREQUENCY_RATIO,
     MassCheck: Quantity.MASS,
@@ -275,7 +277,7 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck():
+        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck() | PlasticCollapseCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

@@ -19,6 +19,7 @@ STRENGTH = (
     Quantity.LAYERS,
     Quantity.EYES,
     Quantity.SUSTAINED_STRESS,
+    Quantity.PLASTIC_COLLAPSE,
     Quantity.FATIGUE_STRESS,
     Quantity.FATIGUE_LIFE,
 )

@@ -8,7 +8,7 @@ from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
-from alula.fea.asked.asked import Asked, asked, asked_of
+from alula.fea.asked.asked import Asked, asked, asked_of, asks
 from alula.fea.asked.at_temperature import as_known
 from alula.fea.beam.theory import BeamCheck, CantileverCheck, uniform_cantilever
 from alula.fea.buckling.buckling import buckling_outcomes
@@ -35,6 +35,7 @@ from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
+from alula.fea.judging.plastic_collapse import Found, collapse_outcomes, find_collapses
 from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
@@ -47,6 +48,7 @@ from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
+from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.link_task import LinkTask
@@ -64,7 +66,7 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, EyeCheck, PinCheck
+from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, EyeCheck, PinCheck, PlasticCollapseCheck
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.shares import parse_accuracy
 
@@ -257,10 +259,8 @@ class _LoadCase:
         """
         found = {}
         for link, plates in self.plates.items():
-            own, known = (self.case, link, self.load_case), (solved or {}).get(link)
-            uneven, shares = self.uneven, by_hand_shares(self.shared, link)
-            if known is not None:
-                uneven, shares = self.growth, together_shares(known)
+            own = self.case, link, self.load_case
+            uneven, shares = self._doubts_on(link, (solved or {}).get(link))
             found[link] = worse_plate(
                 [link_result(*own, hand, decided.get(link), uneven, shares, name=loads.name) for loads, hand in plates]
             )
@@ -320,8 +320,18 @@ class _LoadCase:
             checks=checks,
         )
 
+    def _doubts_on(self, link: str, known: SolvedAnswers | None) -> tuple[Growths, Shares]:
+        """Return what leaves the loads of a link open: on its solid where causes were solved there, else by hand."""
+        if known is None:
+            return self.uneven, by_hand_shares(self.shared, link)
+        return self.growth, together_shares(known)
+
     def judged(
-        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, SolvedAnswers], whole: Sequence[CheckOutcome]
+        self,
+        decided: Mapping[str, DecidedLink],
+        solved: Mapping[str, SolvedAnswers],
+        whole: Sequence[CheckOutcome],
+        collapses: Mapping[str, Found],
     ) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
         case, load_case, links = self.case, self.load_case, self.links(decided, solved)
@@ -344,6 +354,7 @@ class _LoadCase:
             *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
+            *collapse_outcomes(case, load_case, collapses, self.acts_on, lambda x: self._doubts_on(x, solved.get(x))),
             *whole,
         )
         found = [reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, outcome) for outcome in every]
@@ -366,6 +377,7 @@ class _LoadCase:
             work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
             eyes=tuple(eye for _, found in eyes for eye in found),
+            collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 
     def _eyes(self, reactions: Reactions) -> list[tuple[Asked, tuple[EyeFactors, ...]]]:
@@ -481,7 +493,7 @@ def check_case(
         clock("frames of solids")
     by_load_case = {x: _LoadCase.of(statics, x, what, doubts[x], told) for x, what in moved.items()}
     clock("hand calculations")
-    shared = _SolidAnswers()
+    shared, begun = _SolidAnswers(), time.perf_counter()
     decided = _decided(
         case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, shared, progress
     )
@@ -500,7 +512,20 @@ def check_case(
         }
         for load_case, one in by_load_case.items()
     }
-    load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
+    collapses: Mapping[str, Mapping[str, Found]] = {}
+    if fidelity not in BY_HAND and asks(case, PlasticCollapseCheck):
+        acting = {
+            x: {
+                link: [cut for cut, _ in plates]
+                for link, plates in one.plates.items()
+                if one.acts_on(link) and (only is None or link in only)
+            }
+            for x, one in by_load_case.items()
+        }
+        left = max((effort or effort_of(case)).time_limit - (time.perf_counter() - begun), 0.0)
+        collapses = find_collapses(case, acting, start, first, time_limit=left, threads=threads, progress=progress)
+        clock("plastic collapse")
+    load_cases = {x: one.judged(decided, solved[x], judged[x], collapses.get(x, {})) for x, one in by_load_case.items()}
     clock("stress")
     warnings: tuple[Reason | str, ...] = ()
     if not bare:

@@ -119,6 +119,8 @@ class Quantity(StrEnum):
     LOAD_SHARE = "share of the load that is held", "", Sense.AT_LEAST
     LIMIT_LOAD = "limit-load factor", "", Sense.AT_LEAST
     """By what all loads may grow until the linkage gives way."""
+    PLASTIC_COLLAPSE = "plastic-collapse factor", "", Sense.AT_LEAST
+    """By what all loads on a link may grow until it flows without end, or to its material's largest strain."""
     FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST
     """Fatigue strength over stress."""
     FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST

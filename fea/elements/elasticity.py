@@ -176,7 +176,7 @@ def assemble_stiffness(
         raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")
     order = space.order if order is None else order
     cells, count = (space.cells[:, :4], space.corners) if order == 1 else (space.cells, len(space.nodes))
-    place = _pattern(cells, count)
+    place = block_pattern(cells, count)
     memory.require(72.0 * place.nnz, f"the stiffness matrix of {3 * count:,} unknowns", memory_limit)
     blocks = np.zeros((place.nnz, 3, 3))
     first, second = np.triu_indices(cells.shape[1])
@@ -193,22 +193,43 @@ def assemble_stiffness(
                 # The block of a pair whose nodes stand in descending order belongs below the diagonal.
                 below = mirror[part]
                 values[below] = values[below].swapaxes(1, 2)
-                _add_at(blocks, target[part].ravel(), values)
+                add_blocks(blocks, target[part].ravel(), values)
     return SymmetricBlockMatrix(indptr=place.indptr, indices=place.indices, blocks=blocks)
 
 
-def _add_at(blocks: NDArray[np.float64], where: NDArray[np.intp], values: NDArray[np.float64]) -> None:
+def add_blocks(blocks: NDArray[np.float64], where: NDArray[np.intp], values: NDArray[np.float64]) -> None:
     """Add values to the blocks whose numbers are given, which may repeat.
 
     Entry by entry, since numpy is fast on flat arrays alone: by blocks it takes twice the time.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (b, 3, 3)
+        That are changed.
+    where : ndarray of int, shape (k,)
+        Numbers of blocks.
+    values : ndarray, shape (..., 3, 3)
+        k of them.
     """
     np.add.at(blocks.reshape(-1), (9 * where[:, None] + np.arange(9)).ravel(), values.ravel())
 
 
-def _pattern(cells: NDArray[np.int64], count: int) -> Any:
-    """Upper triangle of the pairs of nodes that share an element, as a ``csr_array`` of the blocks' numbers.
+def block_pattern(cells: NDArray[np.int64], count: int) -> Any:
+    """Return the upper triangle of the pairs of nodes that share an element, as a ``csr_array`` of the blocks' numbers.
 
     A boolean product of incidence matrices: no list of all pairs of all elements has to be stored and sorted.
+
+    Parameters
+    ----------
+    cells : ndarray of int, shape (m, b)
+        Nodes of each element.
+    count : int
+        Number of nodes n.
+
+    Returns
+    -------
+    csr_array, shape (n, n)
+        Its entry is the number of the block.
     """
     from scipy.sparse import csr_array, triu
 

@@ -18,6 +18,7 @@ from alula.loads.records.check_spec import (
     FrequencyCheck,
     LimitLoadCheck,
     PinCheck,
+    PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
 )
@@ -165,7 +166,9 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
     for name, check in case.checks.items():
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
-        elif isinstance(check, SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck):
+        elif isinstance(
+            check, SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck | PlasticCollapseCheck
+        ):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:
             for card in (x for one in subjects_of(case, name, check) for x in cards_of(case, check, one)):

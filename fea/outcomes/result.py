@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
@@ -20,6 +20,7 @@ from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
+from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.solution import SolidCase, SolidSolution
@@ -291,6 +292,8 @@ class LoadCaseResult:
         All that acts on the links, friction included.
     eyes : tuple of EyeFactors
         Of every eye of the links whose eyes a check asks for.
+    collapses : mapping of str to LinkCollapse
+        Link -> at what factor it collapses, where a check asks for it and it was found.
     """
 
     name: str
@@ -305,6 +308,7 @@ class LoadCaseResult:
     work: DriveWork | None = None
     loads: tuple[Load, ...] = ()
     eyes: tuple[EyeFactors, ...] = ()
+    collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
 
     @property
     def reactions(self) -> Reactions:

@@ -237,6 +237,10 @@ def _strength(material: Material, quantity: Quantity) -> tuple[Property, float] 
         Quantity.SAFETY_FACTOR: (_NAMES[material.strength], material.allowable),
         Quantity.LAYERS: ("strength of the layers", material.strength_across_layers),
         Quantity.SUSTAINED_STRESS: ("sustained strength", material.sustained_stress),
+        Quantity.PLASTIC_COLLAPSE: (
+            _NAMES[material.strength],
+            None if material.hardening_factors else material.allowable,
+        ),
     }
     what, value = stated.get(quantity, ("modulus", None))
     return None if value is None else (what, value)

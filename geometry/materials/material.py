@@ -81,6 +81,11 @@ class Material(CaseModel):
     """Scatter of the modulus: least and greatest value."""
     strength_range: Range | None = None
     """Scatter of the strength that the safety factor uses."""
+    compression_ratio: Annotated[float, Field(ge=1.0, le=2.0)] | None = None
+    """Compressive over tensile yield strength, of plastics some 1.1 to 1.4; plastic collapse uses it, else 1."""
+    hardening_factors: tuple[tuple[Annotated[float, Field(ge=0)], Annotated[float, Field(ge=1)]], ...] = ()
+    """(plastic strain, yield stress over yield_strength), rising; straight between. Plastic collapse uses them up to
+    the last strain, where its path ends; without them the material does not harden."""
     strength_across_layers: Annotated[Stress, POSITIVE] | None = None
     """Tensile strength of a printed material normal to its layers, measured on specimens built upright."""
     strength_across_layers_range: Range | None = None
@@ -129,6 +134,14 @@ class Material(CaseModel):
             )
         check_factors("temperature_factors", self.temperature_factors, "strength")
         check_factors("modulus_temperature_factors", self.modulus_temperature_factors, "modulus")
+        curve = self.hardening_factors
+        if any(a[0] >= b[0] or a[1] > b[1] for a, b in itertools.pairwise(curve)) or (curve and curve[-1][0] == 0.0):
+            raise PydanticCustomError(
+                "hardening_not_rising",
+                "hardening_factors must rise in strain and never fall in stress; state each strain once, in order",
+            )
+        if (curve or self.compression_ratio) and self.strength != "yield":
+            raise refusal("hardening_factors and compression_ratio are of a material that yields; leave them out")
         diameters = [diameter for diameter, _ in self.ultimate_strength_by_diameter]
         if any(a >= b for a, b in itertools.pairwise(diameters)):
             raise PydanticCustomError(

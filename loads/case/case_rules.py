@@ -29,6 +29,7 @@ from alula.loads.records.check_spec import (
     MassCheck,
     MotorCheck,
     PinCheck,
+    PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
 )
@@ -257,6 +258,11 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
     elif isinstance(check, EyeCheck):
         check_eye_check(case, name, check)
+    elif isinstance(check, PlasticCollapseCheck):
+        for link in check.links:
+            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
+        for link in check.links or case.checked_links:
+            _check_ductile(case, name, link)
     elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
@@ -268,6 +274,21 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
         if isinstance(check, SafetyFactorCheck) and check.minimum is None:
             for link in check.links or case.checked_links:
                 _check_minimum(name, case.part_of(link).material, case.material_of(link), f"link '{link}'")
+
+
+def _check_ductile(case: CoreCase, name: str, link: str) -> None:
+    """Check that a link is of a material that flows before it breaks, alike in all directions."""
+    material = case.material_of(link)
+    if material.brittle:
+        why = f"'{case.part_of(link).material}' is brittle: it breaks where its stress is largest, before it flows"
+    elif material.strength_across_layers is not None or case.part_of(link).build_direction is not None:
+        why = "it is printed in layers, which come apart before it flows"
+    else:
+        return
+    raise CaseError(
+        f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and name the "
+        "other links in links"
+    )
 
 
 def _check_minimum(name: str, title: str, material: Material, of: str) -> None:

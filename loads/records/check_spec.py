@@ -136,6 +136,20 @@ class LimitLoadCheck(CaseModel):
     """The least limit-load factor; the deformed shape is followed to ten times the load."""
 
 
+class PlasticCollapseCheck(CaseModel):
+    """All loads on each link must be able to grow by a factor before it flows without end, or to its largest strain.
+
+    Of ductile materials alone, by their yield strength and what hardening_factors and compression_ratio of their cards
+    say. It tells whether the link breaks down as a whole, where the safety factor tells where it first yields.
+    """
+
+    type: Literal["plastic-collapse"]
+    minimum: Annotated[float, Field(gt=0)]
+    """The least plastic-collapse factor of each link."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out. Each is solved as a solid."""
+
+
 class ClearanceCheck(CaseModel):
     """Links that lie at one height, and pins and the links that they pass, must stay apart.
 
@@ -198,6 +212,7 @@ Check = Annotated[
     | BearingCheck
     | EyeCheck
     | LimitLoadCheck
+    | PlasticCollapseCheck
     | ClearanceCheck
     | FrequencyCheck
     | MassCheck

@@ -13,6 +13,7 @@ from alula.reports.check.links import links_section
 from alula.reports.check.mass_and_size import whole_section
 from alula.reports.check.opinion import opinion_section
 from alula.reports.check.pins import pins_left_out
+from alula.reports.check.plastic_collapse import collapse_section, governing_collapses
 from alula.reports.check.stated import audit_section, case_section, hand_section, limits_section, materials_section
 from alula.reports.check.statics import ground_section, statics_section
 from alula.reports.renderers.page import Page
@@ -61,6 +62,7 @@ def check_sections(result: CheckResult, published: str = "") -> tuple[Section, .
         flapping_section(result),
         ground_section(result),
         links_section(result),
+        collapse_section(result),
         opinion_section(result),
         hand_section(result),
         audit_section(result),
@@ -173,6 +175,7 @@ def check_pictures(
         Name -> Drawing; and warnings.
     """
     from alula.reports.figures.figures import stress_plots
+    from alula.reports.figures.plastic_zone import plastic_plots
 
     links = next(iter(result.load_cases.values())).links
     worst = {link: result.governing(link).links[link] for link in links}
@@ -186,4 +189,6 @@ def check_pictures(
             if isinstance(part, Picture) and part.draw is not None
         }
         plots, warnings = rendered.result()
-    return drawn | {f"stress-{link}": plot for link, plot in plots.items()}, warnings
+    zones, missing = plastic_plots(governing_collapses(result))
+    drawn |= {f"stress-{link}": plot for link, plot in plots.items()}
+    return drawn | {f"plastic-{link}": plot for link, plot in zones.items()}, (*warnings, *missing)

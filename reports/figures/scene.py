@@ -215,8 +215,7 @@ def scene_from(
     """
     doubt = "" if meshes is None else STATUS_NOTES.get(meshes.status, "")
     space, values = stress.space, stress.decisive(brittle=brittle)
-    faces = space.boundary
-    triangles = faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+    triangles = surface_triangles(space.boundary)
     length = float(np.ptp(space.nodes[:, 0]))
     largest = float(np.linalg.norm(displacement, axis=1).max())
     scale = round_scale(_VISIBLE_SHIFT * length / largest) if largest > 0.0 else 1.0
@@ -240,9 +239,25 @@ def scene_from(
         doubt=doubt,
         scale=scale,
         far_side=not _seen(space.nodes, triangles, hottest, _TOWARD),
-        strip=_strip_view(np.vstack([space.nodes, space.nodes + scale * displacement])),
+        strip=strip_view(np.vstack([space.nodes, space.nodes + scale * displacement])),
         close=_close_view(space.nodes, triangles, hottest, reach),
     )
+
+
+def surface_triangles(faces: Int) -> Int:
+    """Return the faces of a body as triangles.
+
+    Parameters
+    ----------
+    faces : int array
+        (k, 3), or (k, 6) of quadratic elements.
+
+    Returns
+    -------
+    int array
+        (m, 3); four of each quadratic face.
+    """
+    return faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
 
 
 def round_scale(value: float) -> float:
@@ -279,7 +294,18 @@ def axes_of(toward: Real) -> tuple[Real, Real]:
     return right, np.cross(toward, right)
 
 
-def _strip_view(points: Real) -> View:
+def strip_view(points: Real) -> View:
+    """Return the view of a whole link, its pins pointing at the viewer.
+
+    Parameters
+    ----------
+    points : array
+        (n, 3) of all that is to be seen [mm].
+
+    Returns
+    -------
+    View
+    """
     right, up = axes_of(_TOWARD)
     u, v = points @ right, points @ up
     middle = (u.min() + u.max()) / 2.0 * right + (v.min() + v.max()) / 2.0 * up

@@ -7,22 +7,11 @@ Timoshenko-Goodier, Theory of Elasticity, 3rd ed., art. 28; Code_Aster SSLV04 (V
 
 import numpy as np
 from benchmark_tests import *  # noqa: F403
-from solid_problems import Benchmark, Problem, Reading, even, graded, single
+from holed_problems import CYLINDER as SIZES
+from holed_problems import cylinder_problem
+from solid_problems import Benchmark, Reading
 
-A, B, PRESSURE, E, NU = 100.0, 200.0, 60.0, 200_000.0, 0.3
-
-
-def cylinder_problem(radial, around, layers, *, held, ratio=2.0):
-    def warp(u, v, w):
-        radius, angle = A + (B - A) * u, v * np.pi / 2.0
-        return np.stack([radius * np.cos(angle), radius * np.sin(angle), 20.0 * w], axis=-1)
-
-    p = Problem(mesh=single(graded(radial, ratio), even(around), even(layers), warp), E=E, nu=NU)
-    p.fix(p.nodes_on("v0"), "y")
-    p.fix(p.nodes_on("v1"), "x")
-    p.fix(p.nodes_on("w0", "w1") if held else p.nodes_on("w0"), "z")
-    p.traction("u0", lambda q: -PRESSURE * q.normals)
-    return p
+A, B, PRESSURE, E, NU = SIZES
 
 
 def exact_stress(x, *, held):

@@ -1,0 +1,229 @@
+"""Plastic collapse of links: found where a check asks for it, and decided on its band."""
+
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
+
+from alula.fea.asked.asked import asked, asked_of
+from alula.fea.common.band import Band
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.reason import Reason, reason
+from alula.fea.common.scatter import strength_scatter
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import CheckOutcome
+from alula.fea.doubts.load_growth import Growths
+from alula.fea.judging.link_result import spread
+from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
+from alula.fea.plastic.yield_law import YieldLaw
+from alula.fea.refine.link_task import ElasticLink
+from alula.fea.superposition.solid_shares import Shares
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.materials.material import Material
+from alula.geometry.meshing.mesh import MeshSettings, mesh_body
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.case.case import Case
+from alula.loads.records.check_spec import PlasticCollapseCheck
+
+NOT_SOLVED = reason("collapse_needs_solid")
+NEGLIGIBLE = 0.005
+"""Share of a factor below which what the pins' pressure leaves open is not told."""
+Found = LinkCollapse | Reason | str
+"""Why it is not known, where it is not."""
+
+
+def yield_law(material: Material) -> YieldLaw:
+    """Return the plastic law that a card states.
+
+    Parameters
+    ----------
+    material : Material
+        Ductile.
+
+    Returns
+    -------
+    YieldLaw
+    """
+    return YieldLaw(
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        strength=material.allowable,
+        compression=material.compression_ratio or 1.0,
+        hardening=material.hardening_factors,
+    )
+
+
+def largest_strain(material: Material) -> float:
+    """Return the plastic strain at which a path ends: the last one of the card's curve, infinite without one.
+
+    Parameters
+    ----------
+    material : Material
+
+    Returns
+    -------
+    float
+    """
+    return material.hardening_factors[-1][0] if material.hardening_factors else math.inf
+
+
+def find_collapses(
+    case: Case,
+    loaded: Mapping[str, Mapping[str, Sequence[LinkLoads]]],
+    start: MeshSettings,
+    first: Mapping[str, TaggedMesh],
+    *,
+    time_limit: float,
+    threads: int | None,
+    progress: Callable[[str], None],
+) -> dict[str, dict[str, Found]]:
+    """Return at what factor links collapse of which a check asks for it.
+
+    Parameters
+    ----------
+    case : Case
+    loaded : mapping of str to mapping of str to sequence of LinkLoads
+        Load case -> link -> what acts on it, on both plates where they bear differently.
+    start : MeshSettings
+        Of the first mesh of the elastic check.
+    first : mapping of str to TaggedMesh
+        Such meshes that are there already.
+    time_limit : float
+        For all of them [s].
+    threads : int or None
+        Upper bound on the threads of the solver.
+    progress : callable
+        Called with a sentence before each link.
+
+    Returns
+    -------
+    dict of str to dict of str to (LinkCollapse or Reason or str)
+        Load case -> link -> what was found, the worse of two plates; or why it is not known.
+    """
+    until = time.perf_counter() + time_limit
+    found: dict[str, dict[str, Found]] = {load_case: {} for load_case in loaded}
+    for link in asked_of(case, PlasticCollapseCheck):
+        body, material = case.body(link), case.material_of(link)
+
+        @cache
+        def mesh(coarser: float, link: str = link) -> TaggedMesh:
+            if coarser == 1.0 and link in first:
+                return first[link]
+            return mesh_body(case.body(link), start.scaled(coarser))
+
+        for load_case, links in loaded.items():
+            for loads in links.get(link, ()):
+                progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
+                try:
+                    one: Found = collapse_of(
+                        ElasticLink.of(body, material),
+                        yield_law(material),
+                        loads,
+                        mesh,
+                        largest_strain=largest_strain(material),
+                        threads=threads,
+                        until=until,
+                    )
+                except CannotRunError as error:
+                    one = str(error)
+                found[load_case][link] = _worse(found[load_case].get(link), one)
+    return found
+
+
+def _worse(one: Found | None, other: Found) -> Found:
+    """Return the plate that is not known, else the one that collapses first."""
+    if one is None or not isinstance(other, LinkCollapse):
+        return other
+    return other if isinstance(one, LinkCollapse) and other.low < one.low else one
+
+
+def collapse_outcomes(
+    case: Case,
+    load_case: str,
+    found: Mapping[str, Found],
+    acting: Callable[[str], bool],
+    doubts: Callable[[str], tuple[Growths, Shares]],
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every check of plastic collapse under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    found : mapping of str to (LinkCollapse or Reason or str)
+        By link; of those that are left out no solid was solved.
+    acting : callable
+        Whether anything acts on a link.
+    doubts : callable
+        What leaves the loads of a link open, as ``link_result`` takes it.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    for one in asked(case, PlasticCollapseCheck):
+        link = one.subject.name
+        if not acting(link):
+            yield one.outcome(load_case, Band(value=math.inf, low=math.inf, high=math.inf), reason("idle_link"))
+            continue
+        known = found.get(link, NOT_SOLVED)
+        if not isinstance(known, LinkCollapse):
+            yield one.outcome(load_case, Band.unknown(known), known)
+            continue
+        outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *doubts(link)))
+        yield outcome.because(
+            reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
+        )
+
+
+def collapse_band(case: Case, link: str, load_case: str, found: LinkCollapse, uneven: Growths, shares: Shares) -> Band:
+    """Return the plastic-collapse factor of a link, with all that leaves it open.
+
+    For perfect plasticity it goes with the yield stress exactly, and with loads that grow together. What doubts change
+    in the pattern of its loads is taken as they change its largest von Mises stress.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    load_case : str
+        Its name.
+    found : LinkCollapse
+    uneven, shares
+        As ``link_result`` takes them.
+
+    Returns
+    -------
+    Band
+    """
+    sources = [Source(kind=SourceKind.DISCRETISATION, detail=reason("up_to_share_of_factor", share=found.mesh_error))]
+    sources.append(Source(kind=SourceKind.PATH))
+    if found.pressure > 1.0 + NEGLIGIBLE:
+        detail = reason("pins_may_press_better", factor=found.pressure)
+        sources.append(Source(kind=SourceKind.PIN_PRESSURE, detail=detail))
+    band = Band(value=found.factor, low=found.low, high=found.high, sources=tuple(sources))
+    loads = spread(case, link, load_case, "von_mises", uneven, shares)
+    return strength_scatter(case.material_of(link)).times(loads.inverse).on(band)
+
+
+def collapse_said(case: Case, link: str, found: LinkCollapse) -> Reason:
+    """Return how a link collapses.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    found : LinkCollapse
+
+    Returns
+    -------
+    Reason
+    """
+    strain = largest_strain(case.material_of(link))
+    return reason(
+        "collapses_at",
+        factor=found.factor,
+        strain=strain if found.ended == "strain" else None,
+        unloaded=found.unloaded if found.unloaded >= NEGLIGIBLE else None,
+    )

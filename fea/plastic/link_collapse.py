@@ -1,0 +1,253 @@
+"""The plastic collapse of a link under its loads, by two meshes.
+
+A pin presses over 180°. While the wall flows, its pressure would spread as it bears best; by the static theorem any
+pressure that it can have gives no more than the link bears, and the one over 180° gives more than that over 90°. By
+how much a better one may exceed it is not known: the ratio of these two is taken, which is 1 where the pins do not
+decide.
+
+Resultants decide what a link bears, and not the peaks of stress beside its pins, so that coarse meshes do: the finer
+one is the first mesh of the elastic check. How far the factor is from that of ever finer meshes, Richardson's
+extrapolation tells from the coarser one, with the order 1 of displacements that a mechanism cuts.
+"""
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.elements.space import DisplacementSpace, UpperHalf, displacement_space, upper_half
+from alula.fea.elements.supports import LineReference, half_supports, isostatic_supports
+from alula.fea.plastic.load_path import LoadPath, NoPlasticStateError, PlasticState, ProportionalLoad, follow
+from alula.fea.plastic.plastic_body import PlasticBody
+from alula.fea.plastic.yield_law import YieldLaw
+from alula.fea.refine.link_task import ElasticLink
+from alula.fea.solid.solution import NO_PART
+from alula.fea.tractions.link_tractions import LinkTractions, Variant
+from alula.fea.tractions.traction import TRANSFERS, Transfer
+from alula.geometry.base.errors import CannotRunError
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.records.bearing import NARROW, WIDE, PressureLaw
+
+Real = NDArray[np.float64]
+
+COARSER = 1.6
+"""Edges of the coarser mesh over those of the finer one, where nothing bounds them."""
+ORDER = 1.0
+"""At which the factor converges: displacements have kinks in a mechanism, whatever the order of the elements."""
+CAUTION = 1.25
+"""On the difference that the order leaves, as Roache's for a grid convergence index."""
+LEAST_RATIO = 1.1
+"""Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
+NOTHING = 1e-12
+"""Plastic strain below which a point has not flowed."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkCollapse:
+    """At what factor on its loads a link collapses.
+
+    Attributes
+    ----------
+    factor, low, high : float
+        On the finer mesh, and from where to where it may be for the mesh, the path and the pins' pressure.
+    mesh_error : float
+        Share of the factor by which the mesh may miss it.
+    pressure : float
+        Factor by which pins may bear more that press otherwise.
+    transfer : Transfer or None
+        How the torque enters with which it is least.
+    ended : {"limit", "strain"}
+        By the load that it bears, or by the material's largest strain.
+    unloaded : float
+        Largest share of the yielded volume in which stress fell while the load grew.
+    strain : float or None
+        Largest plastic strain under the stated load; None where the link does not bear it, or it was not found.
+    residual : float or None
+        Largest displacement that stays after the stated load [mm]; None as ``strain``.
+    nodes : ndarray, shape (n, 3)
+        Of the finer mesh [mm].
+    boundary : ndarray of int, shape (b, 6)
+        Its faces.
+    zone : ndarray, shape (n,)
+        Plastic strain at the nodes, at the end of the path.
+    plastic_share : float
+        Of the volume that has flowed then.
+    unknowns : int
+        Of the finer mesh.
+    solves : int
+        Linear systems that were solved in all.
+    """
+
+    factor: float
+    low: float
+    high: float
+    mesh_error: float
+    pressure: float
+    transfer: Transfer | None
+    ended: str
+    unloaded: float
+    strain: float | None
+    residual: float | None
+    nodes: Real
+    boundary: NDArray[np.int64]
+    zone: Real
+    plastic_share: float
+    unknowns: int
+    solves: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Held:
+    """A load on a body, or on the upper half of one that is its own image, as the load is."""
+
+    problem: ProportionalLoad
+    half: UpperHalf | None
+
+    @classmethod
+    def of(cls, space: DisplacementSpace, law: YieldLaw, load: Real, threads: int | None, until: float) -> "_Held":
+        half = upper_half(space)
+        if half is not None:
+            same, other = half.parts(load.reshape(-1, 3, 1))
+            if np.abs(other).sum() < NO_PART * np.abs(same).sum():
+                part = same[..., 0].copy()
+                part[half.on_plane] /= 2.0
+                plane = 3 * np.flatnonzero(half.on_plane) + 2
+                fixed = np.concatenate([plane, half_supports(half.space.nodes, half.space.corners)[0]])
+                body = PlasticBody.of(half.space, law)
+                return cls(problem=ProportionalLoad(body, part.ravel(), fixed, threads=threads, until=until), half=half)
+        fixed, body = isostatic_supports(space.nodes, space.corners), PlasticBody.of(space, law)
+        return cls(problem=ProportionalLoad(body, load, fixed, threads=threads, until=until), half=None)
+
+    def displacement(self, state: PlasticState) -> Real:
+        """Return the displacements (n, 3) of the whole."""
+        u = state.displacement.reshape(-1, 3)
+        return u if self.half is None else self.half.whole(u[..., None], np.zeros_like(u[..., None]))[..., 0]
+
+    def at_nodes(self, values: Real) -> Real:
+        """Return the largest value of the points of all elements at each node (n,) of the whole."""
+        space = self.problem.body.space
+        found = np.zeros(len(space.nodes))
+        each = values.reshape(len(space.cells), -1).max(axis=1)
+        np.maximum.at(found, space.cells, np.broadcast_to(each[:, None], space.cells.shape))
+        return found if self.half is None else self.half.both_nodes(found)
+
+
+def collapse_of(
+    link: ElasticLink,
+    law: YieldLaw,
+    loads: LinkLoads,
+    mesh: Callable[[float], TaggedMesh],
+    *,
+    largest_strain: float = math.inf,
+    transfers: Sequence[Transfer] = TRANSFERS,
+    threads: int | None = None,
+    until: float = math.inf,
+) -> LinkCollapse:
+    """Return the factor on its loads at which a link collapses.
+
+    Parameters
+    ----------
+    link : ElasticLink
+    law : YieldLaw
+    loads : LinkLoads
+        Of one pose.
+    mesh : callable
+        Returns a mesh of the link with edges that many times as long: 1 for the finer one.
+    largest_strain : float, optional
+        Of the material.
+    transfers : sequence of Transfer, optional
+        Of a torque, where the link carries one.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
+    until : float, optional
+        Time by ``time.perf_counter`` after which nothing is begun.
+
+    Returns
+    -------
+    LinkCollapse
+
+    Raises
+    ------
+    CannotRunError
+        Where meshing or the path fails, or time ends.
+    """
+
+    def space_of(coarser: float) -> DisplacementSpace:
+        if time.perf_counter() > until:
+            raise NoPlasticStateError("the time limit ended the path")
+        return displacement_space(mesh(coarser))
+
+    pose = loads.chosen(None)
+
+    def variants(space: DisplacementSpace, laws: Sequence[PressureLaw], transfers: Sequence[Transfer]) -> list[Variant]:
+        tractions = LinkTractions.of(space, [pose], density=link.density)
+        return list(tractions.variants(pose, laws, transfers))
+
+    def path(space: DisplacementSpace, variant: Variant, like: LoadPath | None = None) -> tuple[_Held, LoadPath]:
+        held = _Held.of(space, law, variant.load, threads, until)
+        return held, follow(held.problem, largest_strain=largest_strain, like=like)
+
+    fine, coarse = space_of(1.0), space_of(COARSER)
+    if _ratio(fine, coarse) < LEAST_RATIO:
+        fine, coarse = space_of(1.0 / COARSER), fine
+    ratio = _ratio(fine, coarse)
+    if ratio < LEAST_RATIO:
+        raise CannotRunError(
+            "meshes of the link are alike whatever size is asked for, so that their error is not known"
+        )
+    found = [(variant, *path(fine, variant)) for variant in variants(fine, (WIDE,), transfers)]
+    variant, held, worst = min(found, key=lambda one: one[2].factor)
+    like = worst if worst.ended == "limit" else None
+    wide, narrow = (
+        path(coarse, one, like)
+        for one in variants(coarse, (WIDE, NARROW), transfers)
+        if one.transfer == variant.transfer
+    )
+    error = CAUTION * abs(wide[1].factor / worst.factor - 1.0) / (ratio**ORDER - 1.0)
+    spread = max(wide[1].factor / narrow[1].factor, 1.0)
+    strain, residual = _under_the_load(held, worst, LineReference(fine, link.line))
+    flowed = worst.last.response.past.equivalent
+    weights = held.problem.body.weights.reshape(-1)
+    return LinkCollapse(
+        factor=worst.factor,
+        low=min(one[2].low for one in found) * max(1.0 - error, 0.0),
+        high=max(one[2].high for one in found) * (1.0 + error) * spread,
+        mesh_error=error,
+        pressure=spread,
+        transfer=variant.transfer,
+        ended=worst.ended,
+        unloaded=max(one[2].unloaded for one in found),
+        strain=strain,
+        residual=residual,
+        nodes=fine.nodes,
+        boundary=fine.boundary,
+        zone=held.at_nodes(flowed),
+        plastic_share=float(weights[flowed > NOTHING].sum() / weights.sum()),
+        unknowns=fine.unknowns,
+        solves=sum(one.problem.solves for one in (held, wide[0], narrow[0])),
+    )
+
+
+def _ratio(fine: DisplacementSpace, coarse: DisplacementSpace) -> float:
+    """Return how many times as long the edges of a mesh are on average."""
+    return float((len(fine.cells) / len(coarse.cells)) ** (1.0 / 3.0))
+
+
+def _under_the_load(held: _Held, path: LoadPath, reference: LineReference) -> tuple[float | None, float | None]:
+    """Return the largest plastic strain under the stated load, and the largest displacement that stays after it."""
+    if path.states[0].factor >= 1.0:
+        return 0.0, 0.0
+    if path.low <= 1.0:
+        return None, None
+    before = [state for state in path.states if state.factor <= 1.0][-1]
+    try:
+        loaded = held.problem.loaded(before, 1.0)
+        stays = held.problem.loaded(loaded, 0.0)
+    except NoPlasticStateError:
+        return None, None
+    moved = reference.relative(held.displacement(stays))
+    return loaded.plastic_strain, float(np.linalg.norm(moved, axis=1).max())

@@ -1,0 +1,384 @@
+"""A plastic body under loads that grow in proportion, up to the load that it bears.
+
+The path is led by the work-conjugate displacement: with f the load at factor 1, each state has a given f·u, and the
+load factor λ is what its equilibrium asks for. Under a given f·u a state is the least of the convex energy of the
+yield law (``alula.fea.plastic.yield_law``), subject to one linear condition, so that it exists at and beyond the load
+where the body would flow without end, and Newton's method with a line search finds it from anywhere; λ is the
+condition's multiplier. f·u grows along every path of proportional load, since f·Δu is the work of a flowing body.
+
+f·u doubles from state to state. While it does, what is left of a rise that goes like 1/(f·u) is the last increase of λ,
+and of a faster one, such as that of beams, 1/(f·u)², less: the path ends where that increase is small.
+"""
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.plastic.plastic_body import PlasticBody
+from alula.fea.plastic.yield_law import Past, PointResponse
+from alula.fea.solvers.solve import Factor, available_methods, factorise
+from alula.geometry.base.errors import CannotRunError
+
+Real = NDArray[np.float64]
+
+RATIO = 2.0
+"""By which f·u grows from state to state."""
+FLAT = 0.01
+"""Increase of λ, relative, in a state with ``RATIO`` times the f·u, at which the limit is reached; the band holds as
+much."""
+TOLERANCE = 1e-4
+"""Forces that are out of balance, over the load's; the error of λ goes with their square."""
+ITERATIONS = 40
+"""At most, in one state."""
+STATES = 20
+"""At most: f·u has then grown a million times."""
+STIFFENED = 1e-6
+"""Share of the elastic stiffness that is added to the tangent, which is singular in a mechanism. The mechanism itself
+is led by f·u; all else converges by this factor in each iteration at worst."""
+SMALLER = 0.1
+"""Slope of the energy along a step, over that at its start, at which the line search leaves it."""
+SEARCHES = 8
+"""At most, in one line search; the convex energy has one least value on it."""
+CLOSER = 6
+"""States at most that are sought about the material's largest strain."""
+UNLOADED = 0.99
+"""Equivalent stress over the yield stress below which a point that has flowed counts as unloaded."""
+
+
+class NoPlasticStateError(CannotRunError):
+    """A state of the path was not found."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlasticState:
+    """A body in equilibrium.
+
+    Attributes
+    ----------
+    factor : float
+        λ, on the loads.
+    control : float
+        f·u over that of the elastic body at λ = 1.
+    displacement : ndarray, shape (3n,)
+        [mm]
+    response : PointResponse
+        Of the points.
+    residuals : tuple of float
+        Forces out of balance over the load's, before each iteration and after the last.
+    """
+
+    factor: float
+    control: float
+    displacement: Real
+    response: PointResponse
+    residuals: tuple[float, ...] = ()
+
+    @property
+    def plastic_strain(self) -> float:
+        """Largest equivalent plastic strain of a point."""
+        return float(self.response.past.equivalent.max())
+
+
+class ProportionalLoad:
+    """A body, what holds it, and a load that grows in proportion.
+
+    Parameters
+    ----------
+    body : PlasticBody
+    load : ndarray, shape (3n,)
+        At factor 1 [N]; what acts on fixed unknowns is borne by them.
+    fixed : ndarray of int
+        Unknowns that stay.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
+    until : float, optional
+        Time by ``time.perf_counter`` after which no iteration is begun.
+
+    Attributes
+    ----------
+    solves : int
+        Linear systems that were factorised so far.
+    """
+
+    def __init__(
+        self,
+        body: PlasticBody,
+        load: Real,
+        fixed: NDArray[np.int64],
+        *,
+        threads: int | None = None,
+        until: float = np.inf,
+    ) -> None:
+        self.body, self.threads, self.until, self.solves = body, threads, until, 0
+        self.free = np.ones(body.space.unknowns, dtype=np.bool_)
+        self.free[fixed] = False
+        self.fixed, self.load = fixed, np.where(self.free, load, 0.0)
+        self.size = float(np.linalg.norm(self.load))
+        if self.size == 0.0:
+            raise CannotRunError("no load acts on the body, so that none can grow")
+        law = body.law
+        self._elastic = np.broadcast_to(law.stiffness, (body.points, 6, 6))
+        self.unit = self._solve(self._elastic, self.load)
+        self.work = float(self.load @ self.unit)
+        stress = body.strain(self.unit) @ law.stiffness
+        self.first_yield = 1.0 / float(law.share(stress).max())
+
+    def _factor(self, tangent: Real) -> Factor:
+        if time.perf_counter() > self.until:
+            raise NoPlasticStateError("the time limit ended the path")
+        self.solves += 1
+        K = self.body.stiffness(tangent)
+        K.fix(self.fixed)
+        return factorise(K, method=available_methods()[0], threads=self.threads)
+
+    def _solve(self, tangent: Real, rhs: Real) -> Real:
+        return self._factor(tangent).solve(rhs)
+
+    def elastic(self, factor: float) -> PlasticState:
+        """Return the state under a load at which no point has yielded before.
+
+        Parameters
+        ----------
+        factor : float
+            λ, at most ``first_yield``.
+
+        Returns
+        -------
+        PlasticState
+        """
+        u = factor * self.unit
+        response = self.body.respond(u, Past.none(self.body.points), tangent=False)
+        return PlasticState(factor=factor, control=factor, displacement=u, response=response)
+
+    def _guess(self, before: PlasticState, last: PlasticState | None, control: float) -> Real:
+        """Return the displacements of a state: on the line through the last two, or the elastic ones."""
+        if last is None or last.control == before.control:
+            return before.displacement + (control - before.control) * self.unit
+        along = (before.displacement - last.displacement) / (before.control - last.control)
+        return before.displacement + (control - before.control) * along
+
+    def led(self, before: PlasticState, control: float, last: PlasticState | None = None) -> PlasticState:
+        """Return the state with a given f·u.
+
+        Parameters
+        ----------
+        before : PlasticState
+            From which the points go on.
+        control : float
+            Its f·u over that of the elastic body at λ = 1.
+        last : PlasticState, optional
+            The one before ``before``, through which the guess goes.
+
+        Returns
+        -------
+        PlasticState
+
+        Raises
+        ------
+        NoPlasticStateError
+            Where Newton's method does not find it in ``ITERATIONS``, or in time.
+        """
+        return self._newton(before, self._guess(before, last, control), None)
+
+    def loaded(self, before: PlasticState, factor: float) -> PlasticState:
+        """Return the state under a given load.
+
+        Parameters
+        ----------
+        before : PlasticState
+            From which the points go on.
+        factor : float
+            λ, below the limit.
+
+        Returns
+        -------
+        PlasticState
+
+        Raises
+        ------
+        NoPlasticStateError
+            As ``led``.
+        """
+        return self._newton(before, before.displacement + (factor - before.factor) * self.unit, factor)
+
+    def _newton(self, before: PlasticState, u: Real, factor: float | None) -> PlasticState:
+        past, residuals, body = before.response.past, [], self.body
+        stiff = STIFFENED * body.law.stiffness
+        for _ in range(ITERATIONS):
+            response = body.respond(u, past)
+            inner = np.where(self.free, body.forces(response.stress), 0.0)
+            assert response.tangent is not None
+            # The λ that leaves the least force out of balance tells whether a solution is needed at all.
+            load = float(inner @ self.load) / self.size**2 if factor is None else factor
+            scale = self.size * max(abs(load), self.first_yield)
+            residuals.append(float(np.linalg.norm(inner - load * self.load)) / scale)
+            if residuals[-1] <= TOLERANCE:
+                return PlasticState(
+                    factor=load,
+                    control=float(self.load @ u) / self.work,
+                    displacement=u,
+                    response=response,
+                    residuals=tuple(residuals),
+                )
+            factored = self._factor(response.tangent + stiff)
+            if factor is None:
+                a, b = factored.solve(np.column_stack([self.load, inner])).T
+                load = float(self.load @ b) / float(self.load @ a)
+                step = load * a - b  # f·step = 0: f·u stays
+            else:
+                step = factored.solve(factor * self.load - inner)
+            u = u + self._length(u, step, load, past) * step
+        raise NoPlasticStateError(f"no equilibrium was found in {ITERATIONS} iterations")
+
+    def _length(self, u: Real, step: Real, load: float, past: Past) -> float:
+        """Return how far to go along a step: to where the convex energy is about least on it."""
+
+        def slope(t: float) -> float:
+            inner = self.body.forces(self.body.respond(u + t * step, past, tangent=False).stress)
+            return float((np.where(self.free, inner, 0.0) - load * self.load) @ step)
+
+        start = slope(0.0)
+        if not start < 0.0:
+            return 1.0  # at rounding; the residual tells
+        low, high, at_low, at_high = 0.0, 1.0, start, slope(1.0)
+        for _ in range(SEARCHES):
+            if at_high <= SMALLER * abs(start):
+                return high
+            t = low + (high - low) * max(at_low / (at_low - at_high), 0.1)
+            at = slope(t)
+            if abs(at) <= SMALLER * abs(start):
+                return t
+            if at < 0.0:
+                low, at_low = t, at
+            else:
+                high, at_high = t, at
+        return low or high
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadPath:
+    """A body on the way to the load that it bears.
+
+    Attributes
+    ----------
+    states : tuple of PlasticState
+        From first yield on.
+    ended : {"limit", "strain"}
+        By the load that it bears, or the largest strain of its material.
+    factor : float
+        λ that it bears: of the last state, or where the largest strain is reached.
+    low, high : float
+        Least and largest λ that it may be on this mesh.
+    unloaded : float
+        Largest share of the volume that has flowed in which stress fell again while the load grew.
+    """
+
+    states: tuple[PlasticState, ...]
+    ended: Literal["limit", "strain"]
+    factor: float
+    low: float
+    high: float
+    unloaded: float
+
+    @property
+    def last(self) -> PlasticState:
+        """The state at its end."""
+        return self.states[-1]
+
+
+def follow(load: ProportionalLoad, *, largest_strain: float = math.inf, like: LoadPath | None = None) -> LoadPath:
+    """Follow a body to the load that it bears.
+
+    Parameters
+    ----------
+    load : ProportionalLoad
+    largest_strain : float, optional
+        Plastic strain of a point at which the path ends.
+    like : LoadPath, optional
+        A path to the limit of the same body on another mesh, whose values of f·u are taken, so that both compare.
+
+    Returns
+    -------
+    LoadPath
+
+    Raises
+    ------
+    NoPlasticStateError
+        Where a state was not found, or the load does not level off.
+    """
+    states = [load.elastic(load.first_yield)]
+    unloaded, begin = 0.0, load.first_yield
+    if like is not None:
+        begin = like.states[0].control
+        begin *= RATIO ** max(math.ceil(math.log(load.first_yield / begin, RATIO)), 0)
+    while len(states) < STATES:
+        before = states[-1]
+        control = RATIO ** len(states) * begin
+        state = load.led(before, control, states[-2] if len(states) > 1 else None)
+        states.append(state)
+        unloaded = max(unloaded, unloaded_share(load.body, before.response, state.response))
+        rise = max(state.factor - before.factor, 0.0)
+        if state.plastic_strain > largest_strain:
+            below, above, part = _about(load, before, state, largest_strain)
+            return LoadPath(
+                states=tuple(states),
+                ended="strain",
+                factor=below.factor + part * (above.factor - below.factor),
+                low=below.factor,
+                high=max(above.factor, below.factor),
+                unloaded=unloaded,
+            )
+        ends = rise <= FLAT * state.factor if like is None else control >= 0.99 * like.last.control
+        if ends:
+            return LoadPath(
+                states=tuple(states),
+                ended="limit",
+                factor=state.factor,
+                low=state.factor,
+                high=state.factor + rise / (RATIO - 1.0),
+                unloaded=unloaded,
+            )
+    raise NoPlasticStateError(f"the load still rises after {STATES} states")
+
+
+def _about(
+    load: ProportionalLoad, before: PlasticState, after: PlasticState, strain: float
+) -> tuple[PlasticState, PlasticState, float]:
+    """Return the states below and above a plastic strain, close to one another in λ, and where between them it is."""
+    below, above = before, after
+
+    def part() -> float:
+        return (strain - below.plastic_strain) / (above.plastic_strain - below.plastic_strain)
+
+    for _ in range(CLOSER):
+        if above.factor - below.factor <= FLAT * above.factor:
+            break
+        state = load.led(before, below.control + part() * (above.control - below.control))
+        below, above = (below, state) if state.plastic_strain > strain else (state, above)
+    return below, above, part()
+
+
+def unloaded_share(body: PlasticBody, before: PointResponse, now: PointResponse) -> float:
+    """Return the share of the volume that had flowed in which the stress is below the yield stress again.
+
+    Parameters
+    ----------
+    body : PlasticBody
+    before, now : PointResponse
+        In two states, one after the other.
+
+    Returns
+    -------
+    float
+        0 where nothing had flowed.
+    """
+    flowed = before.past.equivalent > 0.0
+    weights = body.weights.reshape(-1)
+    stress = body.law.share(now.stress) * body.law.strength / body.law.yield_stress(now.past.equivalent)
+    fell = flowed & (stress < UNLOADED)
+    volume = float(weights[flowed].sum())
+    return float(weights[fell].sum()) / volume if volume > 0.0 else 0.0

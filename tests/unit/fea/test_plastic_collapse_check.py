@@ -1,0 +1,138 @@
+"""A check of plastic collapse: which links it is asked of, what is refused, and how its band is judged and told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from edited_cases import edited
+
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.doubts.load_growth import Growths
+from alula.fea.judging import plastic_collapse
+from alula.fea.judging.link_result import by_hand_shares
+from alula.fea.judging.plastic_collapse import collapse_outcomes
+from alula.fea.plastic.link_collapse import LinkCollapse
+from alula.fea.plastic.load_path import NoPlasticStateError
+from alula.geometry.base.errors import CaseError
+from alula.reports.check.plastic_collapse import collapse_section
+from alula.reports.sections.section import Picture
+from alula.reports.sentences import told
+
+CHECK = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5 }'
+FRONT = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
+OWN = (
+    'materials.own={{ title = "Aluminium", density = "2800 kg/m^3", youngs_modulus = "70 GPa", poissons_ratio = 0.33, '
+    'yield_strength = "400 MPa", strength = "yield", minimum_safety_factor = 2.0{}, sources = {{}}, status = {{}} }}'
+)
+FOUND = LinkCollapse(
+    factor=2.0,
+    low=1.9,
+    high=2.2,
+    mesh_error=0.05,
+    pressure=1.0,
+    transfer=None,
+    ended="limit",
+    unloaded=0.0,
+    strain=0.001,
+    residual=0.01,
+    nodes=np.zeros((6, 3)),
+    boundary=np.arange(6)[None],
+    zone=np.ones(6),
+    plastic_share=0.3,
+    unknowns=18,
+    solves=20,
+)
+
+
+def judged(case, found):
+    """Return the outcome under the first load case."""
+    load_case = next(iter(case.load_cases))
+    doubts = Growths(), by_hand_shares(Growths(), "front")
+    [outcome] = collapse_outcomes(case, load_case, found, lambda link: True, lambda link: doubts)
+    return outcome
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "verdict"), [(1.5, 3.0, Verdict.PASS), (1.4, 3.0, Verdict.UNDECIDED), (1.0, 1.45, Verdict.FAIL)]
+)
+def test_the_whole_band_is_judged(low, high, verdict):
+    outcome = judged(edited("knee", [FRONT]), {"front": replace(FOUND, factor=low, low=low, high=high)})
+    assert outcome.verdict is verdict
+    assert (outcome.subject.name, outcome.limit) == ("front", 1.5)
+    assert "flows without end" in told(outcome.reason)
+
+
+def test_the_largest_strain_and_unloading_are_told():
+    case = edited("knee", [FRONT, OWN.format(", hardening_factors = [[0.04, 1.1]]"), 'parts.front.material="own"'])
+    outcome = judged(case, {"front": replace(FOUND, ended="strain", unloaded=0.2)})
+    assert "largest plastic strain of its card, 4 %" in told(outcome.reason)
+    assert "stress fell again in 20 %" in told(outcome.reason)
+
+
+def test_the_range_of_the_strength_multiplies_the_band():
+    entries = OWN.format(', strength_range = ["300 MPa", "500 MPa"]'), 'parts.front.material="own"'
+    outcome = judged(edited("knee", [FRONT, *entries]), {"front": FOUND})
+    assert outcome.value.low == pytest.approx(1.9 * 0.75)
+    assert outcome.value.high == pytest.approx(2.2 * 1.25)
+    assert outcome.verdict is Verdict.UNDECIDED
+
+
+def test_without_a_solid_it_is_open_and_names_the_remedy():
+    result = check_case(edited("knee", [CHECK]), fidelity="beam")
+    checks = [one for load_case in result.load_cases.values() for one in load_case.checks]
+    own = [one for one in checks if one.quantity is Quantity.PLASTIC_COLLAPSE]
+    assert {one.verdict for one in own} == {Verdict.UNDECIDED}
+    assert all("--fidelity solid" in told(one.reason) for one in own)
+    assert {one.link for one in own} == {"front", "rear"}
+    assert collapse_section(result).data == {"plastic_collapse": None}
+
+
+def test_from_the_case_to_the_section(monkeypatch):
+    """One load case is found, of the other the path is lost: it stays open, and never passes."""
+    asked = []
+
+    def find(link, law, loads, mesh, **more):
+        asked.append((link.E, law.strength, more["until"] < np.inf))
+        if loads.name == "late-stance":
+            raise NoPlasticStateError("no equilibrium was found in 40 iterations")
+        return FOUND
+
+    monkeypatch.setattr(plastic_collapse, "collapse_of", find)
+    result = check_case(edited("knee", [FRONT]))
+    assert set(asked) == {(71700.0, 460.0, True)}
+    assert len(asked) == 2
+    checks = {
+        name: next(one for one in load_case.checks if one.quantity is Quantity.PLASTIC_COLLAPSE)
+        for name, load_case in result.load_cases.items()
+    }
+    assert checks["heel-strike"].verdict is Verdict.PASS
+    assert checks["late-stance"].verdict is Verdict.UNDECIDED
+    assert "no equilibrium" in told(checks["late-stance"].reason)
+    section = collapse_section(result)
+    record = section.data["plastic_collapse"]["load_cases"]
+    assert record["heel-strike"]["links"]["front"]["factor"] == 2.0
+    assert record["late-stance"]["links"] == {}
+    assert [part.name for part in section.parts if isinstance(part, Picture)] == ["plastic-front"]
+
+
+@pytest.mark.parametrize(
+    ("entry", "says"),
+    [
+        ('parts.front.material="resin-405nm"', "is brittle"),
+        ("parts.front.build_direction=[0.0, 0.0, 1.0]", "printed in layers"),
+    ],
+)
+def test_brittle_and_layered_links_are_refused(entry, says):
+    with pytest.raises(CaseError, match=says) as error:
+        edited("knee", [CHECK, entry])
+    assert "front" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "entry",
+    ["[[0.0, 1.0]]", "[[0.02, 1.1], [0.01, 1.2]]", "[[0.01, 1.2], [0.02, 1.1]]"],
+)
+def test_a_curve_rises(entry):
+    with pytest.raises(CaseError, match="hardening_factors"):
+        edited("knee", [OWN.format(f", hardening_factors = {entry}")])

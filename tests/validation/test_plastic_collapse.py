@@ -1,0 +1,87 @@
+"""Known limit loads of perfectly plastic bodies, within 2 %, and bounds of others.
+
+Hill, The Mathematical Theory of Plasticity (1950): the thick cylinder in plane strain, p = (2 σ/√3) ln(b/a), and
+plastic moments, Z σ. Those of a circle and a tube follow from the first moment of half the area: Z = (D³ - d³)/6, over
+the elastic π (D⁴ - d⁴)/(32 D): 16/(3π) = 1.70 for a rod. A strip with a hole, in plane stress, bears at least σ on its
+net section (a stress field of two straight ties) and at most 2/√3 times that (a straight neck across each ligament:
+its rate of strain along the neck is zero, so that the stress is that of plane strain).
+"""
+
+import numpy as np
+import pytest
+from holed_problems import cylinder_problem, strip_problem
+from plastic_problems import NU, YIELD, E, bent, eighth_in_tension, law, limit, loaded
+from solid_problems import Problem, even, single
+
+from alula.fea.plastic.load_path import follow
+
+
+def test_hills_cylinder():
+    """On a coarse mesh: plane strain, where elements that keep their volume lock first."""
+    p = cylinder_problem(4, 5, 1, held=True, ratio=1.0)  # 100 mm, 200 mm, 60 MPa
+    strength = 60.0 * np.sqrt(3.0) / 2.0 / np.log(2.0)
+    load = loaded(p, type(law())(E=200_000.0, nu=0.3, strength=strength))
+    path = follow(load)
+    assert path.ended == "limit"
+    assert path.factor == pytest.approx(1.0, abs=0.01)
+    assert path.low <= path.factor <= path.high
+    assert load.solves < 40
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.6])
+def test_plastic_moment_of_a_tube(ratio):
+    """Stress blocks on its ends, whose moment is the plastic one at σ; a tenth of a bore is a rod within 0.1 %."""
+    path = limit(bent(ratio, 1.0, radial=3, around=4, along=2, length=4.0))
+    assert path.factor == pytest.approx(YIELD, rel=0.02)
+    shape = path.factor / YIELD * 16.0 * (1.0 - ratio**3) / (3.0 * np.pi * (1.0 - ratio**4))
+    assert shape == pytest.approx({0.1: 1.70, 0.6: 1.528}[ratio], rel=0.02)
+
+
+def test_a_bent_rectangle_on_its_way_to_its_plastic_moment():
+    """M = 1.5 Me (1 - (κe/κ)²/3): moment and curvature of the middle of a beam, on each state of the path."""
+    p = Problem(
+        mesh=single(even(4, 0.0, 6.0), even(3), even(1, 0.0, 0.3), lambda u, v, w: np.stack([u, v, w], -1)), E=E, nu=NU
+    )
+    p.fix(p.nodes_on("u0"), "x")
+    p.fix(p.nodes_on("v0"), "x")  # the neutral axis: half the height is modelled
+    p.fix(p.nodes_on("w0"), "z")
+    p.fix(p.node_at(0.0, 0.0, 0.0), "y")
+    p.traction("u1", (1.0, 0.0, 0.0))
+    path = limit(p)
+    elastic = YIELD / E  # of κ, half the height is 1
+    seen = 0
+    for state in path.states[1:]:
+        u = state.displacement.reshape(-1, 3)
+        far, near = p.node_at(2.25, 0.0, 0.0), p.node_at(0.0, 0.0, 0.0)
+        curvature = 2.0 * abs(u[far, 1] - u[near, 1]) / 2.25**2
+        if curvature > elastic:
+            seen += 1
+            assert state.factor / YIELD == pytest.approx(1.0 - (elastic / curvature) ** 2 / 3.0, abs=0.02)
+    assert seen >= 2
+    assert 1.5 * path.factor / YIELD == pytest.approx(1.5, rel=0.02)
+
+
+@pytest.mark.parametrize("ratio", [0.3, 0.5])
+def test_a_strip_with_a_hole_lies_between_its_bounds(ratio):
+    p = strip_problem(ratio, 4, 6, 4, E=E, nu=NU)
+    for node in np.flatnonzero(p.space.nodes[:, 2] > 1e-9):
+        p.fixed.pop(3 * int(node) + 2, None)  # one face is free: plane stress
+    path = limit(p)
+    net = (1.0 - ratio) * YIELD
+    assert 0.99 * net < path.factor < 2.0 / np.sqrt(3.0) * net
+    assert path.factor < 1.03 * net  # close to the lower bound
+
+
+def test_the_factor_goes_with_the_yield_stress_and_not_with_the_modulus():
+    strip = bent(0.6, 1.0, radial=1, around=3, along=1, length=3.0)
+    one = limit(strip, law())
+    other = limit(strip, type(law())(E=10.0 * E, nu=NU, strength=2.0 * YIELD))
+    assert other.factor == pytest.approx(2.0 * one.factor, rel=1e-6)
+
+
+def test_a_hardening_tie_ends_at_its_largest_strain():
+    """σ at 5 % is 1.5 times that at yield: a bar in tension bears it, and no more is known."""
+    path = follow(loaded(eighth_in_tension(), law(hardening=((0.05, 1.5),))), largest_strain=0.05)
+    assert path.ended == "strain"
+    assert path.factor == pytest.approx(1.5 * YIELD, rel=0.02)
+    assert path.low <= 1.5 * YIELD <= path.high

@@ -1,0 +1,110 @@
+"""Plastic collapse of a link on two meshes: against what its eyes bear by beams, whole and by halves, after the
+load."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import solid_meshes
+from plastic_problems import NU, YIELD, E, law
+
+from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
+from alula.fea.plastic.load_path import NoPlasticStateError
+from alula.fea.refine.link_task import ElasticLink
+from alula.geometry.meshing.mirror import mirrored
+from alula.geometry.meshing.tagged_mesh import TaggedMesh
+
+HOLE, WIDTH, HEIGHT, LENGTH = 1.5, 5.0, 3.0, 20.0
+NET = (WIDTH - 2.0 * HOLE) * HEIGHT * YIELD
+"""[N] that the net section of an eye bears."""
+LINK = ElasticLink(body=None, E=E, nu=NU, density=1.4e-9, line=("bore:A", "bore:B"), brittle=False)
+
+
+def pull(force: float) -> LinkLoads:
+    pins = (("A", 0.0, -force), ("B", LENGTH, force))
+    return LinkLoads(
+        name="pull",
+        pins=tuple(
+            PinLoad(
+                name=name, centre=np.array([x, 0.0, 0.0]), diameter=2.0 * HOLE, wrench=np.array([f, 0, 0, 0, 0, 0.0])
+            )
+            for name, x, f in pins
+        ),
+    )
+
+
+@cache
+def mesh(coarser: float) -> TaggedMesh:
+    radial = 2 if coarser == 1.0 else 1
+    half = solid_meshes.half_bar(
+        hole=HOLE, half_width=WIDTH / 2.0, length=LENGTH, around=12, radial=radial, along=radial, layers=1
+    )
+    return mirrored(half)
+
+
+@cache
+def collapse(force: float) -> LinkCollapse:
+    return collapse_of(LINK, law(), pull(force), mesh, threads=1)
+
+
+def ring_bears() -> float:
+    """Share of the net section that the ring about a bore bears by beams: the best of its redundant force and moment.
+
+    A lower bound by statics. From the crown, with hoop force n and moment m, to the net section, under the pressure q
+    cos φ over 180°; walls of the square eye by their thickness w and centroid c, each with (N/Np)² + (V/Vp)² + |M|/Mp
+    <= 1.
+    """
+    angle = np.linspace(0.0, np.pi / 2.0, 181)
+    along, across = np.cos(angle), np.sin(angle)
+    wall = WIDTH / 2.0 / np.maximum(along, across) - HOLE
+    radius = HOLE + wall / 2.0
+    push = NET * 2.0 / np.pi * along * np.array([along, across])
+    steps = (push[:, 1:] + push[:, :-1]) / 2.0 * angle[1]
+    pushed = np.concatenate([np.zeros((2, 1)), np.cumsum(steps, axis=1)], axis=1)
+    at = radius * np.array([along, across])
+    area, best = wall * HEIGHT, 0.0
+    for n in np.linspace(0.2, 0.8, 61) * NET:
+        for m in np.linspace(-0.5, 0.5, 41) * NET:
+            x, y = pushed[0], pushed[1] - n
+            hoop, shear = across * x - along * y, along * x + across * y
+            # the pressure goes through the middle of the bore, the crown's hoop force through its centroid
+            moment = m - (at[0, 0] * n) - (at[0] * y - at[1] * x)
+            square = (hoop / (area * YIELD)) ** 2 + (shear / (area * YIELD / np.sqrt(3.0))) ** 2
+            linear = np.abs(moment) / (YIELD * HEIGHT * wall**2 / 4.0)
+            # λ² square + λ linear = 1
+            best = max(best, float((2.0 / (linear + np.sqrt(linear**2 + 4.0 * square))).min()))
+    return best
+
+
+def test_an_eye_bears_what_its_ring_bears_and_at_most_its_net_section():
+    found = collapse(NET)
+    assert found.ended == "limit"
+    assert found.low <= found.factor <= found.high
+    assert found.factor <= 1.0
+    assert ring_bears() * 0.98 < found.factor
+    assert found.solves < 120
+    flowed = found.nodes[found.zone > 0.0]
+    assert np.minimum(np.abs(flowed[:, 0]), np.abs(flowed[:, 0] - LENGTH)).max() < WIDTH
+    assert 0.01 < found.plastic_share < 0.6
+
+
+def test_half_a_body_collapses_as_the_whole():
+    whole = collapse_of(LINK, law(), pull(NET), lambda coarser: replace(mesh(coarser), mirror=None), threads=1)
+    assert whole.factor == pytest.approx(collapse(NET).factor, rel=1e-3)
+
+
+def test_what_stays_after_the_load():
+    """The factor goes with the load; a link that does not bear its load leaves nothing to tell."""
+    much, over = collapse(0.7 * NET), collapse(NET)
+    assert 0.7 * much.factor == pytest.approx(over.factor, rel=1e-3)
+    assert much.strain > 1e-3
+    assert 1e-3 * HOLE < much.residual < 0.2 * HOLE
+    assert over.strain is None
+    assert over.residual is None
+
+
+def test_a_path_without_time_gives_no_factor():
+    with pytest.raises(NoPlasticStateError, match="time limit"):
+        collapse_of(LINK, law(), pull(NET), mesh, until=0.0)
