@@ -163,7 +163,7 @@ def check(
     --------
     >>> report = check("owl-wing-closed", fidelity="beam")
     >>> print(report.verdict)
-    undecided
+    pass
     >>> [row["link"] for row in report.table("links")]
     ['GF', 'AE', 'CF', 'CH', 'ED']
     >>> round(report.drive_torques["weight"], 1)  # N·mm

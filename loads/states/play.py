@@ -28,6 +28,7 @@ from alula.loads.states.rubbing import WAYS, friction_at
 from alula.loads.statics.friction import NOTHING_MORE, Presses
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.statics.statics import Drive, balance
+from alula.loads.statics.system import System
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -72,8 +73,8 @@ class Displaced:
     joints : mapping of str to JointReaction
     effort : array (...)
         Drive torque [N mm], or force [N] where the drive pushes; 0 without drive.
-    distance : array (...)
-        From a dead point: the smallest singular value of the scaled equations.
+    system : System
+        The equations of equilibrium.
     """
 
     offsets: Mapping[str, complex]
@@ -81,7 +82,12 @@ class Displaced:
     loads: tuple[Load, ...]
     joints: Mapping[str, JointReaction]
     effort: Real
-    distance: Real
+    system: System
+
+    @cached_property
+    def distance(self) -> Real:
+        """From a dead point (...): the smallest singular value of the scaled equations."""
+        return np.asarray(self.system.singular_values[..., -1])
 
     def force(self, joint: str) -> Complex:
         """Return the force of a joint's first link on its second.
@@ -177,7 +183,7 @@ class Play:
             loads=loads,
             joints=found.joints,
             effort=np.asarray(found.effort),
-            distance=found.system.singular_values[..., -1],
+            system=found.system,
         )
         return there, closed & found.sound & ~locked
 
@@ -218,21 +224,27 @@ class Play:
     def gradients(self) -> Mapping[str, tuple[Mapping[str, Real | Complex], ...]]:
         """Joint -> derivatives, by each of its offsets, of every joint's force, the effort and the distance.
 
-        The effort is at "effort", the distance at "distance"; by central differences. Infinite at a dead point.
+        The effort is at "effort", the distance at "distance"; by central differences. Infinite at a dead point. The
+        smallest singular value σ changes by uᵀ dA v with its singular vectors, A v = σ u (Golub and Van Loan, Matrix
+        Computations, 4th ed., section 8.6.1).
         """
         step, found = STEP * self.loose.place.linkage.longest, {}
+        left, _, right = np.linalg.svd(self.solved({})[0].system.scaled)
+        u, v = left[..., -1], right[..., -1, :]
         for name in self.loose.radii:
             each = []
             for direction in self.loose.directions(name):
                 ends = [self.solved({name: sign * step * direction}) for sign in (1.0, -1.0)]
-                (plus, minus), sound = (self._numbers(end) for end, _ in ends), ends[0][1] & ends[1][1]
-                each.append({k: np.where(sound, (plus[k] - minus[k]) / (2.0 * step), np.inf) for k in plus})
+                (plus, minus), sound = (self._at_hand(end) for end, _ in ends), ends[0][1] & ends[1][1]
+                by = {key: (plus[key] - minus[key]) / (2.0 * step) for key in plus}
+                by["distance"] = np.einsum("...i,...ij,...j->...", u, by.pop("equations"), v)
+                each.append({key: np.where(sound, change, np.inf) for key, change in by.items()})
             found[name] = tuple(each)
         return found
 
-    def _numbers(self, here: Displaced) -> dict[str, Real | Complex]:
+    def _at_hand(self, here: Displaced) -> dict[str, Real | Complex]:
         forces = {f"force {name}": here.force(name) for name in self.case.joints}
-        return {**forces, "effort": here.effort, "distance": here.distance}
+        return {**forces, "effort": here.effort, "equations": here.system.scaled}
 
     def slack(self, key: str) -> Real:
         """Return how far a real number of ``gradients`` may go to either side, to first order.
@@ -290,13 +302,16 @@ class Play:
         """The distance to a dead point; of one pose."""
         return self._span("distance")
 
+    def _of(self, here: Displaced, key: str) -> float:
+        return float(here.distance if key == "distance" else here.effort)
+
     def _span(self, key: str) -> Span:
-        value = np.nan if self.nominal is None else float(self._numbers(self.nominal)[key].real)
+        value = np.nan if self.nominal is None else self._of(self.nominal, key)
         if self.through_dead_point:
             low, high = (0.0, np.inf) if key == "distance" else (-np.inf, np.inf)
             return Span(value=value, low=low, high=high)
         slack = float(self.slack(key))
-        solved = [float(self._numbers(end)[key].real) for s in (1.0, -1.0) if (end := self._worst(key, s)) is not None]
+        solved = [self._of(end, key) for s in (1.0, -1.0) if (end := self._worst(key, s)) is not None]
         low, high = min(value - slack, *solved), max(value + slack, *solved)
         return Span(value=value, low=max(low, 0.0) if key == "distance" else low, high=high)
 

@@ -1,6 +1,7 @@
 """The equations of equilibrium [A][R] = [b] of a linkage, with their names, scales and solution."""
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -63,9 +64,8 @@ class System:
     def regular(self, least: float) -> NDArray[np.bool_]:
         """Tell which states have a smallest singular value of at least a number.
 
-        The determinant is the product of all n singular values, and the n - 1 largest have at most the product
-        (|A|^2 / (n - 1))^((n - 1) / 2), since their squares sum to no more than |A|^2 (Frobenius). Singular values
-        are calculated where the bound that follows from these does not tell.
+        The Frobenius norm of the inverse is no less than 1 over it. Singular values are calculated where that does not
+        tell.
 
         Parameters
         ----------
@@ -76,12 +76,8 @@ class System:
         bool array (...)
         """
         found = np.zeros(self.matrix.shape[:-2], dtype=np.bool_)
-        rows, n = self.matrix.shape[-2:]
-        if rows == n:
-            squares = np.sum(self.scaled**2, axis=(-2, -1))
-            with np.errstate(divide="ignore"):
-                most = 0.5 * (n - 1) * np.log(np.maximum(squares, least**2) / (n - 1))
-                found = np.asarray(np.linalg.slogdet(self.scaled)[1] - most >= math.log(2.0 * least))
+        with suppress(np.linalg.LinAlgError):  # not square, or one is singular to the last digit
+            found = np.asarray(np.linalg.norm(np.linalg.inv(self.scaled), axis=(-2, -1)) * 2.0 * least <= 1.0)
         if not found.all():
             found[~found] = np.linalg.svd(self.scaled[~found], compute_uv=False)[..., -1] >= least
         return found
