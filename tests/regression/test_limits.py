@@ -62,10 +62,17 @@ def test_sizes_that_nothing_has(entry: str, text: str, words: str) -> None:
     "changes",
     [
         {"load_cases.lift.forces.0.force.1": "1e20 N", "load_cases.lift.gravity": "1e-20 mm/s^2"},
-        {"load_cases.lift.forces.0.force.1": "1e-20 N", "materials.plate.density": "1e-20 tonne/mm^3"},
-        {"materials.plate.youngs_modulus": "1e20 MPa", "load_cases.lift.speed": "1e-20 rad/s"},
+        {
+            "load_cases.lift.forces.0.force.1": "1e-20 N",
+            "materials.plate.density": "1e-20 tonne/mm^3",
+            "load_cases.lift.speed": "1e20 rad/s",
+        },
+        {
+            "materials.plate.youngs_modulus": "1e20 MPa",
+            "load_cases.lift.speed": "1e-20 rad/s",
+            "materials.plate.density": "1e20 tonne/mm^3",
+        },
         {"materials.plate.youngs_modulus": "1e-20 MPa", "load_cases.lift.forces.0.force.1": "-1e20 N"},
-        {"materials.plate.density": "1e20 tonne/mm^3", "load_cases.lift.speed": "1e20 rad/s"},
     ],
 )
 def test_the_ends_of_what_is_read_are_borne_by_all_that_solves(changes: dict[str, str]) -> None:

@@ -19,7 +19,7 @@ CASES = {
     "spring-pedal": [],
     "four-bar-synthesis": ["load_cases.weight.own_weight=true", "load_cases.weight.speed=300 rpm"],
 }
-POSES = 7
+POSES = 4
 
 
 @pytest.mark.parametrize("name", CASES)
