@@ -25,7 +25,7 @@ _STACKING = (
 _LAYERS = (
     "Pins between layers are beams that touch their holes at the rims. Holes are as wide as the case states; where it "
     "states nothing, the value has running pins (H8/f7), and the bands hold all from pressed pins to holes wider by a "
-    "tenth of the pin. That washers, heads and faces that touch bear couples is left out."
+    "tenth of the pin. That faces that touch, and heads that no joint states, bear couples is left out."
 )
 _TILT = " Displacements and the gaps between layers hold how far running pins tilt in holes of which nothing is stated."
 
