@@ -95,14 +95,17 @@ def links_asked(monkeypatch):
     return solids
 
 
-WIDE = 'load_cases.weight.scatter=["20 %", "500 %"]'
+WIDE = 'load_cases.weight.scatter=["10 %", "1000 %"]'
 
 
 def test_a_solid_is_solved_where_it_may_decide_and_not_where_the_load_leaves_all_open(links_asked):
-    """By hand the safety factor of AE is 7.4 to 29.6; with 0.2 to 5 times the load all of it is on both sides of 8."""
+    """By hand the safety factor of AE is 3.6 to 65; with 0.1 to 10 times the load all of it is on both sides of 8.
+
+    Followed on its deformed shape the linkage may give way under so much load, which its solids may decide.
+    """
     assert links_asked()[0] == {"AE"}
     assert links_asked('load_cases.weight.scatter=["90 %", "110 %"]')[0] == {"AE"}
-    asked, result = links_asked(WIDE)
+    asked, result = links_asked(WIDE, 'large_displacement="off"', 'checks.strength.links=["AE"]')
     assert asked == set()
     link = result.load_cases["weight"].links["AE"]
     assert link.decided_by == "beam"
