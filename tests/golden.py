@@ -105,7 +105,7 @@ def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None
 def run(name: str) -> dict[str, float | str | None]:
     """Run the command of a golden result and return its numbers by path; hand calculations are shared with tests."""
     if name.startswith("hand-"):
-        return dict(numbers(json.loads(as_json(solved.told(name.removeprefix("hand-"))))))
+        return dict(numbers(json.loads(as_json(solved.by_hand(name.removeprefix("hand-"))))))
     from alula.reports.commands.cli import app
 
     told = io.StringIO()
