@@ -166,17 +166,15 @@ class PinStates:
 
     @property
     def reaches(self) -> Real:
-        """(n + 1,) up to how far rims let a point move, wherever pins stand in them, of the same states [mm]."""
+        """(n + 1,) how far rims and heads let a point move at most, wherever pins stand, of the same states [mm]."""
         moved = self.rims.solved.displacements(self.rims.opened)[:, :3]
         by_rims, holes = moved.reshape(*moved.shape[:2], -1, 2, 2), len(self.rims.holes)
-        found = []
-        for radii in self.radii.of(np.vstack([self.radii.value, self._told[0]]))[0]:
-            radius, apart = radii[: 2 * holes : 2], np.full(holes, 2.0)
-            between = self.radii.ties[:, 0] // 2
-            apart[between] = np.minimum(2.0, radii[2 * holes :] / np.maximum(radius[between], LEAST_RADIUS))
-            each = (radius * furthest(by_rims, apart)).sum(axis=2)
-            found.append(np.linalg.norm(each, axis=1).max())
-        return np.array(found)
+        radii = self.radii.of(np.vstack([self.radii.value, self._told[0]]))[0]
+        radius, between = radii[:, : 2 * holes : 2], self.radii.ties[:, 0] // 2
+        apart = np.full(radius.shape, 2.0)
+        apart[:, between] = radii[:, 2 * holes :] / np.maximum(radius[:, between], LEAST_RADIUS)
+        each = np.einsum("sh,snah->sna", radius, furthest(by_rims, apart[:, None, None]))
+        return np.asarray(np.linalg.norm(each, axis=2).max(axis=1))
 
     @cached_property
     def answers(self) -> tuple[FrameSolution, ...]:

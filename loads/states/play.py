@@ -188,9 +188,15 @@ class Play:
         return there, closed & found.sound & ~locked
 
     @cached_property
+    def plain(self) -> tuple[Displaced, NDArray[np.bool_]]:
+        """The linkage without play, as of ``solved``."""
+        return self.solved({})
+
+    @cached_property
     def nominal(self) -> Displaced | None:
         """The linkage without play; None at a dead point."""
-        return self.at({})
+        here, sound = self.plain
+        return here if np.all(sound) else None
 
     @cached_property
     def settled(self) -> Displaced | None:
@@ -229,7 +235,7 @@ class Play:
         Computations, 4th ed., section 8.6.1).
         """
         step, found = STEP * self.loose.place.linkage.longest, {}
-        left, _, right = np.linalg.svd(self.solved({})[0].system.scaled)
+        left, _, right = np.linalg.svd(self.plain[0].system.scaled)
         u, v = left[..., -1], right[..., -1, :]
         for name in self.loose.radii:
             each = []
