@@ -29,8 +29,8 @@ from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
 from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
-from alula.fea.judging.bearing import bearing_outcome, sharing
-from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of
+from alula.fea.judging.bearing import bearing_outcome
+from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
@@ -385,13 +385,7 @@ class _LoadCase:
         found, ways = [], (reactions, *self.forces.sharings)
         for one in asked(self.case, EyeCheck):
             link = one.subject.name
-            growth = {
-                joint: self.uneven.joints.get(joint, Scatter()).times(
-                    sharing(self.case, joint, link, [way.joints[joint].wrench for way in ways])
-                )
-                for joints in eyes_of(self.case, link).values()
-                for joint in joints
-            }
+            growth = with_sharing(self.case, link, self.uneven.joints, ways)
             plates = [loads for loads, _ in self.plates[link]]
             found.append((one, tuple(eye_factors(self.case, self.load_case, one, plates, growth))))
         return found

@@ -15,11 +15,13 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome
+from alula.fea.judging.bearing import sharing
 from alula.fea.outcomes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 from alula.geometry.bodies.body import Body, extent
 from alula.geometry.bodies.features import Pin
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import BTH_1, EyeCheck
+from alula.loads.statics.statics import Reactions
 
 WITHOUT = reason("scatter_of_eye_formulas_unread")
 OBLIQUE = Source(kind=SourceKind.DIRECTION, detail=reason("across_its_shank"))
@@ -144,6 +146,32 @@ def eye_factors(
             )
         )
         yield worse_of(one, strength, plates, spread)
+
+
+def with_sharing(case: Case, link: str, growth: Mapping[str, Scatter], ways: Sequence[Reactions]) -> dict[str, Scatter]:
+    """Return how the forces on the eyes of a link grow, with what the sharing of couples makes of them.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    growth : mapping of str to Scatter
+        Joint -> how its force grows besides; nothing where it is left out.
+    ways : sequence of Reactions
+        Joint forces in all ways of sharing, first those that stand.
+
+    Returns
+    -------
+    dict of str to Scatter
+        By the joints of the link's eyes.
+    """
+    return {
+        joint: growth.get(joint, Scatter()).times(
+            sharing(case, joint, link, [way.joints[joint].wrench for way in ways])
+        )
+        for joints in eyes_of(case, link).values()
+        for joint in joints
+    }
 
 
 def worse_of(one: Asked, strength: EyeStrength, plates: Sequence[LinkLoads], spread: Scatter) -> EyeFactors:

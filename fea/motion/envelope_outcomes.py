@@ -15,8 +15,8 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
-from alula.fea.judging.bearing import bearing_outcome, pressing, sharing
-from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, worst_pose
+from alula.fea.judging.bearing import bearing_outcome, pressing
+from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, with_sharing, worst_pose
 from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
@@ -233,7 +233,7 @@ def eye_outcomes(
         Link -> what acts on it, one record per load case and plate.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    grown : mapping of str to MotionGrowth, optional
+    grown : mapping of str to Growths, optional
         Load case -> what the deformed shape makes of joint forces; nothing when left out.
 
     Yields
@@ -252,10 +252,7 @@ def eye_outcomes(
             growth = {joint: _growth(moved, load_case, joint, evaluated, grown or {}) for joint in joints}
             if case.links[link].count == 2:
                 forces = forces_at(moved, load_case, pose)
-                ways = (forces.reactions, *forces.sharings)
-                for joint in joints:
-                    every = [way.joints[joint].wrench for way in ways]
-                    growth[joint] = growth[joint].times(sharing(case, joint, link, every))
+                growth = with_sharing(case, link, growth, (forces.reactions, *forces.sharings))
             here = [loads.chosen(pose) for loads in plates]
             found = tuple(eye_factors(case, load_case, one, here, growth))
             outcome = _complete(eye_outcome(load_case, one, found), evaluated)

@@ -80,7 +80,7 @@ def _parts(result: CheckResult) -> Iterator[Part]:
     }
     yield Text(
         "All loads on a link grow together by the factor until it flows without end, or until its material reaches the "
-        "largest strain of its card. Below the factor it stays, however bent; above first yield it stays bent.",
+        "largest strain of its card. Below the factor it holds; once a point has yielded it stays bent in part.",
         "note",
     )
     yield Table.by_columns(
@@ -90,7 +90,7 @@ def _parts(result: CheckResult) -> Iterator[Part]:
             Column("plastic-collapse factor (band)"): numbers(bands[name, link] for name, link, _ in rows),
             words("ends by"): [_ENDS[one.ended] for _, _, one in rows],
             Column("plastic strain under the load"): numbers(one.strain for _, _, one in rows),
-            Column("stays after it", "mm"): numbers(one.residual for _, _, one in rows),
+            Column("residual displacement", "mm"): numbers(one.residual for _, _, one in rows),
         },
         key="plastic-collapse",
     )
