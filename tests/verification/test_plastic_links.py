@@ -7,11 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 import solid_meshes
-from plastic_problems import NU, YIELD, E, law
+from plastic_problems import NU, YIELD, E, eighth_in_tension, law, loaded
 
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
-from alula.fea.plastic.load_path import NoPlasticStateError
+from alula.fea.plastic.load_path import NoPlasticStateError, follow
 from alula.fea.refine.link_task import ElasticLink
 from alula.geometry.meshing.mirror import mirrored
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
@@ -108,3 +108,7 @@ def test_what_stays_after_the_load():
 def test_a_path_without_time_gives_no_factor():
     with pytest.raises(NoPlasticStateError, match="time limit"):
         collapse_of(LINK, law(), pull(NET), mesh, until=0.0)
+    begun = loaded(eighth_in_tension())
+    begun.until = 0.0
+    with pytest.raises(NoPlasticStateError, match="time limit"):
+        follow(begun)

@@ -98,6 +98,8 @@ def test_a_factor_is_told_where_it_is_less_than_one_that_is_known():
         assert known.factor(below=share * factor) == share * factor
     for share in (1.001, 2.0):
         assert known.factor(below=share * factor) == pytest.approx(factor, rel=1e-9)
+    late = replace(known, plain=np.diag([-1.0, 10.0]), pressed=np.diag([0.5, -2.0]), free=np.zeros((2, 0)))
+    assert late.factor(below=3.0) == 0.0, "it is stable at 3, but not on the way there"
 
 
 def test_condensed_to_its_rims_the_divided_frame_is_that_of_the_programme():

@@ -55,6 +55,20 @@ def test_a_pulled_bar_by_hand():
     assert min(eye.factors.values(), key=lambda band: band.low) == eye.factors[EyeMode.NET_SECTION]
 
 
+def test_play_of_another_joint_widens_an_eye_by_what_it_makes_of_its_force():
+    def loose(tables):
+        tables["joints"]["B"]["clearance"] = "0.8 mm"
+        tables["load_cases"]["pull"]["forces"][0]["force"] = ["500 N", "-400 N"]
+
+    found = checked(eyes(loose))
+    force = found.forces.play.forces["O"]
+    assert force.high > 1.005 * force.value
+    [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
+    net = eye.factors[EyeMode.NET_SECTION]
+    assert net.low == pytest.approx(net.value * force.value / force.high, rel=1e-6)
+    assert net.high == pytest.approx(net.value * force.value / force.low, rel=1e-6)
+
+
 def two_eyes(tables, narrow, thin):
     """One eye is narrow and thick, the other wide and thin; a second load case presses into the shanks."""
     sizes = {narrow: {"diameter": "9 mm", "thickness": "3 mm"}, thin: {"diameter": "16 mm", "thickness": "2 mm"}}
