@@ -36,8 +36,8 @@ def eye_parts(case: LoadCaseResult) -> Iterator[Part]:
             ),
             rows,
             key="eyes",
-            caption="Eyes: what each mode bears over the force of the pin, ordered by low ends; the angle is that from the "
-            "pull straight off the shank, 180° where the pin presses into it, so that bearing alone is left",
+            caption="Eyes: what each mode bears over the force of the pin, ordered by low ends; the angle is that from "
+            "the pull straight off the shank, 180° where the pin presses into it, so that bearing alone is left",
             under=(("load case", case.name),),
         )
 
