@@ -4,8 +4,8 @@
 
 Each linkage has four, six or eight links in layers of their own; of each hole is stated a range of its clearance, a
 press, one range for both of a joint's holes, a fit, or nothing. Each draw takes a clearance for every hole from what is
-stated of it, at its ends as often as between them. Told are the draws outside the bands: of the couples that pins bear,
-of joint forces, of links' stress by hand, of the displacement of a point, and of the lowest frequency.
+stated of it, at its ends as often as between them. Told are the draws outside the bands: of thrusts, of pins' stress,
+of links' stress by hand, of the displacement of a point, and of the lowest frequency.
 """
 
 import argparse
@@ -25,6 +25,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
 from alula.fea.doubts.force_doubt import measures, sharing_answers, stress_by_hand
 from alula.fea.frame.build import build_frame
+from alula.fea.outcomes.pins import shared_stress, stresses_between
 from alula.fea.pins.states import PinStates, unstated
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
 from alula.fea.standing.thrust import thrusts
@@ -38,8 +39,8 @@ Real = NDArray[np.float64]
 RESULTS = Path(__file__).with_name("results") / "draws.json"
 SAME = 2e-3
 """Share of a band's larger end by which a draw may lie outside without being told."""
-DIRECTIONS = 40
-"""In which the draws are sought whose stress counts: it is a convex function of what acts on a link."""
+TRIED = 5
+"""Draws that are looked at: so many in which an end of a link's beam bears most, and in which the link bears least."""
 VIBRATING = 20
 """Draws of which the frequency is found."""
 
@@ -183,17 +184,22 @@ class Outside:
         How many lie outside.
     excess : float
         By how much at most, over the end of the band that is larger.
+    left : float
+        The same over what lies between its ends.
     """
 
     of: str
     draws: int
     excess: float
+    left: float
 
 
 def _beyond(of: str, low: float, high: float, found: Real) -> Iterator[Outside]:
-    excess = np.maximum(found - high, low - found) / (max(abs(low), abs(high)) or 1.0)
+    beyond = np.maximum(found - high, low - found)
+    excess = beyond / (max(abs(low), abs(high)) or 1.0)
     if excess.max() > SAME:
-        yield Outside(of=of, draws=int((excess > SAME).sum()), excess=float(excess.max()))
+        left = float(beyond.max()) / (high - low) if high > low else math.inf
+        yield Outside(of=of, draws=int((excess > SAME).sum()), excess=float(excess.max()), left=left)
 
 
 def outside(case: Case, count: int, seed: int = 0) -> list[Outside]:
@@ -221,13 +227,20 @@ def outside(case: Case, count: int, seed: int = 0) -> list[Outside]:
     at_zero = _wrenches(pins, names, np.zeros(v.shape[1]))
     by_unit = np.array([_wrenches(pins, names, unit) - at_zero for unit in np.eye(v.shape[1])])
     drawn = at_zero + np.einsum("nv,vjk->njk", v, by_unit)
-    known = np.array([[one.joints[name].wrench for name in names] for one in (forces.reactions, *forces.sharings)])
-    found = list(_couples(case, names, drawn, known))
-    thrust, largest = thrusts(forces), float(np.abs(known[:, :, :2]).max())
+    found, thrust = list[Outside](), thrusts(forces)
+    largest = max(
+        float(np.abs(one.joints[name].wrench[:3]).max())
+        for one in (forces.reactions, *forces.sharings)
+        for name in names
+    )
     for j, name in enumerate(names):
         if name in thrust and thrust[name].high > 1e-4 * largest:
             found += _beyond(f"thrust at {name}", thrust[name].low, thrust[name].high, np.abs(drawn[:, j, 2]))
-    found += _stresses(case, statics, pins, v, drawn)
+        if case.linkage.rise(name) != 0.0:
+            band = shared_stress(case, name, forces.reactions.joints[name], forces).equivalent
+            each = np.array([one.equivalent.value for one in stresses_between(case, name, drawn[:, j])])
+            found += _beyond(f"pin at {name}", band.low, band.high, each)
+    found += _stresses(case, statics, pins, v)
     return [*found, *_points(case, statics, pins, v)]
 
 
@@ -236,39 +249,22 @@ def _wrenches(pins: PinStates, names: list[str], v: Real) -> Real:
     return np.array([found[name].wrench for name in names])
 
 
-def _couples(case: Case, names: list[str], drawn: Real, known: Real) -> Iterator[Outside]:
-    """Couples along and across both links of every joint."""
-    angles = case.solve_pose().angles
-    for j, name in enumerate(names):
-        rise, every = case.linkage.rise(name), []
-        for wrench in (known[:, j], drawn[:, j]):
-            second = wrench[:, 3:5]
-            every.append((second + rise * np.column_stack([-wrench[:, 1], wrench[:, 0]]), second))
-        for link, (states, of_draws) in zip(case.joints[name].links, zip(*every, strict=True), strict=True):
-            turn = angles[link]
-            axes = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-            low, high = (states @ axes).min(axis=0), (states @ axes).max(axis=0)
-            largest = float(np.abs(states).max())
-            for k, way in enumerate(("along", "across")):
-                if max(abs(low[k]), abs(high[k])) > 1e-2 * largest:
-                    yield from _beyond(f"couple at {name} {way} {link}", low[k], high[k], (of_draws @ axes)[:, k])
-
-
-def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real, drawn: Real) -> Iterator[Outside]:
-    forces, loads = statics.forces["l"], statics.loads["l"]
-    directions = np.random.default_rng(1).standard_normal((DIRECTIONS, drawn.shape[2] - 1))
+def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:
+    """Stress of links in those draws in which plain sections at the ends of their beams bear most and least."""
+    forces, loads, ends = statics.forces["l"], statics.loads["l"], pins.rims.beam_ends
+    borne, number = pins.aims.stresses(v), tuple(dict.fromkeys(ends.owners))
     for link in case.checked_links:
-        own = [j for j, name in enumerate(case.joints) if link in case.joints[name].links]
-        scale = np.abs(drawn[:, own]).max(axis=(0, 1))[:-1] + 1e-12
-        along = [(drawn[:, j, :5] / scale) @ directions.T for j in own]
-        chosen = {int(i) for one in (*along, sum(along)) for i in (*one.argmax(axis=0), *one.argmin(axis=0))}
+        own = [borne[:, k] for k, owner in enumerate(ends.owners) if owner == ("link", link)]
+        own.append(borne[:, number.index(("link", link)) - len(number)])
+        chosen = {int(i) for one in own for i in np.argsort(one)[-TRIED:]}
         answers = sharing_answers(case, "l", link, forces, loads)
         every = [stress_by_hand(case, link, one) for one in answers.every]
         of_draws = [
             measures(case, link, link_loads("l", link, case.body(link), pins.reactions(v[i]), loads), tilts=True)[0]
             for i in sorted(chosen)
         ]
-        yield from _beyond(f"stress of {link}", min(every), max(every), np.array(of_draws))
+        growth = answers.stress(every[0], every[1:])
+        yield from _beyond(f"stress of {link}", growth.low * every[0], growth.high * every[0], np.array(of_draws))
 
 
 def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:

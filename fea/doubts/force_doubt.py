@@ -117,7 +117,7 @@ def sharing_answers(
     """Return what acts on a link, or on each plate of a pair, with tight pins and in the ways of sharing that count.
 
     In the plane all ways have the same forces, and stress is a convex function of what acts across it: it is largest at
-    a corner of the hull of all ways. These count, and the one with the least couples.
+    a corner of the hull of all ways. These count, and the one in which its plain sections bear least.
 
     Parameters
     ----------
@@ -137,7 +137,9 @@ def sharing_answers(
     longest = case.linkage.longest
     across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
     across = across.reshape(len(others), -1)
-    chosen = {*outermost(across).tolist(), int(np.argmin(np.linalg.norm(across, axis=1)))}
+    least = forces.pins.least(link) if forces.pins is not None else None
+    least = int(np.argmin(np.linalg.norm(across, axis=1))) if least is None else least
+    chosen = {*outermost(across).tolist(), least}
     tilted = tuple(borne(case, link, others[i], tilts=True) for i in sorted(chosen))
     rule = widest(COUPLES)
     return LinkAnswers(stated=borne(case, link, tight, tilts=grown), others=tilted, stress=rule, displacement=rule)

@@ -17,6 +17,7 @@ from alula.fea.beam.cut_free import seat
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
 from alula.geometry.base.errors import CaseError
@@ -73,7 +74,7 @@ def sharing(case: Case, joint: str, link: str, wrenches: Sequence[Real]) -> Scat
         More than 1 only of pairs of plates, whose plates bear couples.
     """
     stands, *others = (float(pressing(case, joint, wrench)[link]) for wrench in wrenches)
-    most = max(others, default=stands)
+    _, most = sought([stands, *others])
     return Scatter(high=most / stands, sources=COUPLES) if most > stands > 0.0 else Scatter()
 
 

@@ -50,6 +50,7 @@ from alula.fea.beam.pin_between import largest_between
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.standing.joint_forces import JointForces
@@ -318,12 +319,30 @@ def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     wrench, rise = reaction.wrench, case.linkage.rise(joint)
     if rise == 0.0:
         return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
-    (found,) = _stresses_between(case, joint, wrench[None])
+    (found,) = stresses_between(case, joint, wrench[None])
     return found
 
 
-def _stresses_between(case: Case, joint: str, wrenches: NDArray[np.float64]) -> list[PinStress]:
-    """Stresses of a pin between layers under each of some wrenches (n, 6) on the joint's second link."""
+def stresses_between(case: Case, joint: str, wrenches: NDArray[np.float64]) -> list[PinStress]:
+    """Return the stresses of a pin between layers.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    wrenches : ndarray, shape (n, 6)
+        On the joint's second link [N, N mm].
+
+    Returns
+    -------
+    list of PinStress
+        Under each wrench.
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
+    """
     (diameter, poisson), rise = _pin_of(case, joint), case.linkage.rise(joint)
     first = shifted(-wrenches, np.array([0.0, 0.0, rise]))
     return [
@@ -358,15 +377,16 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     if not forces.sharings or case.linkage.rise(joint) == 0.0:
         return found
     every = (forces.reactions, *forces.sharings)
-    plain, *others = _stresses_between(case, joint, np.array([one.joints[joint].wrench for one in every]))
+    plain, *others = stresses_between(case, joint, np.array([one.joints[joint].wrench for one in every]))
 
     def widened(name: str) -> Band:
         value, sizes = getattr(found, name).value, [getattr(one, name).value for one in (plain, *others)]
         # Shares first: the least is then 1 at most, and the largest 1 at least, in spite of rounding.
-        ends = [value * (size / sizes[0]) for size in sizes] if sizes[0] > 0.0 else [value, *sizes]
-        return Band(value=value, low=min(ends), high=max(ends), sources=COUPLES)
+        low, high = sought([value * (size / sizes[0]) for size in sizes] if sizes[0] > 0.0 else [value, *sizes])
+        return Band(value=value, low=max(low, 0.0), high=high, sources=COUPLES)
 
-    shear = found.shear * max(one.shear / (plain.shear or math.inf) for one in (plain, *others))
+    _, most = sought([one.shear / (plain.shear or math.inf) for one in (plain, *others)])
+    shear = found.shear * most
     moment, bending, equivalent = map(widened, ("moment", "bending", "equivalent"))
     return replace(found, moment=moment, bending=bending, shear=shear, equivalent=equivalent)
 

@@ -16,10 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.beam.section_stress import equivalent_stress
 from alula.fea.frame.linear import FactorisedFrame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import FrameModel
 from alula.fea.frame.system import natural_deformations
+from alula.geometry.parts.part import Section
 from alula.loads.case.case import Case
 from alula.loads.case.forks import eye_of
 from alula.loads.case.heights import thickness
@@ -49,6 +51,28 @@ class Hole:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class BeamEnds:
+    """What bears on the sections at both ends of pins and of all stretches of links' beams, as plain stresses.
+
+    Attributes
+    ----------
+    owners : tuple of tuple of (str, str)
+        Of each of e ends: "link" or "pin", and the name of the link or joint.
+    tight : ndarray, shape (e, 4)
+        N/A, bending stress in the plane and out of it, and √3 times shear stress of the torque, with tight pins [MPa].
+    by_rims : ndarray, shape (e, 4, 4 h)
+        The same by the variables.
+    round : ndarray of bool, shape (e,)
+        Where the section has no corners.
+    """
+
+    owners: tuple[tuple[str, str], ...]
+    tight: Real
+    by_rims: Real
+    round: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RimFrame:
     """A frame condensed to the rims of h holes.
 
@@ -67,12 +91,13 @@ class RimFrame:
     opened : ndarray, shape (u, 4 h)
         Scaled unknowns of the frame by the variables.
     couples : ndarray, shape (c, r)
-        The couples of all pins at both ends, along and across their links, and thrusts, from natural forces of pins'
-        beams.
+        Thrusts of all pins, and couples along and across links without a beam, from natural forces of pins' beams.
     tight : ndarray, shape (r,)
         These natural forces with tight pins.
     by_rims : ndarray, shape (r, 4 h)
         The same by the variables.
+    beam_ends : BeamEnds
+        Of all pins, and links with a beam.
     K : ndarray, shape (4 h, 4 h)
         Stiffness [N/mm].
     g : ndarray, shape (4 h,)
@@ -87,6 +112,7 @@ class RimFrame:
     couples: Real
     tight: Real
     by_rims: Real
+    beam_ends: BeamEnds
     K: Real
     g: Real
 
@@ -143,6 +169,7 @@ class RimFrame:
             couples=_couples(frame),
             tight=tight,
             by_rims=by_rims,
+            beam_ends=_beam_ends(frame, solved, opened),
             K=(K + K.T) / 2.0,
             g=opening.T @ tight,
         )
@@ -168,18 +195,48 @@ class RimFrame:
 
 
 def _couples(frame: LinkageFrame) -> Real:
-    """Couples and thrusts (5 pins, 6 pins) of all pins, at both ends along and across the link, by natural forces."""
-    found = np.zeros((5 * len(frame.pin_beams), 6 * len(frame.pin_beams)))
+    """Thrusts of all pins, and couples along and across links without a beam, by natural forces of pins' beams."""
+    beams, found = {beam.link for beam in frame.beams.values()}, list[Real]()
     for k, name in enumerate(frame.pin_beams):
-        found[5 * k + 4, 6 * k] = 1.0
         first, last = (frame.model.nodes[node][2] for node in frame.model.elements[frame.pin_beams[name]].nodes)
         turned = -1.0 if last > first else 1.0  # local y of a pin that rises lies against y
+        found.append(_row(frame, {6 * k: 1.0}))
         for end, (link, _) in enumerate(frame.pin_eyes[name]):
-            angle = frame.pose.angles[link]
-            about_x, about_y = 6 * k + 1 + end, 6 * k + 3 + end  # about a pin's local z, along x, and its local y
-            found[5 * k + 2 * end, [about_x, about_y]] = np.cos(angle), turned * np.sin(angle)
-            found[5 * k + 2 * end + 1, [about_x, about_y]] = -np.sin(angle), turned * np.cos(angle)
+            if link not in beams:
+                along, across = np.cos(frame.pose.angles[link]), np.sin(frame.pose.angles[link])
+                about_x, about_y = 6 * k + 1 + end, 6 * k + 3 + end  # about a pin's local z, along x, and its local y
+                found.append(_row(frame, {about_x: along, about_y: turned * across}))
+                found.append(_row(frame, {about_x: -across, about_y: turned * along}))
+    return np.array(found)
+
+
+def _row(frame: LinkageFrame, entries: Mapping[int, float]) -> Real:
+    found = np.zeros(6 * len(frame.pin_beams))
+    found[list(entries)] = list(entries.values())
     return found
+
+
+def _beam_ends(frame: LinkageFrame, solved: FactorisedFrame, opened: Real) -> BeamEnds:
+    beams = [(i, ("link", beam.link)) for i, beam in frame.beams.items()]
+    beams += [(i, ("pin", joint)) for joint, i in frame.pin_beams.items()]
+    ends = [(i, owner, moments) for i, owner in beams for moments in ((1, 3), (2, 4))]
+    rows = np.array(
+        [6 * i + row for i, _, (about_z, about_y) in ends for row in (0, about_z, about_y, 5)], dtype=np.int64
+    )
+    sections = [frame.model.elements[i].section for i, _, _ in ends]
+    unit = np.array([_unit_stresses(section) for section in sections]).reshape(-1, 4)
+    tight, by_rims = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
+    return BeamEnds(
+        owners=tuple(owner for _, owner, _ in ends),
+        tight=unit * tight.reshape(-1, 4),
+        by_rims=unit[:, :, None] * by_rims.reshape(len(ends), 4, -1),
+        round=np.array([section.round for section in sections], dtype=bool),
+    )
+
+
+def _unit_stresses(section: Section) -> tuple[float, float, float, float]:
+    twisted = float(equivalent_stress(section, np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]))[0])
+    return 1.0 / section.area, section.half_y / section.i_z, section.half_z / section.i_y, twisted
 
 
 def _stands(low: float, high: float) -> Real:

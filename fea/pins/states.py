@@ -1,9 +1,9 @@
 """How pins may stand between layers: the state of the stated clearances, and those in which links bear most and least.
 
 What each hole may be between is open. A joint force is a function of the radii that is neither convex nor monotonic,
-so that its ends are sought: each couple that a pin carries into a link is followed upwards and downwards
-(``alula.fea.pins.ascent``), on the path of the interior point method first, where rims do not quite touch. All states
-that are met on the way tell of all couples.
+so that its ends are sought: each couple that a pin carries into a link and the stress of each link are followed upwards
+and downwards (``alula.fea.pins.aims``, ``alula.fea.pins.ascent``), on the path of the interior point method first,
+where rims do not quite touch. All states that are met on the way tell of all of them.
 """
 
 from collections.abc import Collection
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
+from alula.fea.pins.aims import Aims, aims_of
 from alula.fea.pins.ascent import ascend
 from alula.fea.pins.clearances import Radii, clearances_of, furthest, head_gaps, pin_size, radii_of
 from alula.fea.pins.holes import RimFrame, rims_of
@@ -29,12 +30,12 @@ Index = NDArray[np.int64]
 
 LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
 """Shares of all that is open at which the search starts, beside the values. These states are kept whether or not some
-couple is largest in them: a link's stress is least where its couples are small together, as on tight pins."""
+couple is largest in them."""
 DRAWS = 400
 """Further states at which the search starts, drawn at random, most clearances at an end or near the lower one."""
 STAGES = ((1e-3, 4, 1e-3), (1e-4, 2, 1e-4))
 """Of the search, one after the other: the residual at which its states end, from how many of the largest ones each
-couple is followed, and down to which gain, over the range of the starts. Some way before rims touch, couples are smooth
+function is followed, and down to which gain, over the range of the starts. Some way before rims touch, they are smooth
 functions of the radii with fewer local ends, and their slopes are known to 1e-6 and better; at 1e-8 they are known to
 1e-3 alone, where it is open whether a rim touches."""
 ROUGH = 1e-8
@@ -109,23 +110,10 @@ class PinStates:
         """(4 h,) where pins stand with the values of all clearances."""
         return np.asarray(self.solved(self.radii.value[None]).v[0])
 
-    def couples(self, v: Real) -> Real:
-        """Return the couples that all pins carry into both of their links, and their thrusts.
-
-        Parameters
-        ----------
-        v : ndarray, shape (n, 4 h)
-
-        Returns
-        -------
-        ndarray, shape (n, c)
-            [N mm] and [N]
-        """
-        return np.asarray(self.rims.couples @ self.rims.tight + v @ self._by_rims.T)
-
     @cached_property
-    def _by_rims(self) -> Real:
-        return np.asarray(self.rims.couples @ self.rims.by_rims)
+    def aims(self) -> Aims:
+        """What is sought: ends of thrusts, of couples on links without a beam, and of the stress of links and pins."""
+        return aims_of(self.rims.couples @ self.rims.by_rims, self.rims.beam_ends, self.rims.noise)
 
     @cached_property
     def _told(self) -> tuple[Real, Real]:
@@ -133,7 +121,7 @@ class PinStates:
         shares = self.extremes()
         found = self.solved(shares).v
         alike = np.arange(1, min(1 + len(LEVELS), len(found)))
-        kept = np.union1d(_telling(self.couples(found)), alike)
+        kept = np.union1d(_telling(self.aims.values(found)), alike)
         return shares[kept], found[kept]
 
     @property
@@ -181,6 +169,23 @@ class PinStates:
         """The frame's answers with the values of all clearances first, then in ``states``."""
         return tuple(self.answer(v) for v in (self.value, *self.states))
 
+    def least(self, link: str) -> int | None:
+        """Return the number of that one of ``states`` in which the plain sections of a link bear least.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        int or None
+            None of a link without a beam.
+        """
+        owners = tuple(dict.fromkeys(self.rims.beam_ends.owners))
+        if ("link", link) not in owners:
+            return None
+        return int(self.aims.stresses(self.states)[:, owners.index(("link", link)) - len(owners)].argmax())
+
     @cached_property
     def ends(self) -> tuple[Reactions, ...]:
         """Joint forces in ``states``."""
@@ -193,31 +198,29 @@ class PinStates:
         -------
         ndarray, shape (n, k)
         """
-        value = self.radii.value
-        aims = _unlike(self._by_rims[np.abs(self._by_rims).max(axis=1) > self.rims.noise])
-        if not len(value) or not len(aims):
+        value, aims = self.radii.value, self.aims
+        if not len(value) or not aims.count:
             return value[None]
-        aims = np.vstack([aims, -aims])
         alike = np.outer(LEVELS, np.ones(len(value)))
         starts = np.vstack([value, alike, _drawn(DRAWS, len(value))])
         for close, paths, near in STAGES:
             starts = self._followed(starts, aims, close, paths, near)
-        reached = self._stands(starts, ROUGH)[1].v @ aims.T
+        reached = aims.values(self._stands(starts, ROUGH)[1].v)
         return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])
 
-    def _followed(self, starts: Real, aims: Real, close: float, paths: int, near: float) -> Real:
-        """Shares where functions aᵀ v of where pins stand are largest, of all that are met, then where ways end."""
-        met, reached = [starts], [self._stands(starts, close)[1].v @ aims.T]
+    def _followed(self, starts: Real, aims: Aims, close: float, paths: int, near: float) -> Real:
+        """Shares where functions of where pins stand are largest, of all that are met, then where ways end."""
+        met, reached = [starts], [aims.values(self._stands(starts, close)[1].v)]
         spread = np.ptp(reached[0], axis=0)
         first = np.argsort(-_graded(reached[0], spread), axis=0, kind="stable")[:paths].ravel()
-        aim = np.tile(np.arange(len(aims)), paths)
+        aim = np.tile(np.arange(aims.count), paths)
 
         def evaluate(shares: Real, which: Index) -> tuple[Real, Real]:
             known, state = _distinct(shares)
             radii, at = self._stands(known, close)
-            by_radii = slopes(self.rims.K, radii, at, state, aims[aim[which]], self.radii.ties)
+            by_radii = slopes(self.rims.K, radii, at, state, aims.slopes(at.v[state], aim[which]), self.radii.ties)
             met.append(known)
-            reached.append(at.v @ aims.T)
+            reached.append(aims.values(at.v))
             return reached[-1][state, aim[which]], np.einsum("akr,ar->ak", self.radii.of(known)[1][state], by_radii)
 
         ends = ascend(starts[first], evaluate, near * spread[aim])
@@ -242,22 +245,15 @@ def _distinct(rows: Real) -> tuple[Real, Index]:
     return rows[first[order]], np.argsort(order)[number.ravel()]
 
 
-def _unlike(aims: Real) -> Real:
-    """Those rows that are no multiples of others."""
-    unit = aims / np.linalg.norm(aims, axis=1, keepdims=True)
-    kept = [k for k in range(len(unit)) if not (np.abs(unit[:k] - unit[k]).max(axis=1) < ALIKE).any()]
-    return np.asarray(aims[kept])
-
-
 def _graded(values: Real, size: Real) -> Real:
     """Values (n, c) in steps of ``ALIKE`` of their sizes (c,), so that rounding does not tell which one is largest."""
     return np.round(values / (ALIKE * np.maximum(size, NOTHING * size.max(initial=0.0) or 1.0)))
 
 
-def _telling(couples: Real) -> Index:
-    """Numbers of the fewest states found that hold every couple's ends (n, c)."""
-    steps = _graded(couples, np.abs(couples).max(axis=0))
-    near = np.hstack([steps == steps.max(axis=0), steps == steps.min(axis=0)])
+def _telling(values: Real) -> Index:
+    """Numbers of the fewest states found in which each of some functions (n, c) is largest."""
+    steps = _graded(values, np.abs(values).max(axis=0))
+    near = steps == steps.max(axis=0)
     found, rest = list[int](), np.ones(near.shape[1], dtype=bool)
     while rest.any():
         best = int(near[:, rest].sum(axis=1).argmax())

@@ -3,6 +3,7 @@
 import numpy as np
 
 from alula.fea.common.band import Band
+from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, distinct
 from alula.fea.standing.joint_forces import JointForces
 from alula.loads.statics.statics import Reactions
@@ -43,8 +44,9 @@ def thrusts(forces: JointForces, deformed: Reactions | None = None) -> dict[str,
             [float(one.reactions.joints[name].wrench[2] - tight[name].wrench[2]) for one in forces.open_by]
         )
         shared = [float(one.joints[name].wrench[2]) - own for one in forces.sharings]
-        low = value + float(np.minimum(steps, 0.0).sum()) + min([0.0, *shared])
-        high = value + float(np.maximum(steps, 0.0).sum()) + max([0.0, *shared])
+        less, more = sought([0.0, *shared])
+        low = value + float(np.minimum(steps, 0.0).sum()) + less
+        high = value + float(np.maximum(steps, 0.0).sum()) + more
         ends = sorted((abs(low), abs(high)))
         if ends[1] > _ROUNDING * largest:
             least = 0.0 if low <= 0.0 <= high else ends[0]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
+from alula.fea.common.sought import sought
 from alula.fea.common.source import Source
 
 Plates = tuple[LinkLoads, ...]
@@ -18,7 +19,7 @@ Rule = Callable[[float, Sequence[float]], Scatter]
 
 
 def widest(sources: tuple[Source, ...]) -> Rule:
-    """Return the rule of alternatives: the least and the largest of all answers.
+    """Return the rule of what is sought among alternatives: the least and the largest, and what may lie beyond.
 
     Parameters
     ----------
@@ -32,7 +33,8 @@ def widest(sources: tuple[Source, ...]) -> Rule:
 
     def rule(value: float, others: Sequence[float]) -> Scatter:
         shares = [1.0, *(one / value for one in others)] if value > 0.0 else [1.0]
-        return Scatter(low=max(min(shares), 0.0), high=max(shares), sources=sources)
+        low, high = sought(shares)
+        return Scatter(low=max(low, 0.0), high=high, sources=sources)
 
     return rule
 

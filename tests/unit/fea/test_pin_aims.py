@@ -1,0 +1,69 @@
+"""What the search over where pins stand seeks is what joint forces say, whichever way pins point."""
+
+import math
+
+import numpy as np
+import pytest
+
+from alula.fea.standing.case_statics import solve_case_statics
+from benchmarks import draws
+
+
+def standing(seed):
+    case = draws.linkage(seed)
+    forces = solve_case_statics(case).forces["l"]
+    assert forces.pins is not None
+    return case, forces
+
+
+@pytest.mark.parametrize("seed", [1, 11])
+def test_ends_of_beams_bear_what_joint_forces_say(seed):
+    """Of pins that rise, couples about y once had the other sign than those about x."""
+    case, forces = standing(seed)
+    rims, angles, signs = forces.pins.rims, case.solve_pose().angles, set()
+    parts = rims.beam_ends.tight + rims.beam_ends.by_rims @ forces.pins.value
+    found = dict.fromkeys(rims.beam_ends.owners, ())
+    for owner, part in zip(rims.beam_ends.owners, parts, strict=True):
+        found[owner] = (*found[owner], part)
+    couples = {}
+    for name in forces.frame.pin_eyes:
+        wrench, rise, diameter = (
+            forces.reactions.joints[name].wrench,
+            case.linkage.rise(name),
+            case.joints[name].pin_diameter,
+        )
+        signs.add(np.sign(rise))
+        couples[name] = (wrench[3:5] + rise * np.array([-wrench[1], wrench[0]]), wrench[3:5])
+        for part, couple in zip(found["pin", name], couples[name], strict=True):
+            assert math.hypot(*part[1:3]) == pytest.approx(32.0 * np.linalg.norm(couple) / (math.pi * diameter**3))
+            assert abs(part[0]) == pytest.approx(4.0 * abs(wrench[2]) / (math.pi * diameter**2), abs=1e-9)
+    assert signs == {-1.0, 1.0}
+    modulus = 9.0 * 4.0**2 / 6.0  # of the bar, out of the plane
+    coupler = np.array([math.cos(angles["coupler"]), math.sin(angles["coupler"])])
+    for part, name in zip((found["link", "coupler"][0], found["link", "coupler"][-1]), "AB", strict=True):
+        [couple] = [c for c, link in zip(couples[name], case.joints[name].links, strict=True) if link == "coupler"]
+        across = abs(coupler @ [couple[1], -couple[0]])
+        assert abs(part[2]) == pytest.approx(across / modulus, rel=1e-6)
+        assert abs(part[3]) == pytest.approx(abs(found["link", "coupler"][0][3]), rel=1e-6)
+
+
+def test_slopes_are_those_of_the_functions():
+    _, forces = standing(11)
+    aims, v = forces.pins.aims, np.random.default_rng(0).normal(scale=0.01, size=(1, len(forces.pins.value)))
+    every = np.repeat(v, aims.count, axis=0)
+    slopes = aims.slopes(every, np.arange(aims.count))
+    step = 1e-7 * np.eye(v.shape[1])
+    expected = (aims.values(v + step) - aims.values(v - step)) / 2e-7
+    assert slopes.T == pytest.approx(expected, rel=1e-4, abs=1e-5 * np.abs(expected).max())
+
+
+def test_the_state_in_which_a_link_bears_least_is_told():
+    case, forces = standing(1)
+    aims, owners = forces.pins.aims, tuple(dict.fromkeys(forces.pins.rims.beam_ends.owners))
+    borne = -aims.stresses(forces.pins.states)
+    least = [forces.pins.least(link) for link in case.checked_links]
+    assert [
+        borne[n, owners.index(("link", x)) - len(owners)] for n, x in zip(least, case.checked_links, strict=True)
+    ] == [borne[:, owners.index(("link", link)) - len(owners)].min() for link in case.checked_links]
+    assert len(set(least)) > 1
+    assert forces.pins.least("base") is None
