@@ -251,10 +251,12 @@ def _wrenches(pins: PinStates, names: list[str], v: Real) -> Real:
 
 def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:
     """Stress of links in those draws in which plain sections at the ends of their beams bear most and least."""
-    forces, loads, ends = statics.forces["l"], statics.loads["l"], pins.rims.beam_ends
+    forces, loads, ends = statics.forces["l"], statics.loads["l"], pins.aims.ends
     borne, number = pins.aims.stresses(v), tuple(dict.fromkeys(ends.owners))
     for link in case.checked_links:
         own = [borne[:, k] for k, owner in enumerate(ends.owners) if owner == ("link", link)]
+        if ("link", link) not in number:
+            continue
         own.append(borne[:, number.index(("link", link)) - len(number)])
         chosen = {int(i) for one in own for i in np.argsort(one)[-TRIED:]}
         answers = sharing_answers(case, "l", link, forces, loads)

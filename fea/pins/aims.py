@@ -31,7 +31,7 @@ class Aims:
     linear : ndarray, shape (a, v)
         Their first ones.
     ends : BeamEnds
-        e ends, whose stresses are further ones.
+        e ends, whose stresses are further ones: those whose stress depends on where pins stand.
     of_links : ndarray of bool, shape (l, e)
         Ends of each link and of each pin, whose largest stress is to be least.
     """
@@ -116,7 +116,7 @@ class Aims:
         return stress, np.stack(slope, axis=2)
 
     def _largest(self, each: Real) -> Real:
-        top = np.where(self.of_links, each[:, None], 0.0).max(axis=2, keepdims=True)
+        top = np.where(self.of_links, each[:, None], 0.0).max(axis=2, keepdims=True, initial=NOTHING)
         powers = (np.where(self.of_links, each[:, None], 0.0) / top) ** POWER
         return np.asarray(top[..., 0] * powers.sum(axis=2) ** (1.0 / POWER))
 
@@ -137,12 +137,19 @@ def aims_of(couples: Real, ends: BeamEnds, noise: float) -> Aims:
     Aims
     """
     linear = _unlike(couples[np.abs(couples).max(axis=1) > noise])
+    open_ends = np.flatnonzero(ends.by_rims.any(axis=(1, 2)))
+    ends = BeamEnds(
+        owners=tuple(ends.owners[k] for k in open_ends),
+        tight=ends.tight[open_ends],
+        by_rims=ends.by_rims[open_ends],
+        round=ends.round[open_ends],
+    )
     owners = dict.fromkeys(ends.owners)
     return Aims(
         linear=np.vstack([linear, -linear]),
         ends=ends,
         of_links=np.array([[other == one for other in ends.owners] for one in owners], dtype=bool).reshape(
-            len(owners), -1
+            len(owners), len(ends.owners)
         ),
     )
 

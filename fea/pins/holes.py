@@ -61,7 +61,7 @@ class BeamEnds:
     tight : ndarray, shape (e, 4)
         N/A, bending stress in the plane and out of it, and √3 times shear stress of the torque, with tight pins [MPa].
     by_rims : ndarray, shape (e, 4, 4 h)
-        The same by the variables.
+        The same by the variables; 0 where there is nothing but by rounding.
     round : ndarray of bool, shape (e,)
         Where the section has no corners.
     """
@@ -119,9 +119,7 @@ class RimFrame:
     @property
     def noise(self) -> float:
         """Couple by a unit at a rim below which there is none but by rounding, as in an open chain [N]."""
-        model = self.frame.model
-        every = [(model.elements[i], model.length(i)) for i in self.frame.pin_beams.values()]
-        return NOTHING * max(pin.young * pin.section.i_y / length**2 for pin, length in every)
+        return _noise(self.frame)
 
     @classmethod
     def of(cls, frame: LinkageFrame, rims: Mapping[tuple[str, str], tuple[float, float]]) -> "RimFrame":
@@ -194,6 +192,11 @@ class RimFrame:
         return RimFrame.of(replace(self.frame, model=model, pin_beams=pins, beams={}), rims)
 
 
+def _noise(frame: LinkageFrame) -> float:
+    every = [(frame.model.elements[i], frame.model.length(i)) for i in frame.pin_beams.values()]
+    return NOTHING * max(pin.young * pin.section.i_y / length**2 for pin, length in every)
+
+
 def _couples(frame: LinkageFrame) -> Real:
     """Thrusts of all pins, and couples along and across links without a beam, by natural forces of pins' beams."""
     beams, found = {beam.link for beam in frame.beams.values()}, list[Real]()
@@ -226,6 +229,7 @@ def _beam_ends(frame: LinkageFrame, solved: FactorisedFrame, opened: Real) -> Be
     sections = [frame.model.elements[i].section for i, _, _ in ends]
     unit = np.array([_unit_stresses(section) for section in sections]).reshape(-1, 4)
     tight, by_rims = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
+    by_rims[np.abs(by_rims).max(axis=1) <= _noise(frame)] = 0.0
     return BeamEnds(
         owners=tuple(owner for _, owner, _ in ends),
         tight=unit * tight.reshape(-1, 4),

@@ -44,6 +44,11 @@ SHORTER = 0.995
 """Share of the way to the nearest boundary that a step may go."""
 TOWARDS = 0.1
 """Share of the mean product z s that a step aims at."""
+CENTRED = 1e-3
+"""Share of the mean product z s below which a step may leave none: a pair whose product is far smaller ends up at its
+rim, along which it then can hardly go (Nocedal & Wright, Numerical Optimization, 2006, section 14.1)."""
+HALVINGS = 6
+"""Of a step that would leave one, at most."""
 NO_TIES = np.empty((0, 2), dtype=np.int64)
 
 
@@ -196,7 +201,7 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
         moved = by.inner(step)
         further = (aim - pull * slack + pull * (inner * moved).sum(axis=2)) / slack
         length = np.minimum(_to_rim(inner, moved), _to_zero(pull, further)).min(axis=1)
-        length = np.minimum(SHORTER * length, 1.0)
+        length = _centred(np.minimum(SHORTER * length, 1.0), inner, moved, pull, further)
         w[own] += length[:, None] * step
         z[own] += length[:, None] * further
     gap = unit * _gap(A, b, w, z, every)
@@ -227,6 +232,18 @@ def _to_rim(inner: Real, step: Real) -> Real:
 def _to_zero(value: Real, step: Real) -> Real:
     """Length of a step (n, m) at which a positive value ends."""
     return np.asarray(np.divide(value, -step, out=np.full_like(value, np.inf), where=step < 0.0))
+
+
+def _centred(length: Real, inner: Real, moved: Real, pull: Real, further: Real) -> Real:
+    """Steps (n,) halved until all products z s are ``CENTRED``, or will soon be."""
+    for _ in range(HALVINGS):
+        by = length[:, None]
+        product = (pull + by * further) * _slack(inner + by[:, :, None] * moved)
+        far = product.min(axis=1) < CENTRED * product.mean(axis=1)
+        if not far.any():
+            break
+        length = np.where(far, 0.5 * length, length)
+    return length
 
 
 def _gap(A: Real, b: Real, w: Real, z: Real, every: _Discs) -> Real:

@@ -121,7 +121,7 @@ class PinStates:
         shares = self.extremes()
         found = self.solved(shares).v
         alike = np.arange(1, min(1 + len(LEVELS), len(found)))
-        kept = np.union1d(_telling(self.aims.values(found)), alike)
+        kept = np.union1d(_telling(self.aims.values(found)), alike) if self.aims.count else np.array([0])
         return shares[kept], found[kept]
 
     @property
@@ -179,9 +179,9 @@ class PinStates:
         Returns
         -------
         int or None
-            None of a link without a beam.
+            None of a link without a beam, and of one that bears the same in all.
         """
-        owners = tuple(dict.fromkeys(self.rims.beam_ends.owners))
+        owners = tuple(dict.fromkeys(self.aims.ends.owners))
         if ("link", link) not in owners:
             return None
         return int(self.aims.stresses(self.states)[:, owners.index(("link", link)) - len(owners)].argmax())

@@ -64,3 +64,11 @@ def test_draws_lie_in_what_is_stated():
         both = 2.0 * sum(radii[:, 2 * k] for k in numbers)
         assert np.all((one.low - 1e-12 <= both) & (both <= one.high + 1e-12))
         assert both.max() - both.min() == pytest.approx(one.high - one.low, rel=0.2)
+
+
+def test_a_pair_that_comes_to_its_rim_too_soon_is_found():
+    """Of 10,000 draws of this linkage one was not found in 80 steps, since a pair could hardly go along its rim."""
+    pins = draws.solve_case_statics(draws.linkage(105)).forces["l"].pins
+    assert pins is not None
+    [found] = pins.solved(draws.shares(pins, 10_000, 105)[4617:4618]).gap
+    assert found < 1e-9 * np.abs(pins.rims.g).max()

@@ -71,7 +71,10 @@ def test_a_way_of_sharing_is_solved_on_the_solid():
     (stress, moved), (plain, still) = largest(alone), largest(refined.solution)
     assert stress > 2.0 * plain
     least, most = sorted((moved / still, 1.0))
-    assert (found["displacement"].low, found["displacement"].high) == pytest.approx((least, most), rel=1e-3)
+    beyond = 0.05 * (most - least)  # what the search may have left
+    assert (found["displacement"].low, found["displacement"].high) == pytest.approx(
+        (least - beyond, most + beyond), rel=1e-3
+    )
     top = max(one.high("von_mises") for one in refined.precision)
     assert stress / plain * (1.0 - 1e-3) <= found["von_mises"].high
     assert stress < top * found["von_mises"].high < 2.0 * stress  # with the estimate of this one mesh
