@@ -43,7 +43,7 @@ class Aims:
     @property
     def count(self) -> int:
         """Of all functions."""
-        return len(self.linear) + self.of_links.shape[0] + self.of_links.shape[1]
+        return len(self.linear) + sum(self.of_links.shape)
 
     def values(self, v: Real) -> Real:
         """Return all functions.

@@ -1,7 +1,7 @@
 """Clearances drawn from what a case leaves open, on random linkages in layers: bands hold them.
 
 The linkages are those of ``benchmarks/draws.py``, which tells the same of 10,000 draws on 20 linkages. The ends of
-bands are sought, and no bounds: what draws may lie outside is what was measured there.
+bands are sought, and no bounds: of so many draws some left a band there, of the hundreds here none does.
 """
 
 from dataclasses import replace
@@ -13,9 +13,6 @@ from alula.geometry.joints.heads import Heads
 from alula.loads.case.case import Case
 from benchmarks import draws
 
-MOST, OFTEN = 0.05, 0.02
-"""By how much the worst draw lies outside, over the band's larger end, and how many draws."""
-
 
 def headed(case: Case) -> Case:
     """The same with heads on every pin, whose gap is open."""
@@ -26,18 +23,16 @@ def headed(case: Case) -> Case:
 
 @pytest.mark.parametrize(("seed", "heads"), [(1, False), (5, False), (11, False), (11, True)])
 def test_no_state_that_is_drawn_lies_outside_the_bands(seed, heads):
-    count = 200
     case = draws.linkage(seed)
-    found = draws.outside(headed(case) if heads else case, count, seed)
-    assert [one for one in found if one.excess > MOST or one.draws > OFTEN * count] == []
-    assert not [one for one in found if one.of == "displacement"]
+    assert draws.outside(headed(case) if heads else case, 200, seed) == []
 
 
 def test_a_band_that_is_too_narrow_is_told(monkeypatch):
     """Where the search ends at once, draws leave the bands."""
     monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", lambda pins: pins.radii.value[None])
     found = draws.outside(draws.linkage(1), 100)
-    assert max(one.excess for one in found) > 4.0 * MOST
+    assert max(one.excess for one in found) > 0.2
+    assert {one.of.split()[0] for one in found} == {"thrust", "pin", "stress", "displacement"}
 
 
 def test_rounding_moves_no_end():
