@@ -1,8 +1,9 @@
 """What a perfectly plastic eye bears, by limit analysis, over the formulas of ``fea/outcomes/eye_modes.py``.
 
-    python -m benchmarks.eye_limits
+    python -m benchmarks.eye_limits [pressures]
 
-Writes ``fea/eye_scatter.toml`` from drawn eyes, and tries it on further ones.
+Writes ``fea/eye_scatter.toml`` from drawn eyes, and tries it on further ones; ``pressures`` for what pins in contact
+bear more than pressures that are given.
 
 Eyes are drawn: outer radius over that of the hole, pin over hole, shank over eye, and the angle of the force to the
 pull straight off the shank. Of the eye alone the strength is in question: the shank is five times as strong, and held
@@ -19,6 +20,7 @@ meshes give more. The results are in ``benchmarks/results/eyes.json``.
 
 import json
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -101,12 +103,12 @@ def limit_load(
     shank: float = 1.0,
     *,
     thick: bool = False,
-    given: bool = False,
+    given: float = 0.0,
     size: float = ELEMENT,
 ) -> float:
     """Return a force that an eye bears over (hole diameter · thickness · yield strength), pulled at an angle [rad].
 
-    ``thick`` for plane strain; ``given`` for a pressure as the cosine of the angle in place of contact.
+    ``thick`` for plane strain; ``given`` for a pressure as a cosine over so many degrees in place of contact.
     """
     places, triangles = mesh(radius, shank, size)
     count, even, pressed = 9 * len(triangles), list[list[tuple[int, float]]](), list[list[tuple[int, float]]]()
@@ -140,7 +142,8 @@ def limit_load(
                 even.append(traction(normal, tangent, elements[0], corner[0]))
                 pressure = traction(normal, normal, elements[0], corner[0])
                 if given:  # the last unknown is the pressure in the middle
-                    share = max(0.0, float(places[end] @ towards))
+                    off = math.acos(min(1.0, float(places[end] @ towards) / np.hypot(*places[end])))
+                    share = max(0.0, math.cos(min(off * 180.0 / given, math.pi / 2.0)))
                     even.append([*pressure, (count, share)])
                 else:
                     pressed.append(pressure)
@@ -255,6 +258,21 @@ def table(eyes: list[dict[str, Any]]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def pressures() -> None:
+    """Print what eyes bear under a pin in contact over what they bear under a cosine over 180°, and that over 90°.
+
+    Of the 30 eyes that try the bands, each with a pin that fits, pulled straight and at its angle. It is what
+    ``CONTACT_GAIN`` and ``CONTACT_MOST`` of ``fea/plastic/link_collapse.py`` come from.
+    """
+    for eye in draw()[CALIBRATING:]:
+        for angle in (0.0, math.radians(eye["angle"])):
+            contact, wide, narrow = (
+                limit_load(eye["ratio"], angle, 1.0, eye["shank"], given=given) for given in (0.0, 180.0, 90.0)
+            )
+            found = {"contact": contact / wide, "spread": wide / narrow}
+            print(json.dumps({**eye, "angle": math.degrees(angle)} | found), flush=True)
+
+
 def main() -> None:
     """Compare drawn eyes with the formulas; those that are kept are not solved again."""
     found = json.loads(KEPT.read_text(encoding="utf-8"))["eyes"]
@@ -267,4 +285,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    pressures() if sys.argv[1:] == ["pressures"] else main()
