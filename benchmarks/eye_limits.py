@@ -261,16 +261,12 @@ def table(eyes: list[dict[str, Any]]) -> str:
 def pressures() -> None:
     """Print what eyes bear under a pin in contact over what they bear under a cosine over 180°, and that over 90°.
 
-    Of the 30 eyes that try the bands, each with a pin that fits, pulled straight and at its angle. It is what
-    ``CONTACT_GAIN`` and ``CONTACT_MOST`` of ``fea/plastic/link_collapse.py`` come from.
+    Of the eyes that try the bands, with a pin that fits, pulled straight.
     """
     for eye in draw()[CALIBRATING:]:
-        for angle in (0.0, math.radians(eye["angle"])):
-            contact, wide, narrow = (
-                limit_load(eye["ratio"], angle, 1.0, eye["shank"], given=given) for given in (0.0, 180.0, 90.0)
-            )
-            found = {"contact": contact / wide, "spread": wide / narrow}
-            print(json.dumps({**eye, "angle": math.degrees(angle)} | found), flush=True)
+        ratio, shank = eye["ratio"], eye["shank"]
+        contact, wide, narrow = (limit_load(ratio, 0.0, 1.0, shank, given=given) for given in (0.0, 180.0, 90.0))
+        print(f"ratio {ratio:.2f}, shank {shank:.2f}: {contact / wide:.3f} of 180°, {wide / narrow:.3f}", flush=True)
 
 
 def main() -> None:

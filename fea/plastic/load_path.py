@@ -166,7 +166,7 @@ class ProportionalLoad:
         if self.contact is None or closed is None:
             K.fix(self.fixed)
             return factorise(K, method=available_methods()[0], threads=self.threads)
-        coupled, own = self.contact.stiffen(K, closed, self.of_body(self.free))
+        coupled, own = self.contact.stiffen(K, closed, self.free[: self.body.space.unknowns])
         K.fix(self.fixed)
         factor = factorise(K, method=available_methods()[0], threads=self.threads)
         return Bordered(factor=factor, coupled=coupled, own=own)

@@ -154,9 +154,10 @@ class PinContact:
         np.add.at(K.blocks, K.indptr[self.nodes], each)
         count = len(self.forces)
         coupled, own = np.zeros((len(free) // 3, 3, count, 2)), np.zeros((count, 2, count, 2))
-        np.add.at(coupled, (self.nodes, slice(None), self.pins), -each[:, :, :2])
         for pin in range(count):
-            own[pin, :, pin] = each[self.pins == pin, :2, :2].sum(axis=0)
+            here = self.pins == pin
+            coupled[self.nodes[here], :, pin] = -each[here, :, :2]  # a wall has each of its nodes once
+            own[pin, :, pin] = each[here, :2, :2].sum(axis=0)
         return coupled.reshape(-1, 2 * count) * free[:, None], own.reshape(2 * count, 2 * count)
 
 
