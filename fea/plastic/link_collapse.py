@@ -3,7 +3,8 @@
 A pin presses over 180°. While the wall flows, its pressure would spread as it bears best; by the static theorem any
 pressure that it can have gives no more than the link bears. How much more a pin that fits would give, contact tells on
 the coarser mesh (``alula.fea.plastic.pin_contact``): that is the upper end. It is for links that are their own image,
-as their loads are, in which no pin tilts; for others the ratio of pressures over 180° and 90° is taken, an estimate.
+as their loads are, in which no pin tilts; for others, and where contact finds no state, the ratio of pressures over
+180° and 90° is taken, an estimate.
 
 Resultants decide what a link bears, and not the peaks of stress beside its pins, so that coarse meshes do: the finer
 one is the first mesh of the elastic check. How far the factor is from that of ever finer meshes, Richardson's
@@ -13,6 +14,7 @@ extrapolation tells from the coarser one, with the order 1 of displacements that
 import math
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -222,12 +224,14 @@ def collapse_of(
     wide = path(coarse, load, like)
     error = CAUTION * abs(wide[1].factor / worst.factor - 1.0) / (ratio**ORDER - 1.0)
     pressing = [one for one in tractions.loads if isinstance(one, PinPressure)]
+    spread = math.nan
     if pressing and wide[0].half is not None:
         bores = [(one.wall.bore, replace(one.wall.pin, wrench=one.wrench(pose))) for one in pressing]
         rest = load - sum(one.exact(pose, WIDE, None)[:, 0] for one in pressing)
-        other = path(coarse, rest, contact=PinContact.of(bores, len(coarse.nodes), law.E))
-        spread = max(other[1].high / wide[1].factor, 1.0)
-    else:
+        with suppress(NoPlasticStateError):
+            other = path(coarse, rest, contact=PinContact.of(bores, len(coarse.nodes), law.E))
+            spread = max(other[1].high / wide[1].factor, 1.0)
+    if math.isnan(spread):
         other = path(coarse, narrow, like)
         spread = max(wide[1].factor / other[1].factor, 1.0)
     strain, residual = _under_the_load(held, worst, LineReference(fine, link.line))

@@ -3,6 +3,7 @@ load."""
 
 from dataclasses import replace
 from functools import cache
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -145,6 +146,13 @@ def test_pins_in_contact_bear_their_force_and_the_link_more():
     found = collapse(NET)
     assert found.pressure > 1.05
     assert found.high > found.factor * found.pressure
+
+
+def test_without_a_state_in_contact_the_narrower_pressure_stands_in(monkeypatch):
+    monkeypatch.setattr(PinContact, "of", Mock(side_effect=NoPlasticStateError("no elastic contact")))
+    lost = collapse_of(LINK, law(), pull(NET), mesh, threads=1)
+    assert (lost.factor, lost.low) == pytest.approx((collapse(NET).factor, collapse(NET).low))
+    assert lost.pressure == pytest.approx(1.36, abs=0.15)
 
 
 @pytest.mark.converged
