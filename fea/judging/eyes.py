@@ -17,14 +17,18 @@ from alula.fea.common.source import Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.bearing import sharing
 from alula.fea.outcomes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
+from alula.fea.outcomes.eye_scatter import eye_scatter
 from alula.geometry.bodies.body import Body, extent
 from alula.geometry.bodies.features import Pin
+from alula.geometry.parts.plate import Plate
+from alula.geometry.parts.straight import Straight
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import BTH_1, EyeCheck
 from alula.loads.statics.statics import Reactions
 
-WITHOUT = reason("scatter_of_eye_formulas_unread")
-OBLIQUE = Source(kind=SourceKind.DIRECTION, detail=reason("across_its_shank"))
+RULE = reason("eyes_by_a_rule")
+DISHING = reason("dishing_not_drawn")
+FORMULAS = Source(kind=SourceKind.EYE_FORMULAS)
 NO_FORCE = reason("no_force_on_eyes")
 STRAIGHT = 1e-9
 """Sine of the angle below which a force is along the shank but for rounding."""
@@ -57,7 +61,7 @@ def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]
     ----------
     case : Case
     link : str
-        With round eyes of a ductile metal (``alula.loads.case.eye_rules``).
+        Of a ductile metal, with round eyes (``alula.loads.case.eye_rules``).
     check : EyeCheck
 
     Returns
@@ -65,16 +69,40 @@ def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]
     tuple of EyeStrength
         Forces on one plate, where the link is a pair of them.
     """
-    body = case.body(link)
-    return tuple(
-        EyeStrength(name=point, modes=_modes(case, link, body.pin(point), joints, check), shanks=_shanks(body, point))
-        for point, joints in eyes_of(case, link).items()
-    )
+    body, found = case.body(link), []
+    for point, joints in eyes_of(case, link).items():
+        modes, eyes = _modes(case, link, body.pin(point), joints, check)
+        without = dict.fromkeys(modes, RULE)
+        if check.standard == BTH_1:
+            width = _shank_width(body, point)
+            outside = next((why for eye in eyes if (why := eye_scatter().outside(eye, width)) is not None), None)
+            without = dict.fromkeys((EyeMode.DISHING,) if outside is None else modes, outside or DISHING)
+            modes = {mode: band if mode in without else _scattered(mode, band) for mode, band in modes.items()}
+        found.append(
+            EyeStrength(
+                name=point,
+                modes=modes,
+                shanks=_shanks(body, point),
+                across=eye_scatter().across,
+                without=without,
+                relieved=isinstance(body.part, Straight),
+            )
+        )
+    return tuple(found)
 
 
-def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeCheck) -> dict[EyeMode, Band]:
-    """Return what an eye bears in each mode for all that its pin's clearance and its yield strength may be."""
-    material, ring = case.material_of(link), case.body(link).ring(pin)
+def _scattered(mode: EyeMode, band: Band) -> Band:
+    """Return what an eye bears in a mode, with how far its formula may be off; the value stays the formula's."""
+    low, high = eye_scatter().modes[mode]
+    return Scatter(low=min(low, 1.0), high=max(high, 1.0), sources=(FORMULAS,)).on(band)
+
+
+def _modes(
+    case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeCheck
+) -> tuple[dict[EyeMode, Band], list[RoundEye]]:
+    """Return what an eye bears in each mode for all that its clearance and yield strength may be, and those eyes."""
+    material, body = case.material_of(link), case.body(link)
+    ring, eyes = body.ring(pin), []
     own, hole = strength_scatter(material), case.linkage.pin_holes(joints[0])[link]
     pin_yield = min(case.pin_material(joint).yield_strength or math.inf for joint in joints)
     assert material.yield_strength is not None
@@ -83,24 +111,41 @@ def _modes(case: Case, link: str, pin: Pin, joints: Sequence[str], check: EyeChe
     found = []
     for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
         eye = RoundEye(
-            radius=ring.diameter / 2.0,
+            radius=body.part.wall(body, pin),
             hole=pin.diameter + clearance,
             pin=pin.diameter,
             thickness=ring.thickness,
             wall=min(high - low for low, high in ring.walls),
         )
+        eyes.append(eye)
         strength = share * material.yield_strength
         if check.standard == BTH_1:
             assert material.ultimate_strength is not None
             found.append(asme_bth_1(eye, strength, material.ultimate_strength))
         else:
             found.append(en_1993_1_8(eye, strength, pin_yield))
-    return {mode: Band.around(found[0][mode], tuple(one[mode] for one in found), *own.told, *play) for mode in found[0]}
+    bands = {mode: Band.around(found[0][mode], tuple(x[mode] for x in found), *own.told, *play) for mode in found[0]}
+    return bands, eyes
+
+
+def _shank_width(body: Body, point: str) -> float:
+    """Return how wide what holds an eye is [mm]: a disc at least as wide as the eye."""
+    part, pin = body.part, body.pin(point)
+    if pin.foot is not None:
+        return part.arm_section.width
+    return part.section.width if isinstance(part, Straight) else part.frame_section(body).width
 
 
 def _shanks(body: Body, point: str) -> tuple[tuple[float, float], ...]:
-    """Return unit vectors from an eye's hole to what holds it: the bar to either side of it, and arms."""
+    """Return unit vectors from an eye's hole to what holds it: the bar to either side of it, and arms.
+
+    That of a hole in a plate or disc is towards the middle of its pins, or the disc's; it has none just there.
+    """
     pin, (first, last) = body.pin(point), extent(body)
+    if not isinstance(body.part, Straight):
+        pins = body.pins if isinstance(body.part, Plate) else ()
+        middle = sum(one.x for one in pins) / max(len(pins), 1), sum(one.y for one in pins) / max(len(pins), 1)
+        return () if math.dist(middle, (pin.x, pin.y)) < pin.diameter else (_towards(pin, middle),)
     if pin.foot is not None:
         return (_towards(pin, pin.foot),)
     along = [(side, 0.0) for side, end in ((-1.0, first), (1.0, last)) if pin.x != end]
@@ -203,8 +248,10 @@ def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatte
         if value < math.inf:
             sources = strength.modes[mode].sources
             if mode is not EyeMode.BEARING and math.sin(angle) > STRAIGHT:
-                sources = distinct(sources, (OBLIQUE,))
-            own = Band(value=float(value), low=float(low), high=float(high), sources=sources, without=WITHOUT)
+                oblique = reason("across_its_shank", share=strength.across)
+                sources = distinct(sources, (Source(kind=SourceKind.DIRECTION, detail=oblique),))
+            why = strength.without.get(mode, "")
+            own = Band(value=float(value), low=float(low), high=float(high), sources=sources, without=why)
             bands[mode] = spread.inverse.on(own)
     return EyeFactors(
         check=one.name,
@@ -258,14 +305,16 @@ def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> Chec
     Returns
     -------
     CheckOutcome
-        The reason names the eye and the mode whose least factor is the least.
+        The reason names the eye and the mode whose least factor is the least. It has no band where that one has none,
+        or the one with the least value.
     """
     loaded = [(eye, *eye.worst) for eye in found if eye.worst is not None]
     if not loaded:
-        return one.outcome(load_case, Band.exact(math.inf, WITHOUT), NO_FORCE)
+        return one.outcome(load_case, Band.exact(math.inf, NO_FORCE), NO_FORCE)
     eye, mode, _ = min(loaded, key=lambda of: of[2].low)
     worst = Band.least([band for _, _, band in loaded])
-    outcome = one.outcome(load_case, replace(worst, without=WITHOUT))
+    least = min((band for one in found for band in one.factors.values()), key=lambda band: band.value)
+    outcome = one.outcome(load_case, replace(worst, without=eye.factors[mode].without or least.without))
     return outcome.because(mode_of_eye(eye, mode, outcome.reason))
 
 

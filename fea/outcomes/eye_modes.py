@@ -7,13 +7,14 @@ hole, D_p its pin, t its thickness, and b = R - D_h/2 the material about the hol
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
+from alula.fea.common.reason import Reason
 
 Real = NDArray[np.float64]
 
@@ -21,9 +22,6 @@ SNUG = 0.9
 """Pin over hole from which on a pin counts as one that fits (ASME BTH-1, section 3-3.3.1)."""
 INTO_SHANK = math.radians(30.0)
 """Angle from the middle of a shank within which a force presses the pin into it, where no edge lies ahead; assumed."""
-ACROSS = 0.25
-"""Largest share that a force across the shank takes off what an eye bears along it, as ``ACROSS`` times the sine of the
-angle. Limit analysis of eyes with R from 1.5 to 3.5 hole radii on shanks as wide as they are: 0.22 at most."""
 
 
 class EyeMode(StrEnum):
@@ -155,12 +153,22 @@ class EyeStrength:
     modes : mapping of EyeMode to Band
         Forces along its shank [N].
     shanks : tuple of (float, float)
-        Unit vectors from its hole to what holds it, in the link's frame; one of an eye that ends a bar.
+        Unit vectors from its hole to what holds it, in the link's frame; one of an eye that ends a bar, none of a hole
+        that is as well held all about.
+    across : float
+        Largest share that a force across the shank takes off, as so much times the sine of its angle.
+    without : mapping of EyeMode to Reason
+        Why nothing is known of how far the formulas of these modes may be off.
+    relieved : bool
+        Whether a force into a shank has no edge ahead, so that bearing alone is left.
     """
 
     name: str
     modes: Mapping[EyeMode, Band]
     shanks: tuple[tuple[float, float], ...]
+    across: float
+    without: Mapping[EyeMode, Reason] = field(default_factory=dict)
+    relieved: bool = True
 
     def off_shank(self, force: Real) -> Real:
         """Return the angle between a pin's force and the pull that draws the eye straight off its shank.
@@ -177,9 +185,11 @@ class EyeStrength:
             the force draws straightest.
         """
         to = np.arctan2(force[..., 1], force[..., 0])
+        if not self.shanks:
+            return np.zeros_like(to)
         angles = np.stack([np.abs(np.angle(np.exp(1j * (to - math.atan2(-y, -x))))) for x, y in self.shanks])
         pressed, drawn = angles.max(axis=0), angles.min(axis=0)
-        return np.asarray(np.where(pressed >= math.pi - INTO_SHANK, pressed, drawn))
+        return np.asarray(np.where(self.relieved & (pressed >= math.pi - INTO_SHANK), pressed, drawn))
 
     def factors(self, force: Real) -> tuple[dict[EyeMode, Real], Real]:
         """Return by what each mode bears more than a pin's force, and the angle of the force.
@@ -200,8 +210,8 @@ class EyeStrength:
             counts = size > 0.0
             bears = np.stack([np.full_like(size, x) for x in (strength.value, strength.low, strength.high)])
             if mode is not EyeMode.BEARING:
-                counts = counts & (angle < math.pi - INTO_SHANK)
-                bears[1] *= 1.0 - ACROSS * np.sin(angle)
+                counts = counts & ~(self.relieved & (angle >= math.pi - INTO_SHANK))
+                bears[1] *= 1.0 - self.across * np.sin(angle)
             found[mode] = np.divide(bears, size, out=np.full_like(bears, np.inf), where=counts)
         return found, angle
 

@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.plastic.pin_contact import Bordered, PinContact
 from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.plastic.yield_law import Past, PointResponse
 from alula.fea.solvers.solve import Factor, available_methods, factorise
@@ -63,8 +64,8 @@ class PlasticState:
         λ, on the loads.
     control : float
         f·u over that of the elastic body at λ = 1.
-    displacement : ndarray, shape (3n,)
-        [mm]
+    displacement : ndarray, shape (3n,) or (3n + 2p,)
+        Of the body, and of its pins where they are in contact [mm].
     response : PointResponse
         Of the points.
     residuals : tuple of float
@@ -97,6 +98,8 @@ class ProportionalLoad:
         Upper bound on the threads of the solver.
     until : float, optional
         Time by ``time.perf_counter`` after which no iteration is begun.
+    contact : PinContact, optional
+        Of pins whose forces grow with the load; their displacements (2p,) follow those of the body in all states.
 
     Attributes
     ----------
@@ -112,31 +115,73 @@ class ProportionalLoad:
         *,
         threads: int | None = None,
         until: float = np.inf,
+        contact: PinContact | None = None,
     ) -> None:
-        self.body, self.threads, self.until, self.solves = body, threads, until, 0
-        self.free = np.ones(body.space.unknowns, dtype=np.bool_)
+        self.body, self.threads, self.until, self.solves, self.contact = body, threads, until, 0, contact
+        of_pins = np.zeros(0) if contact is None else contact.forces.ravel()
+        self.free = np.ones(body.space.unknowns + len(of_pins), dtype=np.bool_)
         self.free[fixed] = False
-        self.fixed, self.load = fixed, np.where(self.free, load, 0.0)
+        self.fixed, self.load = fixed, np.where(self.free, np.concatenate([load, of_pins]), 0.0)
         self.size = float(np.linalg.norm(self.load))
         if self.size == 0.0:
             raise CannotRunError("no load acts on the body, so that none can grow")
         law = body.law
         self._elastic = np.broadcast_to(law.stiffness, (body.points, 6, 6))
-        self.unit = self._solve(self._elastic, self.load)
+        self.unit = self._elastic_unit()
         self.work = float(self.load @ self.unit)
-        stress = body.strain(self.unit) @ law.stiffness
+        stress = body.strain(self.of_body(self.unit)) @ law.stiffness
         self.first_yield = 1.0 / float(law.share(stress).max())
 
-    def _factor(self, tangent: Real) -> Factor:
+    def of_body(self, u: Real) -> Real:
+        """Return the displacements of the body alone.
+
+        Parameters
+        ----------
+        u : ndarray
+            Of a state [mm].
+
+        Returns
+        -------
+        ndarray, shape (3n,)
+        """
+        return u[: self.body.space.unknowns]
+
+    def _overlap(self, u: Real) -> Real:
+        assert self.contact is not None
+        return self.contact.overlap(self.of_body(u), u[self.body.space.unknowns :])
+
+    def _forces(self, u: Real, stress: Real) -> Real:
+        """Return the internal forces on all unknowns, of contact too."""
+        inner = self.body.forces(stress)
+        if self.contact is not None:
+            wall, pins = self.contact.resist(self.of_body(u), u[self.body.space.unknowns :])
+            inner = np.concatenate([inner + wall, pins])
+        return np.where(self.free, inner, 0.0)
+
+    def _factor(self, tangent: Real, closed: NDArray[np.bool_] | None) -> Factor | Bordered:
         if time.perf_counter() > self.until:
             raise NoPlasticStateError("the time limit ended the path")
         self.solves += 1
         K = self.body.stiffness(tangent)
+        if self.contact is None or closed is None:
+            K.fix(self.fixed)
+            return factorise(K, method=available_methods()[0], threads=self.threads)
+        coupled, own = self.contact.stiffen(K, closed, self.free[: self.body.space.unknowns])
         K.fix(self.fixed)
-        return factorise(K, method=available_methods()[0], threads=self.threads)
+        factor = factorise(K, method=available_methods()[0], threads=self.threads)
+        return Bordered(factor=factor, coupled=coupled, own=own)
 
-    def _solve(self, tangent: Real, rhs: Real) -> Real:
-        return self._factor(tangent).solve(rhs)
+    def _elastic_unit(self) -> Real:
+        """Return the elastic displacements at factor 1; those in contact go with the load, since pins fit."""
+        if self.contact is None:
+            return self._factor(self._elastic, None).solve(self.load)
+        closed = (self.contact.forces[self.contact.pins] * self.contact.normals[:, :2]).sum(axis=1) > 0.0
+        for _ in range(ITERATIONS):
+            unit = self._factor(self._elastic, closed).solve(self.load)
+            before, closed = closed, self._overlap(unit) > 0.0
+            if np.array_equal(before, closed):
+                return unit
+        raise NoPlasticStateError(f"no elastic contact of pins was found in {ITERATIONS} iterations")
 
     def elastic(self, factor: float) -> PlasticState:
         """Return the state under a load at which no point has yielded before.
@@ -151,7 +196,7 @@ class ProportionalLoad:
         PlasticState
         """
         u = factor * self.unit
-        response = self.body.respond(u, Past.none(self.body.points), tangent=False)
+        response = self.body.respond(self.of_body(u), Past.none(self.body.points), tangent=False)
         return PlasticState(factor=factor, control=factor, displacement=u, response=response)
 
     def _guess(self, before: PlasticState, last: PlasticState | None, control: float) -> Real:
@@ -209,8 +254,8 @@ class ProportionalLoad:
         past, residuals, body = before.response.past, [], self.body
         stiff = STIFFENED * body.law.stiffness
         for _ in range(ITERATIONS):
-            response = body.respond(u, past)
-            inner = np.where(self.free, body.forces(response.stress), 0.0)
+            response = body.respond(self.of_body(u), past)
+            inner = self._forces(u, response.stress)
             assert response.tangent is not None
             # The λ that leaves the least force out of balance tells whether a solution is needed at all.
             load = float(inner @ self.load) / self.size**2 if factor is None else factor
@@ -224,7 +269,8 @@ class ProportionalLoad:
                     response=response,
                     residuals=tuple(residuals),
                 )
-            factored = self._factor(response.tangent + stiff)
+            closed = None if self.contact is None else self._overlap(u) > 0.0
+            factored = self._factor(response.tangent + stiff, closed)
             if factor is None:
                 a, b = factored.solve(np.column_stack([self.load, inner])).T
                 load = float(self.load @ b) / float(self.load @ a)
@@ -238,8 +284,9 @@ class ProportionalLoad:
         """Return how far to go along a step: to where the convex energy is about least on it."""
 
         def slope(t: float) -> float:
-            inner = self.body.forces(self.body.respond(u + t * step, past, tangent=False).stress)
-            return float((np.where(self.free, inner, 0.0) - load * self.load) @ step)
+            there = u + t * step
+            inner = self._forces(there, self.body.respond(self.of_body(there), past, tangent=False).stress)
+            return float((inner - load * self.load) @ step)
 
         start = slope(0.0)
         if not start < 0.0:

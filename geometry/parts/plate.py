@@ -150,6 +150,14 @@ class Plate(PartKind):
         """As ``PartKind.has_centre_line``: no, since it is wider than the strip for which a frame takes it."""
         return False
 
+    def wall(self, body: Body, pin: Pin) -> float:
+        """As ``PartKind.wall``: to the eye's rim, or to the nearest other hole or pocket."""
+        others = [
+            *self._cuts.values(),
+            *(_about(other, other.diameter) for other in body.pins if other.name != pin.name),
+        ]
+        return min([super().wall(body, pin), *(gap(_about(pin, pin.diameter), o) + pin.diameter / 2.0 for o in others)])
+
     def flat_diameter(self, body: Body, pin: Pin) -> float:
         """As ``PartKind.flat_diameter``: within the eye's wall, along whose rim the outline runs, and clear of others.
 

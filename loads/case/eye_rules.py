@@ -1,8 +1,13 @@
-"""Of which links the modes of eyes can be told: formulas are of round eyes, of ductile metals that are not printed."""
+"""Of which links the modes of eyes can be told: formulas are of round eyes, of ductile metals that are not printed.
+
+A refusal names the check that judges the link instead.
+"""
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed
+from alula.geometry.parts.disc import Disc
+from alula.geometry.parts.plate import Plate
 from alula.geometry.parts.straight import Straight
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import BTH_1, EyeCheck
@@ -39,10 +44,18 @@ def _check_material(case: CoreCase, entry: str, check: EyeCheck, link: str) -> N
     card, material = part.material, case.all_materials[part.material]
     printed = part.build_direction is not None or is_printed(material)
     if printed or material.brittle or is_plastic(card, material):
+        layers = material.strength_across_layers is not None or part.build_direction is not None
         what = "printed" if printed else "brittle" if material.brittle else "a plastic"
+        how = (
+            'a check of type "safety-factor", which sets tension across its layers and shear along them against theirs'
+            if layers
+            else 'a check of type "safety-factor", since it breaks at its peak of stress'
+            if material.brittle
+            else 'a check of type "plastic-collapse"'
+        )
         raise CaseError(
             f"{entry}.links: the formulas for eyes are those of ductile metals, but link '{link}' is of '{card}', "
-            f"which is {what}; name the other links alone: what its eyes hold is for plastic collapse and layers to say"
+            f"which is {what}; name the other links alone, and judge its eyes by {how}"
         )
     if check.standard == BTH_1 and material.ultimate_strength is None:
         raise CaseError(
@@ -56,10 +69,11 @@ def _check_shape(case: CoreCase, entry: str, link: str) -> None:
     points = [case.linkage.point_of(name, link) for name in case.pinned_joints if link in case.joints[name].links]
     if not points:
         raise CaseError(f"{entry}.links: no pin turns in link '{link}', so it has no eye; name the other links alone")
-    if not isinstance(part, Straight):
+    if not isinstance(part, Straight | Plate | Disc):
         raise CaseError(
-            f"{entry}.links: the formulas for eyes are those of round eyes of bars and tubes, but link '{link}' is a "
-            f"{part.shape}; name the other links alone"
+            f"{entry}.links: the formulas for eyes are those of round eyes, but part '{case.links[link].part}' of link "
+            f"'{link}' is a file, in which no eye is known; name the other links alone, and judge its eyes by a check "
+            'of type "plastic-collapse"'
         )
     body = case.body(link)
     for point in points:

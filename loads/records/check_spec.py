@@ -79,7 +79,7 @@ class EyeCheck(CaseModel):
     """What the eyes of each link bear, over the forces of their pins, must be at least the minimum in every mode.
 
     Modes are tension beside the hole, dishing, fracture and shear beyond the pin, and bearing. It is for round eyes of
-    bars and tubes, of ductile metals that are not printed.
+    bars, tubes, plates and discs, of ductile metals that are not printed; "plastic-collapse" is for others.
     """
 
     type: Literal["eye"]

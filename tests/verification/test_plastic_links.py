@@ -3,16 +3,25 @@ load."""
 
 from dataclasses import replace
 from functools import cache
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 import solid_meshes
+from eye_case import eyes
 from plastic_problems import NU, YIELD, E, eighth_in_tension, law, loaded
 
+from alula.fea.check.run import check_case
 from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.elements.block_matrix import SymmetricBlockMatrix
+from alula.fea.elements.space import displacement_space, upper_half
+from alula.fea.elements.supports import isostatic_supports
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
-from alula.fea.plastic.load_path import NoPlasticStateError, follow
+from alula.fea.plastic.load_path import NoPlasticStateError, ProportionalLoad, follow
+from alula.fea.plastic.pin_contact import PinContact
+from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.refine.link_task import ElasticLink
+from alula.fea.tractions.link_tractions import LinkTractions
 from alula.geometry.meshing.mirror import mirrored
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
@@ -88,6 +97,75 @@ def test_an_eye_bears_what_its_ring_bears_and_at_most_its_net_section():
     flowed = found.nodes[found.zone > 0.0]
     assert np.minimum(np.abs(flowed[:, 0]), np.abs(flowed[:, 0] - LENGTH)).max() < WIDTH
     assert 0.01 < found.plastic_share < 0.6
+
+
+COARSE = displacement_space(mesh(1.6))
+
+
+def touching() -> PinContact:
+    """The walls of both pins, on the coarser mesh."""
+    pose = pull(NET).chosen(None)
+    found = LinkTractions.of(COARSE, [pose], density=LINK.density).loads
+    bores = [(one.wall.bore, replace(one.wall.pin, wrench=one.wrench(pose))) for one in found]
+    return PinContact.of(bores, len(COARSE.nodes), E)
+
+
+def test_contact_of_pins_is_the_slope_of_an_energy():
+    """Its forces balance and push alone; its stiffness is their slope; half of it on the half of a body."""
+    contact, by = touching(), np.random.default_rng(1)
+    count, pins = 3 * (int(contact.nodes.max()) + 1), contact.forces.size
+    x, step = by.normal(0.0, 0.1, count + pins), by.normal(0.0, 1e-7, count + pins)
+
+    def forces(x):
+        return np.concatenate(contact.resist(x[:count], x[count:]))
+
+    body, moved = contact.resist(x[:count], x[count:])
+    push = -body.reshape(-1, 3)[contact.nodes]
+    assert (push * contact.normals).sum(axis=1).min() >= 0.0
+    assert body.reshape(-1, 3)[:, :2].sum(axis=0) == pytest.approx(-moved.reshape(-1, 2).sum(axis=0))
+    K = SymmetricBlockMatrix(
+        indptr=np.arange(count // 3 + 1, dtype=np.int32),
+        indices=np.arange(count // 3, dtype=np.int32),
+        blocks=np.zeros((count // 3, 3, 3)),
+    )
+    coupled, own = contact.stiffen(K, contact.overlap(x[:count], x[count:]) > 0.0, np.ones(count, dtype=bool))
+    slope = np.concatenate([K @ step[:count] + coupled @ step[count:], coupled.T @ step[:count] + own @ step[count:]])
+    assert forces(x + step) - forces(x) == pytest.approx(slope, rel=1e-6, abs=1e-9 * np.abs(slope).max())
+    half = upper_half(COARSE)
+    assert contact.upper(half).stiffness.sum() == pytest.approx(contact.stiffness.sum() / 2.0)
+    assert 2.0 * contact.upper(half).forces == pytest.approx(contact.forces)
+
+
+def test_pins_in_contact_bear_their_force_and_the_link_more():
+    """By the static theorem no pressure that is given bears more; the upper end of the band is that of contact."""
+    body, fixed = PlasticBody.of(COARSE, law()), isostatic_supports(COARSE.nodes, COARSE.corners)
+    load = ProportionalLoad(body, np.zeros(COARSE.unknowns), fixed, contact=touching(), threads=1)
+    for state in (load.elastic(load.first_yield), load.led(load.elastic(load.first_yield), 2.0 * load.first_yield)):
+        _, pins = load.contact.resist(load.of_body(state.displacement), state.displacement[COARSE.unknowns :])
+        assert pins == pytest.approx(state.factor * load.contact.forces.ravel(), abs=1e-4 * state.factor * NET)
+    found = collapse(NET)
+    assert found.pressure > 1.05
+    assert found.high > found.factor * found.pressure
+
+
+def test_without_a_state_in_contact_the_narrower_pressure_stands_in(monkeypatch):
+    monkeypatch.setattr(PinContact, "of", Mock(side_effect=NoPlasticStateError("no elastic contact")))
+    lost = collapse_of(LINK, law(), pull(NET), mesh, threads=1)
+    assert (lost.factor, lost.low) == pytest.approx((collapse(NET).factor, collapse(NET).low))
+    assert lost.pressure == pytest.approx(1.36, abs=0.15)
+
+
+@pytest.mark.converged
+@pytest.mark.parametrize(("eye", "width", "ratio"), [(12.0, 8.0, 1.040), (8.0, 5.0, 1.360)])
+def test_contact_against_limit_analysis(eye, width, ratio):
+    """Eyes about pins of 5 mm: what they bear in contact over that under a cosine, by benchmarks/eye_limits.py."""
+
+    def sized(tables):
+        tables["parts"]["bar"] |= {"eye_diameter": f"{eye} mm", "width": f"{width} mm", "fillet_radius": "0.5 mm"}
+        tables["checks"] = {"collapse": {"type": "plastic-collapse", "minimum": 1.0, "links": ["level"]}}
+
+    found = check_case(eyes(sized), fidelity="auto").load_cases["pull"].collapses["level"]
+    assert found.pressure == pytest.approx(ratio, abs=0.05)
 
 
 def test_half_a_body_collapses_as_the_whole():

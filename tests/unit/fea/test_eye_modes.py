@@ -63,9 +63,9 @@ def test_bearing_by_en_1993_is_on_the_weaker_of_pin_and_eye():
     assert en_1993_1_8(LUG, 36.0, 20.0)[EyeMode.BEARING] == pytest.approx(1.5 * 0.75 * 0.75 * 20.0)
 
 
-def strength(*shanks):
+def strength(*shanks, **others):
     modes = {EyeMode.SHEAR_OUT: Band(value=10.0, low=8.0, high=12.0), EyeMode.BEARING: Band.exact(30.0)}
-    return EyeStrength(name="A", modes=modes, shanks=shanks)
+    return EyeStrength(name="A", modes=modes, shanks=shanks, across=0.25, **others)
 
 
 @pytest.mark.parametrize(
@@ -80,6 +80,14 @@ def test_a_force_across_the_shank_takes_off_and_one_into_it_leaves_bearing(degre
     assert found[EyeMode.SHEAR_OUT][0][1] == 5.0
     assert found[EyeMode.BEARING][1] == pytest.approx([30.0, 15.0])
     assert np.degrees(angle) == pytest.approx([abs(degrees), 0.0], abs=1e-9)
+
+
+def test_where_no_shank_gives_relief_all_modes_stand():
+    """Forces straight into the shank, and across: of a plate, and of a hole that material surrounds."""
+    forces = np.array([[-1.0, 0.0], [0.0, 1.0]])
+    assert strength((-1.0, 0.0)).factors(forces)[0][EyeMode.SHEAR_OUT][1] == pytest.approx([math.inf, 6.0])
+    assert strength((-1.0, 0.0), relieved=False).factors(forces)[0][EyeMode.SHEAR_OUT][1] == pytest.approx([8.0, 6.0])
+    assert strength().factors(forces)[0][EyeMode.SHEAR_OUT][1] == pytest.approx([8.0, 8.0])
 
 
 @pytest.mark.parametrize("order", [1, -1])
