@@ -73,7 +73,7 @@ LEAST, LARGEST = 1e-20, 1e20
 computed from sizes between them stays finite (measured: statics, motion and hand calculation with one to three
 quantities at either end)."""
 _LONGEST_TEXT = 64
-_UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"
+_UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?(?:[01]\.5|[1-4]))?"
 TYPOGRAPHY = str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "²": "^2", "³": "^3", "⁴": "^4", "−": "-"} | dict.fromkeys("\u00a0\u2009\u202f", " ")
 )

@@ -7,12 +7,8 @@ K_Ic by both: σ = K/√(2πr) is K/√(πL) at L/2, and so is its mean over 2 L
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from alula.geometry.base.model import refusal
-
-if TYPE_CHECKING:
-    from alula.geometry.materials.material import Material
+from alula.geometry.base.model import CaseModel, refusal
 
 AGREE = 0.10
 """Relative difference of a stated critical distance from that of the toughness: it goes with the square of values that
@@ -58,53 +54,53 @@ def critical_distance(toughness: float, strength: float) -> float:
     return (toughness / strength) ** 2 / math.pi
 
 
-def notch_strengths(material: "Material") -> tuple[NotchStrength, NotchStrength, NotchStrength] | None:
-    """Return how a material bears notches by its card, at its weakest and at its strongest.
+def notch_strengths(card: CaseModel) -> tuple[NotchStrength, NotchStrength, NotchStrength] | None:
+    """Return how a material bears notches as its card states, at its weakest and at its strongest.
 
     What a notch bears rises with the toughness, the critical distance, and either strength where the others stay.
 
     Parameters
     ----------
-    material : Material
+    card : Material
 
     Returns
     -------
     tuple of 3 NotchStrength or None
         None where its card does not tell.
     """
-    if material.inherent_strength is None:
+    if "inherent_strength" not in _stated(card):
         return None
-    return _at(material, None), _at(material, 0), _at(material, 1)
+    return _at(card, None), _at(card, 0), _at(card, 1)
 
 
-def _at(material: "Material", end: int | None) -> NotchStrength:
+def _at(card: CaseModel, end: int | None) -> NotchStrength:
     """Return what a card states, or the low (0) or high (1) ends of the ranges that it has."""
 
     def stated(entry: str, scatter: str = "") -> float:
-        ends = getattr(material, scatter or f"{entry}_range")
-        return float(getattr(material, entry) if end is None or ends is None else ends[end])
+        ends = getattr(card, scatter or f"{entry}_range")
+        return float(getattr(card, entry) if end is None or ends is None else ends[end])
 
     inherent = stated("inherent_strength")
-    if material.critical_distance is not None:
+    if "critical_distance" in _stated(card):
         distance = stated("critical_distance")
     else:
         distance = critical_distance(stated("fracture_toughness"), inherent)
     return NotchStrength(distance=distance, inherent=inherent, ultimate=stated("ultimate_strength", "strength_range"))
 
 
-def check_brittle(material: "Material") -> None:
+def check_brittle(card: CaseModel) -> None:
     """Refuse entries on notches that do not fit each other.
 
     Parameters
     ----------
-    material : Material
+    card : Material
 
     Raises
     ------
     PydanticCustomError
     """
-    stated = [entry for entry in _ENTRIES if getattr(material, entry) is not None]
-    if stated and material.strength != "ultimate":
+    stated = _stated(card)
+    if stated and dict(card)["strength"] != "ultimate":
         raise refusal(f'{stated[0]} is of a brittle material; leave it out, or set strength = "ultimate"')
     lengths = [entry for entry in _LENGTHS if entry in stated]
     if bool(lengths) != ("inherent_strength" in stated):
@@ -113,20 +109,25 @@ def check_brittle(material: "Material") -> None:
     if ("weibull_modulus" in stated) != ("weibull_volume" in stated):
         raise refusal("weibull_modulus and weibull_volume need each other; state both")
     for entry in _ENTRIES[:3]:
-        if getattr(material, f"{entry}_range") is not None and entry not in stated:
+        if entry not in stated and getattr(card, f"{entry}_range") is not None:
             raise refusal(f"{entry}_range needs {entry}; state it too")
-    strength, ultimate = material.inherent_strength, material.ultimate_strength
-    if strength is not None and ultimate is not None and strength < ultimate:
+    if not lengths:
+        return
+    found = _at(card, None)
+    if found.inherent < found.ultimate:
         raise refusal(
-            f"inherent_strength {strength:g} MPa is below ultimate_strength {ultimate:g} MPa, that of a bar without a "
-            "notch; correct one of them"
+            f"inherent_strength {found.inherent:g} MPa is below ultimate_strength {found.ultimate:g} MPa, that of a "
+            "bar without a notch; correct one of them"
         )
-    if len(lengths) == 2 and strength is not None:
-        assert material.critical_distance is not None
-        assert material.fracture_toughness is not None
-        follows = critical_distance(material.fracture_toughness, strength)
-        if abs(material.critical_distance / follows - 1.0) > AGREE:
+    if len(lengths) == 2:
+        follows = critical_distance(dict(card)["fracture_toughness"], found.inherent)
+        if abs(found.distance / follows - 1.0) > AGREE:
             raise refusal(
-                f"critical_distance is {material.critical_distance:g} mm, but {follows:.3g} mm follow from "
-                "fracture_toughness and inherent_strength; correct one of them, or leave one out"
+                f"critical_distance is {found.distance:g} mm, but {follows:.3g} mm follow from fracture_toughness and "
+                "inherent_strength; correct one of them, or leave one out"
             )
+
+
+def _stated(card: CaseModel) -> list[str]:
+    """Return which of the entries on notches a card states."""
+    return [entry for entry in _ENTRIES if getattr(card, entry) is not None]
