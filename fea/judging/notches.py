@@ -32,6 +32,7 @@ from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW
 from alula.loads.records.check_spec import NotchCheck
 
 NOT_SOLVED = reason("notch_needs_solid")
+NO_TENSION = reason("nowhere_in_tension")
 Plates = Sequence[tuple[str, LinkByHand]]
 """Name of the loads on each plate of a link, and its hand calculation."""
 
@@ -177,11 +178,14 @@ def _use(one: Asked, refined: RefinedSolid, number: int, material: Material) -> 
 def _by_distance(field: NotchField, refined: RefinedSolid, number: int, material: Material) -> _Found:
     """By both methods of the critical distance, at the ends of what the card states; the value is the point's."""
     strengths = notch_strengths(material)
-    worst = {strength: field.worst(strength) for strength in strengths or ()}
-    if strengths is None or (stated := worst[strengths[0]]) is None:
+    if strengths is None:
         return _NOTHING
     level = refined.levels[-1]
     missing = refined.precision[number].principal.factor * level.figures[number].estimate.stress
+    worst = {strength: field.worst(strength) for strength in strengths}
+    stated = worst[strengths[0]]
+    if stated is None:
+        return (0.0, 0.0, float(missing.max()) / strengths[1].ultimate), {}
 
     def ends(strength: NotchStrength) -> Iterator[tuple[float, float]]:
         for place in worst[strength] or ():
@@ -235,4 +239,4 @@ def notch_said(found: NotchFactor) -> Reason | str:
         )
     if found.by_volume is not None:
         said.append(reason("notch_by_volume", volume=found.effective_volume, factor=found.by_volume))
-    return together(*said)
+    return together(*said) if said else NO_TENSION

@@ -31,6 +31,8 @@ _NEAR, _FAR = 24, 200
 """Elements, by their centres, in which a point is looked for, first and again where it is in none: sizes may differ."""
 _TRIED = 4
 """Of these, the likeliest by their corners, whose curved shape is looked at."""
+SPACING = 0.25
+"""Edge of cubes, over the critical distance, in each of which the most stressed place alone is looked at."""
 _BATCH = 64
 _AROUND = np.arange(12) * np.pi / 6.0
 """Directions that are tried where the steepest one leaves the solid [rad]."""
@@ -104,12 +106,13 @@ class NotchField:
         """Largest principal stress (n,) at all nodes [MPa]."""
         return extreme_principal(self.field.nodal)[0]
 
-    @cached_property
-    def _by_stress(self) -> Nodes:
-        """Nodes of the surface in tension, the most stressed first."""
+    def _places(self, apart: float) -> Nodes:
+        """Return nodes of the surface in tension, the most stressed first, one in each cube of some edge [mm]."""
         nodes = np.unique(self.field.space.boundary)
         nodes = nodes[np.argsort(-self.surface[nodes], kind="stable")]
-        return np.asarray(nodes[self.surface[nodes] > 0.0])
+        nodes = nodes[self.surface[nodes] > 0.0]
+        _, first = np.unique(np.floor(self.field.space.nodes[nodes] / apart), axis=0, return_index=True)
+        return np.asarray(nodes[np.sort(first)])
 
     @cached_property
     def _finder(self) -> Callable[[Real], tuple[Nodes, Real]]:
@@ -167,12 +170,21 @@ class NotchField:
             slope = np.linalg.lstsq(terms, self.surface[near] - self.surface[node], rcond=None)[0][:3]
             plane = self._plane(node)
             way = -plane @ (plane.T @ slope)
-            for corners in space.nodes[space.boundary[(space.boundary == node).any(axis=1)][:, :3]]:
-                normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-                normal /= np.linalg.norm(normal)
+            for normal in self._normals_at(node):
                 way = way - max(float(way @ normal), 0.0) * normal
             self._slopes[node] = way
         return self._slopes[node]
+
+    @cached_property
+    def _normals_at(self) -> Callable[[int], Real]:
+        """Outward unit normals (k, 3) of the faces that share a node."""
+        space = self.field.space
+        first, second, third = space.nodes[space.boundary[:, :3]].transpose(1, 0, 2)
+        normals = np.cross(second - first, third - first)
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        order = np.argsort(space.boundary, axis=None)
+        ends = np.searchsorted(space.boundary.ravel()[order], np.arange(len(space.nodes) + 1))
+        return lambda node: np.asarray(normals[order[ends[node] : ends[node + 1]] // space.boundary.shape[1]])
 
     def _plane(self, node: int) -> Real:
         """Return two unit vectors (3, 2) across the largest principal stress of a node."""
@@ -191,8 +203,8 @@ class NotchField:
         """Return where the surface comes nearest to breaking, by the point and by the line method.
 
         A place uses up the larger of two shares: of the inherent strength by what is ahead of it, and of the tensile
-        strength by the stress beyond the line, which no notch bears. All places are looked at whose surface stress is
-        larger than what was found.
+        strength by the stress beyond the line, which no notch bears. Places are looked at all over the surface where
+        its stress is larger than what was found.
 
         Parameters
         ----------
@@ -207,8 +219,9 @@ class NotchField:
         depths, weights = line_depths(strength.distance)
         depths = np.concatenate([[strength.distance / 2.0], depths, [length]])
         best: list[NotchStress] = []
-        for first in range(0, len(self._by_stress), _BATCH):
-            nodes = self._by_stress[first : first + _BATCH]
+        places = self._places(SPACING * strength.distance)
+        for first in range(0, len(places), _BATCH):
+            nodes = places[first : first + _BATCH]
             if best and self.surface[nodes[0]] / strength.ultimate <= min(one.use for one in best):
                 break
             falls = np.array([self.fall(int(node)) for node in nodes])

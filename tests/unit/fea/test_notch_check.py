@@ -148,6 +148,12 @@ def test_the_lower_of_distance_and_volume_counts(monkeypatch, use, decides):
     assert (found.by_point, found.by_volume) == (pytest.approx(1.0 / use), pytest.approx(40.0 / 30.0))
 
 
+def test_without_tension_the_mesh_alone_leaves_it_open(monkeypatch):
+    found = Solved(monkeypatch, [lambda strength: None], spans=(180,)).factor(edited("knee", own(TOUGH)))
+    assert (found.factor.low, found.factor.high) == (pytest.approx(40.0), np.inf)
+    assert "nowhere in tension" in told(notches.notch_said(found))
+
+
 def judged(monkeypatch, found, case=None, growth=None):
     """Return the outcome where each plate has what was found."""
     case = case or edited("knee", own(TOUGH))
