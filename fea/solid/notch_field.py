@@ -161,7 +161,7 @@ class NotchField:
         Returns
         -------
         ndarray, shape (3,)
-            In the plane that the stress opens, not out of the solid [MPa/mm].
+            In the plane that the stress opens [MPa/mm].
         """
         if node not in self._slopes:
             space, near = self.field.space, self._nodes_near(node)
@@ -169,22 +169,8 @@ class NotchField:
             terms = np.column_stack([offset, *(offset[:, i] * offset[:, j] for i, j in PAIRS)])
             slope = np.linalg.lstsq(terms, self.surface[near] - self.surface[node], rcond=None)[0][:3]
             plane = self._plane(node)
-            way = -plane @ (plane.T @ slope)
-            for normal in self._normals_at(node):
-                way = way - max(float(way @ normal), 0.0) * normal
-            self._slopes[node] = way
+            self._slopes[node] = -plane @ (plane.T @ slope)
         return self._slopes[node]
-
-    @cached_property
-    def _normals_at(self) -> Callable[[int], Real]:
-        """Outward unit normals (k, 3) of the faces that share a node."""
-        space = self.field.space
-        first, second, third = space.nodes[space.boundary[:, :3]].transpose(1, 0, 2)
-        normals = np.cross(second - first, third - first)
-        normals /= np.linalg.norm(normals, axis=1)[:, None]
-        order = np.argsort(space.boundary, axis=None)
-        ends = np.searchsorted(space.boundary.ravel()[order], np.arange(len(space.nodes) + 1))
-        return lambda node: np.asarray(normals[order[ends[node] : ends[node + 1]] // space.boundary.shape[1]])
 
     def _plane(self, node: int) -> Real:
         """Return two unit vectors (3, 2) across the largest principal stress of a node."""
@@ -198,6 +184,15 @@ class NotchField:
         points = self.field.space.nodes[nodes][:, None] + depths[None, :, None] * ways[:, None]
         stress, element = self.at(points.reshape(-1, 3))
         return stress.reshape(len(nodes), -1), element.reshape(len(nodes), -1)
+
+    def _turned(self, nodes: Nodes, depths: Real, weights: Real) -> tuple[Real, Nodes]:
+        """Return what ``_along`` does, along the steepest of some directions that stay in the solid, if any does."""
+        around = np.column_stack([np.cos(_AROUND), np.sin(_AROUND)])
+        ways = np.array([around @ self._plane(int(node)).T for node in nodes]).reshape(-1, 3)
+        stress, element = self._along(np.repeat(nodes, len(around)), ways, depths)
+        mean = np.where((element >= 0).all(axis=1), stress[:, 1:-1] @ weights, np.inf).reshape(-1, len(around))
+        best = np.argmin(mean, axis=1) + len(around) * np.arange(len(nodes))
+        return stress[best], element[best]
 
     def worst(self, strength: NotchStrength) -> tuple[NotchStress, NotchStress] | None:
         """Return where the surface comes nearest to breaking, by the point and by the line method.
@@ -229,16 +224,14 @@ class NotchField:
             even = steep * length <= EVEN * self.surface[nodes]
             ways = falls / np.where(even, np.inf, steep)[:, None]
             stress, element = self._along(nodes, ways, depths)
+            left = np.flatnonzero((element < 0).any(axis=1))
+            if len(left):
+                stress[left], element[left] = self._turned(nodes[left], depths, weights)
+            counts = ~even & (element >= 0).all(axis=1)
             for k, node in enumerate(nodes):
-                own, cells, counts = stress[k], element[k], not even[k]
-                if (cells < 0).any():
-                    around = np.column_stack([np.cos(_AROUND), np.sin(_AROUND)]) @ self._plane(node).T
-                    turned, found = self._along(np.full(len(around), node), around, depths)
-                    mean = np.where((found >= 0).all(axis=1), turned[:, 1:-1] @ weights, np.inf)
-                    own, cells, counts = turned[np.argmin(mean)], found[np.argmin(mean)], bool(mean.min() < np.inf)
                 every = [
-                    self._place(int(node), float(ahead), float(own[-1]), cells, strength, counts)
-                    for ahead in (own[0], weights @ own[1:-1])
+                    self._place(int(node), float(ahead), float(stress[k, -1]), element[k], strength, bool(counts[k]))
+                    for ahead in (stress[k, 0], weights @ stress[k, 1:-1])
                 ]
                 best = [max(pair, key=lambda one: one.use) for pair in zip(best or every, every, strict=True)]
         return (best[0], best[1]) if best else None

@@ -5,6 +5,7 @@ of half length a in a wide plate has S x/√(x² - a²) ahead of it (Westergaard
 Bending of a rectangle: half of it is pulled, ∫ (y/h)^m dV = V/(2 (m + 1)).
 """
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,8 +13,9 @@ import pytest
 import solid_meshes
 from known_solutions import NU, TENSION, E, kirsch, solved
 
+from alula.fea.elements.elasticity import basis_at
 from alula.fea.elements.space import displacement_space
-from alula.fea.solid.notch_field import NotchField, line_depths
+from alula.fea.solid.notch_field import NotchField, element_finder, line_depths
 from alula.fea.solid.stress import stress_field
 from alula.geometry.materials.brittle_notch import NotchStrength, critical_distance
 
@@ -68,10 +70,45 @@ def test_kirschs_hole_by_point_and_line(distance):
 
 
 def test_beyond_the_line_a_plain_part_has_its_tensile_strength():
-    """An inherent strength far above the tensile one does not lift the stress that no notch makes."""
+    """An inherent strength far above the tensile one does not lift the stress that no notch makes.
+
+    Of all lines that begin about the hole the worst ends nearer to it than the one across the pull.
+    """
     point, line = hole().worst(strength(0.5, inherent=1000.0))
-    assert point.use == line.use == pytest.approx(point.beyond / 100.0)
-    assert point.use > point.ahead / 1000.0
+    assert point.counts
+    assert point.use == line.use == pytest.approx(TENSION / 2.0 * (2.0 + 1.0 / 4.0 + 3.0 / 16.0) / 100.0, rel=0.06)
+
+
+def test_a_line_does_not_run_along_the_pull():
+    """A hanging bar, σ = 10 x: stress falls along itself alone, across which it is even."""
+
+    def hung(x, y, z):
+        k = TENSION / E
+        return k / 2.0 * (x**2 + NU * (y**2 + z**2)), -NU * k * x * y, -NU * k * x * z
+
+    point, _ = bar(hung, (3, 1, 1)).worst(strength(0.2))
+    assert not point.counts
+    assert point.use == pytest.approx(0.6)
+
+
+def test_the_sharpest_peak_is_not_the_one_that_breaks():
+    """Half of the bar has 30 that falls to nothing within 0.5, the other half 20 throughout."""
+    field = bar(pulled, (12, 4, 12)).field
+    x, _, z = field.space.nodes.T
+    nodal = np.zeros_like(field.nodal)
+    nodal[:, 0] = np.where(x < 2.9, np.maximum(30.0 * (1.0 - (1.0 - z) / 0.5), 0.0), 20.0)
+    point, _ = NotchField(field=replace(field, nodal=nodal)).worst(strength(0.4))
+    assert field.space.nodes[point.node, 0] > 2.9
+    assert point.use == pytest.approx(0.2)
+
+
+def test_points_are_found_in_curved_elements():
+    space = displacement_space(solid_meshes.ring(1.0, 3.0, 0.5, around=8, radial=2, layers=1))
+    place = np.random.default_rng(1).dirichlet(np.ones(4), len(space.cells))[:, :3]
+    phi, _ = basis_at(space, place.T)
+    element, found = element_finder(space)(np.einsum("kb,kbi->ki", phi, space.nodes[space.cells]))
+    assert (element == np.arange(len(space.cells))).all()
+    assert np.abs(found - place).max() < 1e-6
 
 
 def test_a_line_that_leaves_a_thin_wall_takes_nothing_off():

@@ -56,7 +56,7 @@ def place(ahead, use, *, counts=True):
 class Solved:
     """A refined solid of one place, two variants and a mesh that misses 1 MPa (2.25 times 4/9)."""
 
-    def __init__(self, monkeypatch, uses, *, volume=None, spans=(180, 180), known=True):
+    def __init__(self, monkeypatch, uses, *, volume=None, spans=(180, 180), transfers=(None, None), known=True):
         self.precision = [
             SimpleNamespace(
                 principal=SimpleNamespace(
@@ -68,7 +68,8 @@ class Solved:
         figures = SimpleNamespace(estimate=SimpleNamespace(stress=np.array([4.0 / 9.0])))
         self.levels = [SimpleNamespace(chord=0.0, figures=[figures] * len(spans))]
         cases = [
-            SimpleNamespace(load="loads", transfer=None, span=span, displacement=n) for n, span in enumerate(spans)
+            SimpleNamespace(load="loads", transfer=transfer, span=span, displacement=n)
+            for n, (span, transfer) in enumerate(zip(spans, transfers, strict=False))
         ]
         self.solution = SimpleNamespace(cases=cases, space=SimpleNamespace(nodes=np.ones((1, 3))), E=1.0, nu=0.3)
         self.sharp_edges = 0
@@ -113,6 +114,16 @@ def test_the_worse_variant_counts_and_contact_adds_to_the_narrow_pressure(monkey
         assert found.factor.value == pytest.approx(1.0 / 0.60)
         assert found.factor.low == pytest.approx((1.0 - notches.CONTACT_SHORTFALL) / (0.60 + 1.0 / 40.0))
         assert found.factor.high == pytest.approx(1.0 / (0.40 - 1.0 / 40.0))
+
+
+def test_another_transfer_of_a_torque_widens_the_band_alone(monkeypatch):
+    case = edited("knee", own(TOUGH))
+    other = "bore-shear" if case.torque_transfer == "eye-faces" else "eye-faces"
+    for uses, transfers in (((0.4, 0.6), (case.torque_transfer, other)), ((0.6, 0.4), (other, case.torque_transfer))):
+        every = [same(use, use) for use in uses]
+        found = Solved(monkeypatch, every, transfers=transfers).factor(case)
+        assert found.factor.value == pytest.approx(1.0 / 0.4)
+        assert found.factor.low == pytest.approx(1.0 / (0.6 + 1.0 / 40.0))
 
 
 def test_ranges_of_the_card_widen_the_band(monkeypatch):
