@@ -24,6 +24,7 @@ from alula.loads.records.check_spec import (
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
+    NotchCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -41,6 +42,7 @@ _QUANTITIES = {
     EyeCheck: Quantity.EYES,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
+    NotchCheck: Quantity.NOTCHES,
     ClearanceCheck: Quantity.CLEARANCE,
     FrequencyCheck: Quantity.FREQUENCY_RATIO,
     MassCheck: Quantity.MASS,
@@ -277,7 +279,9 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck() | PlasticCollapseCheck():
+        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck():
+            return tuple(map(Subject.link, check.links or case.checked_links))
+        case PlasticCollapseCheck() | NotchCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

@@ -20,6 +20,7 @@ STRENGTH = (
     Quantity.EYES,
     Quantity.SUSTAINED_STRESS,
     Quantity.PLASTIC_COLLAPSE,
+    Quantity.NOTCHES,
     Quantity.FATIGUE_STRESS,
     Quantity.FATIGUE_LIFE,
 )

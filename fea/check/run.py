@@ -35,6 +35,7 @@ from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
+from alula.fea.judging.notches import notch_outcomes
 from alula.fea.judging.plastic_collapse import Found, collapse_outcomes, find_collapses
 from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
@@ -348,13 +349,26 @@ class _LoadCase:
             *solid_buckling_outcomes(case, load_case, solids),
         )
         eyes = self._eyes(reactions)
+        doubts = {x: self._doubts_on(x, solved.get(x)) for x in self.plates}
+        notches = [
+            *notch_outcomes(
+                case,
+                load_case,
+                lambda x: [(loads.name, hand) for loads, hand in self.plates[x]],
+                decided,
+                links,
+                self.acts_on,
+                doubts.__getitem__,
+            )
+        ]
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
-            *collapse_outcomes(case, load_case, collapses, self.acts_on, lambda x: self._doubts_on(x, solved.get(x))),
+            *collapse_outcomes(case, load_case, collapses, self.acts_on, doubts.__getitem__),
+            *(outcome for outcome, _ in notches),
             *whole,
         )
         found = [reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, outcome) for outcome in every]
@@ -377,6 +391,7 @@ class _LoadCase:
             work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
             eyes=tuple(eye for _, found in eyes for eye in found),
+            notches=tuple(notch for _, notch in notches if notch is not None),
             collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 

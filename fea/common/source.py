@@ -39,6 +39,7 @@ class SourceKind(StrEnum):
     CLAMP = "edge of a clamp"
     DIRECTION = "direction of the force"
     EYE_FORMULAS = "limit analysis of eyes over the formulas"
+    NOTCH_METHOD = "point or line method"
 
 
 @dataclass(frozen=True, kw_only=True)

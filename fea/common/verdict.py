@@ -121,6 +121,8 @@ class Quantity(StrEnum):
     """By what all loads may grow until the linkage gives way."""
     PLASTIC_COLLAPSE = "plastic-collapse factor", "", Sense.AT_LEAST
     """By what all loads on a link may grow until it flows without end, or to its material's largest strain."""
+    NOTCHES = "safety factor of the notches", "", Sense.AT_LEAST
+    """Of a brittle link: by what its loads may grow until it breaks at a notch, by critical distance and by volume."""
     FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST
     """Fatigue strength over stress."""
     FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST

@@ -182,8 +182,9 @@ def decide(
     left: dict[str, dict[str, Decision]] = {}
     for link, task in tasks.items():
         rest[link], left[link] = task, {}
-        if fidelity == "solid" or effort.stated:
-            reasons[link] = reason("solid_requested" if fidelity == "solid" else "accuracy_requested")
+        if fidelity == "solid" or effort.stated or task.beyond_peak:
+            asked_for = reason("solid_requested" if fidelity == "solid" else "accuracy_requested")
+            reasons[link] = reason("field_requested") if task.beyond_peak and fidelity != "solid" else asked_for
             continue
         hands[link] = _hands(task, beams[link])
         decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from alula.fea.asked.asked import asked_of
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.solid_holding import solid_holding
 from alula.fea.common.band import Band
@@ -28,6 +29,7 @@ from alula.fea.solid.solution import SolidCase
 from alula.fea.solid.stress import stress_field
 from alula.geometry.bodies.body import clamped_end
 from alula.loads.case.case import Case
+from alula.loads.records.check_spec import NotchCheck
 
 NO_NUMBER = reason("no_mesh_tells")
 
@@ -53,6 +55,7 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
         stress_limits=stress_limits(case, link),
         displacement_limits=displacement_limits(case, link),
         layer_limits=layer_limits(case, link),
+        beyond_peak=link in asked_of(case, NotchCheck),
         holding=None if body.part.is_beam else solid_holding(case, link),
     )
 

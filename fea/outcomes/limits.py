@@ -17,6 +17,7 @@ from alula.loads.records.check_spec import (
     EyeCheck,
     FrequencyCheck,
     LimitLoadCheck,
+    NotchCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -167,7 +168,8 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
         elif isinstance(
-            check, SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck | PlasticCollapseCheck
+            check,
+            SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck | PlasticCollapseCheck | NotchCheck,
         ):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:

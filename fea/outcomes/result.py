@@ -17,6 +17,7 @@ from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.notches import NotchFactor
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
@@ -292,6 +293,8 @@ class LoadCaseResult:
         All that acts on the links, friction included.
     eyes : tuple of EyeFactors
         Of every eye of the links whose eyes a check asks for.
+    notches : tuple of NotchFactor
+        Of every link whose notches a check asks for and whose solid was solved.
     collapses : mapping of str to LinkCollapse
         Link -> at what factor it collapses, where a check asks for it and it was found.
     """
@@ -308,6 +311,7 @@ class LoadCaseResult:
     work: DriveWork | None = None
     loads: tuple[Load, ...] = ()
     eyes: tuple[EyeFactors, ...] = ()
+    notches: tuple[NotchFactor, ...] = ()
     collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
 
     @property

@@ -88,6 +88,8 @@ class LinkTask(ElasticLink):
         Largest relative error of the displacement, which a check of the linkage needs.
     holding : SolidHolding or None
         How joints hold it against buckling as a solid; None where beams stand for it.
+    beyond_peak : bool
+        True where a check looks at more than the peaks, so that meshes are made as fine as the accuracy asks.
     open_ranges : mapping of str to OpenRanges
         Name of loads -> within what numbers their checks are open however fine the mesh; of loads that are left out
         meshes are made finer all the same.
@@ -99,6 +101,7 @@ class LinkTask(ElasticLink):
     layer_limits: tuple[tuple[float, float], ...] = ()
     displacement_error: float = math.inf
     holding: SolidHolding | None = None
+    beyond_peak: bool = False
     open_ranges: Mapping[str, OpenRanges] = field(default_factory=dict)
 
     def without(self, names: Collection[str]) -> "LinkTask":

@@ -347,6 +347,11 @@ class _Link:
         self.stopped, self.done = why, True
 
     @property
+    def _wanted(self) -> bool:
+        """Whether the accuracy is wanted for itself, even where verdicts on peaks are clear."""
+        return self.effort.stated or self.task.beyond_peak
+
+    @property
     def edges(self) -> Sequence[ReentrantEdge]:
         """Re-entrant edges, as far as they were asked for."""
         return self._sharp.result() if self._sharp is not None else ()
@@ -370,7 +375,7 @@ class _Link:
     @property
     def _beyond(self) -> frozenset[int]:
         """Numbers of the cases whose checks no finer mesh decides."""
-        if self.effort.stated or self.solution is None:
+        if self._wanted or self.solution is None:
             return frozenset()
         by_loads: dict[str, list[int]] = {}
         for number, solved in enumerate(self.solution.cases):
@@ -399,7 +404,7 @@ class _Link:
         if any(p.unreliable == "coarse" for p in self.precision) or not self._told:
             return False
         if len(self.levels) == 1 or self.far:
-            self.far = not self.effort.stated and self._far()
+            self.far = not self._wanted and self._far()
         if not self._moves_settled:
             return False
         if self.far or len(self.levels) == 1:
@@ -412,7 +417,7 @@ class _Link:
         series = [s for p in real for s in (*self._deciding(p), p.edge) if s is not None]
         if any(s.kind == "growing" or s.suspect or len(s.values) < SERIES for s in series):
             return False
-        return all(map(self._narrow, real)) or (not self.effort.stated and self._decided())
+        return all(map(self._narrow, real)) or (not self._wanted and self._decided())
 
     def _narrow(self, case: CasePrecision) -> bool:
         """Whether bands are as narrow as asked for; that of layers may be wide where it is clear of its limit.

@@ -21,6 +21,7 @@ from alula.geometry.base.usual_units import CELSIUS, USUAL
 INTERNAL_UNITS = {
     "length": "mm",
     "area": "mm^2",
+    "volume": "mm^3",
     "angle": "rad",
     "force": "N",
     "moment": "N*mm",
@@ -28,6 +29,7 @@ INTERNAL_UNITS = {
     "stiffness": "N/mm",
     "torsional stiffness": "N*mm/rad",
     "stress": "MPa",
+    "fracture toughness": "MPa*mm^0.5",
     "mass": "tonne",
     "density": "tonne/mm^3",
     "time": "s",
@@ -44,6 +46,7 @@ INTERNAL_UNITS = {
 EXAMPLES = {
     "length": "125 mm",
     "area": "20 mm^2",
+    "volume": "800 mm^3",
     "angle": "30 deg",
     "force": "0.25 N",
     "moment": "130 N*mm",
@@ -51,6 +54,7 @@ EXAMPLES = {
     "stiffness": "0.5 N/mm",
     "torsional stiffness": "12 N*mm/rad",
     "stress": "2.4 GPa",
+    "fracture toughness": "1.0 MPa*m^0.5",
     "mass": "25 g",
     "density": "1450 kg/m^3",
     "time": "10 year",
@@ -69,7 +73,7 @@ LEAST, LARGEST = 1e-20, 1e20
 computed from sizes between them stays finite (measured: statics, motion and hand calculation with one to three
 quantities at either end)."""
 _LONGEST_TEXT = 64
-_UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"
+_UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?(?:[01]\.5|[1-4]))?"
 TYPOGRAPHY = str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "²": "^2", "³": "^3", "⁴": "^4", "−": "-"} | dict.fromkeys("\u00a0\u2009\u202f", " ")
 )
@@ -252,6 +256,7 @@ NOT_NEGATIVE = Rule(_not_negative, "not negative")
 
 Length = Annotated[float, Dimensioned("length")]
 Area = Annotated[float, Dimensioned("area")]
+Volume = Annotated[float, Dimensioned("volume")]
 Angle = Annotated[float, Dimensioned("angle")]
 Force = Annotated[float, Dimensioned("force")]
 Moment = Annotated[float, Dimensioned("moment")]
@@ -259,6 +264,7 @@ LineLoad = Annotated[float, Dimensioned("line load")]
 Stiffness = Annotated[float, Dimensioned("stiffness")]
 TorsionalStiffness = Annotated[float, Dimensioned("torsional stiffness")]
 Stress = Annotated[float, Dimensioned("stress")]
+Toughness = Annotated[float, Dimensioned("fracture toughness")]
 Mass = Annotated[float, Dimensioned("mass")]
 Density = Annotated[float, Dimensioned("density")]
 Time = Annotated[float, Dimensioned("time")]

@@ -7,6 +7,7 @@ A table of factors alone is no second reading of units: whatever is not in it, m
 USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "length": {"mm": (1.0, 0.001), "cm": (10.0, 0.01), "m": (1e3, 1.0), "µm": (1e-3, 1e-6), "in": (25.4, 0.0254)},
     "area": {"mm^2": (1.0, 1e-6), "cm^2": (100.0, 1e-4), "m^2": (1e6, 1.0)},
+    "volume": {"mm^3": (1.0, 1e-9), "cm^3": (1e3, 1.0000000000000002e-6)},
     "angle": {
         "deg": (0.017453292519943295, 0.017453292519943295),
         "°": (0.017453292519943295, 0.017453292519943295),
@@ -23,6 +24,10 @@ USUAL: dict[str, dict[str, tuple[float, float]]] = {
         "kPa": (1e-3, 1e6),
         "Pa": (1e-6, 1e3),
         "N/mm^2": (1.0, 1e9),
+    },
+    "fracture toughness": {
+        "MPa*m^0.5": (31.622776601683793, 1e9),
+        "MPa*mm^0.5": (1.0, 31622776.60168379),
     },
     "mass": {"g": (1e-6, 1.0), "kg": (1e-3, 1e3), "mg": (1e-9, 1e-3), "tonne": (1.0, 1e6)},
     "density": {
@@ -47,9 +52,10 @@ USUAL: dict[str, dict[str, tuple[float, float]]] = {
 """Dimension -> unit -> so many of alula's units, and so many of pint's root units."""
 CELSIUS = ("degC", "°C")
 """The one usual unit that has a zero of its own, which is alula's."""
-ROOTS: dict[str, dict[str, int]] = {
+ROOTS: dict[str, dict[str, float]] = {
     "length": {"meter": 1},
     "area": {"meter": 2},
+    "volume": {"meter": 3},
     "angle": {"radian": 1},
     "force": {"gram": 1, "meter": 1, "second": -2},
     "moment": {"gram": 1, "meter": 2, "second": -2},
@@ -57,6 +63,7 @@ ROOTS: dict[str, dict[str, int]] = {
     "stiffness": {"gram": 1, "second": -2},
     "torsional stiffness": {"gram": 1, "meter": 2, "radian": -1, "second": -2},
     "stress": {"gram": 1, "meter": -1, "second": -2},
+    "fracture toughness": {"gram": 1, "meter": -0.5, "second": -2},
     "mass": {"gram": 1},
     "density": {"gram": 1, "meter": -3},
     "time": {"second": 1},

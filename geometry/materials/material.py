@@ -12,7 +12,8 @@ from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Toughness, Volume
+from alula.geometry.materials.brittle_notch import check_brittle
 from alula.geometry.materials.directional import directional
 from alula.geometry.materials.temperature import TemperatureFactors, check_factors
 
@@ -36,6 +37,10 @@ def _ordered(value: tuple[float, float]) -> tuple[float, float]:
 
 
 Range = Annotated[tuple[Annotated[Stress, POSITIVE], Annotated[Stress, POSITIVE]], AfterValidator(_ordered)]
+LengthRange = Annotated[tuple[Annotated[Length, POSITIVE], Annotated[Length, POSITIVE]], AfterValidator(_ordered)]
+ToughnessRange = Annotated[
+    tuple[Annotated[Toughness, POSITIVE], Annotated[Toughness, POSITIVE]], AfterValidator(_ordered)
+]
 
 
 class Fatigue(CaseModel):
@@ -86,6 +91,23 @@ class Material(CaseModel):
     hardening_factors: tuple[tuple[Annotated[float, Field(ge=0)], Annotated[float, Field(ge=1)]], ...] = ()
     """(plastic strain, yield stress over yield_strength), rising; straight between. Plastic collapse uses them up to
     the last strain, where its path ends; without them the material does not harden."""
+    inherent_strength: Annotated[Stress, POSITIVE] | None = None
+    """Of a brittle material: what its stress reaches at the critical distance from a notch as it breaks; not below
+    ultimate_strength."""
+    inherent_strength_range: Range | None = None
+    """Its scatter."""
+    critical_distance: Annotated[Length, POSITIVE] | None = None
+    """Of a brittle material: L = (fracture_toughness/inherent_strength)²/π, at half of which a notch is judged."""
+    critical_distance_range: LengthRange | None = None
+    """Its scatter."""
+    fracture_toughness: Annotated[Toughness, POSITIVE] | None = None
+    """K_Ic, which gives the critical distance where that is not stated."""
+    fracture_toughness_range: ToughnessRange | None = None
+    """Its scatter."""
+    weibull_modulus: Annotated[float, Field(ge=1.0)] | None = None
+    """Of a brittle material whose strength falls with its volume."""
+    weibull_volume: Annotated[Volume, POSITIVE] | None = None
+    """Volume under even tension of the specimens that have ultimate_strength."""
     strength_across_layers: Annotated[Stress, POSITIVE] | None = None
     """Tensile strength of a printed material normal to its layers, measured on specimens built upright."""
     strength_across_layers_range: Range | None = None
@@ -160,6 +182,7 @@ class Material(CaseModel):
         for entry, needed in (*upon, *((f"{entry}_range", entry) for entry in layers)):
             if getattr(self, entry) is not None and getattr(self, needed) is None:
                 raise refusal(f"{entry} needs {needed}; state it too")
+        check_brittle(self)
         if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:
             raise PydanticCustomError(
                 "no_such_entry",
@@ -175,15 +198,19 @@ class Material(CaseModel):
         between = {
             "youngs_modulus_range": "youngs_modulus",
             "strength_range": own,
+            "inherent_strength_range": "inherent_strength",
+            "critical_distance_range": "critical_distance",
+            "fracture_toughness_range": "fracture_toughness",
             "strength_across_layers_range": "strength_across_layers",
             "shear_strength_between_layers_range": "shear_strength_between_layers",
         }
         for entry, of in between.items():
             scatter, value = getattr(self, entry), getattr(self, of)
+            unit = {"critical_distance": "mm", "fracture_toughness": "MPa*mm^0.5"}.get(of, "MPa")
             if scatter is not None and value is not None and not scatter[0] <= value <= scatter[1]:
                 raise refusal(
-                    f"{entry} is from {scatter[0]:g} to {scatter[1]:g} MPa, which leaves out {of}, {value:g} MPa; "
-                    "correct one of them"
+                    f"{entry} is from {scatter[0]:g} to {scatter[1]:g} {unit}, which leaves out {of}, {value:g} "
+                    f"{unit}; correct one of them"
                 )
         for entry, of in (("sustained_stress", own), ("sustained_modulus", "youngs_modulus")):
             lasting, brief = getattr(self, entry), getattr(self, of)

@@ -28,6 +28,7 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     MassCheck,
     MotorCheck,
+    NotchCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -263,6 +264,11 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
         for link in check.links or case.checked_links:
             _check_ductile(case, name, link)
+    elif isinstance(check, NotchCheck):
+        for link in check.links:
+            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
+        for link in check.links or case.checked_links:
+            _check_notched(case, name, link)
     elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
@@ -289,6 +295,27 @@ def _check_ductile(case: CoreCase, name: str, link: str) -> None:
         f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and name the "
         "other links in links"
     )
+
+
+def _check_notched(case: CoreCase, name: str, link: str) -> None:
+    """Check that a card tells how a link bears notches, and that its layers are judged by themselves."""
+    part, material = case.part_of(link), case.material_of(link)
+    entry = f"checks.{name}.links"
+    if not material.brittle:
+        raise CaseError(
+            f"{entry}: '{part.material}', the material of link '{link}', yields at a notch before it breaks; name the "
+            "brittle links alone"
+        )
+    if material.inherent_strength is None and material.weibull_modulus is None:
+        raise CaseError(
+            f"materials.{part.material}: it tells nothing of notches, which '{entry}' asks for in link '{link}'; state "
+            "inherent_strength with fracture_toughness or critical_distance, or weibull_modulus with weibull_volume"
+        )
+    if material.strength_across_layers is not None and part.build_direction is None:
+        raise CaseError(
+            f"parts.{case.links[link].part}.build_direction: it is missing, and '{entry}' judges notches of link "
+            f"'{link}' along its layers alone; state how the part is built"
+        )
 
 
 def _check_minimum(name: str, title: str, material: Material, of: str) -> None:

@@ -150,6 +150,20 @@ class PlasticCollapseCheck(CaseModel):
     """The links to check; all that have a part when left out. Each is solved as a solid."""
 
 
+class NotchCheck(CaseModel):
+    """Each link of a brittle material must not break at its notches: holes, fillets, edges.
+
+    By the stress at its card's critical distance from them, and by the volume under tension where the card has the
+    modulus of Weibull; the lower factor counts. The safety factor has the largest stress of the surface in its place.
+    """
+
+    type: Literal["notch"]
+    minimum: Annotated[float, Field(gt=0)]
+    """The least factor."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out. Each is solved as a solid."""
+
+
 class ClearanceCheck(CaseModel):
     """Links that lie at one height, and pins and the links that they pass, must stay apart.
 
@@ -213,6 +227,7 @@ Check = Annotated[
     | EyeCheck
     | LimitLoadCheck
     | PlasticCollapseCheck
+    | NotchCheck
     | ClearanceCheck
     | FrequencyCheck
     | MassCheck

@@ -9,7 +9,8 @@ from alula.geometry.materials.material import Fatigue, Material
 from alula.geometry.materials.temperature import covered, factor_at
 
 _LAYERS = "strength_across_layers", "shear_strength_between_layers"
-_STRENGTHS = ("yield_strength", "ultimate_strength", "sustained_stress", "strength_range", *_LAYERS,
+_BRITTLE = "inherent_strength", "inherent_strength_range", "fracture_toughness", "fracture_toughness_range"
+_STRENGTHS = ("yield_strength", "ultimate_strength", "sustained_stress", "strength_range", *_LAYERS, *_BRITTLE,
               *(f"{entry}_range" for entry in _LAYERS), "fatigue", "fatigue_across_layers")  # fmt: skip
 _MODULI = "youngs_modulus", "youngs_modulus_range", "sustained_modulus"
 
@@ -75,7 +76,7 @@ def at_temperature(material: Material, conditions: Conditions) -> Material:
     """Return a material as it is at the stated temperature; what its card does not tell is as at room temperature.
 
     Strengths of all kinds, those of fatigue too, have the factor of the strength, moduli that of Young's modulus
-    (assumed of sustained stress, creep modulus and fatigue).
+    (assumed of sustained stress, creep modulus, fatigue and fracture toughness).
 
     Parameters
     ----------

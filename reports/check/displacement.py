@@ -10,7 +10,7 @@ from alula.fea.solid.buckling_factor import MOST
 from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
-from alula.reports.check.eyes import eye_parts, eye_record
+from alula.reports.check.eyes import eye_parts, eye_record, notch_parts, notch_record
 from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
@@ -60,6 +60,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from _ways_to_hold(result, case)
     yield from pin_parts(result.case, case)
     yield from eye_parts(case)
+    yield from notch_parts(case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -181,6 +182,7 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "pins": pin_record(case),
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
         **({"eyes": eye_record(case)} if case.eyes else {}),
+        **({"notches": notch_record(case)} if case.notches else {}),
     }
 
 

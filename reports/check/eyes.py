@@ -1,4 +1,4 @@
-"""Eyes: by what each of their modes bears more than the force of the pin."""
+"""Eyes and notches: by what each bears more than its load, mode by mode, and method by method."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -58,3 +58,64 @@ def eye_record(case: LoadCaseResult) -> list[dict[str, Any]]:
         | {"modes": [{"mode": str(mode), "factor": data(factor)} for mode, factor in eye.factors.items()]}
         for eye in case.eyes
     ]
+
+
+def notch_parts(case: LoadCaseResult) -> Iterator[Part]:
+    """Yield what was found of the notches of every checked link under a load case.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Yields
+    ------
+    Part
+    """
+    rows = [
+        (
+            one.check,
+            one.link,
+            Number(one.surface),
+            Number(one.point),
+            Number(one.line),
+            Number(one.by_point),
+            Number(one.by_line),
+            Number(one.by_volume),
+            Number(one.factor),
+        )
+        for one in case.notches
+    ]
+    if rows:
+        yield Table.of(
+            (
+                *map(words, ("check", "link")),
+                Column("surface", "MPa"),
+                Column("at L/2", "MPa"),
+                Column("mean over 2 L", "MPa"),
+                Column("by point"),
+                Column("by line"),
+                Column("by volume"),
+                Column("factor"),
+            ),
+            rows,
+            key="notches",
+            caption="Notches: largest principal stress of the surface where the link comes nearest to breaking, and "
+            "ahead of it by the critical distance L; the factor holds both methods and all that leaves it open, and "
+            "the lower of distance and volume counts",
+            under=(("load case", case.name),),
+        )
+
+
+def notch_record(case: LoadCaseResult) -> list[dict[str, Any]]:
+    """Return what was found of notches as entries of ``result.json``.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    list of dict
+    """
+    every = "check link surface distance point line relieved by_point by_line by_volume effective_volume factor"
+    return [entries(one, every) | {"location": data(one.location)} for one in case.notches]

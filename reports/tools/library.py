@@ -13,6 +13,8 @@ _SHORT = {
     "yield_strength": "yield strength",
     "ultimate_strength": "ultimate strength",
     "ultimate_strength_by_diameter": "strength by diameter",
+    "inherent_strength": "inherent strength",
+    "fracture_toughness": "fracture toughness",
     "strength_across_layers": "strength across layers",
     "shear_strength_between_layers": "shear between layers",
 }
