@@ -21,6 +21,7 @@ from alula.loads.records.check_spec import (
     ClearanceCheck,
     DisplacementCheck,
     EyeCheck,
+    FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
@@ -41,6 +42,7 @@ _QUANTITIES = {
     EyeCheck: Quantity.EYES,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
+    FatigueCheck: Quantity.FATIGUE_STRESS,
     ClearanceCheck: Quantity.CLEARANCE,
     FrequencyCheck: Quantity.FREQUENCY_RATIO,
     MassCheck: Quantity.MASS,
@@ -277,7 +279,14 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck() | PlasticCollapseCheck():
+        case (
+            SafetyFactorCheck()
+            | SustainedCheck()
+            | DisplacementCheck()
+            | EyeCheck()
+            | PlasticCollapseCheck()
+            | FatigueCheck()
+        ):
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

@@ -31,6 +31,7 @@ from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings,
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
+from alula.fea.judging.fatigue import pose_outcomes, pulsating
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
@@ -43,6 +44,7 @@ from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from alula.fea.outcomes.eye_modes import EyeFactors
+from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
@@ -66,7 +68,14 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, EyeCheck, PinCheck, PlasticCollapseCheck
+from alula.loads.records.check_spec import (
+    BearingCheck,
+    DisplacementCheck,
+    EyeCheck,
+    FatigueCheck,
+    PinCheck,
+    PlasticCollapseCheck,
+)
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.shares import parse_accuracy
 
@@ -348,12 +357,14 @@ class _LoadCase:
             *solid_buckling_outcomes(case, load_case, solids),
         )
         eyes = self._eyes(reactions)
+        lasting = {x: pulsating(case, x, links[x]) for x in asked_of(case, FatigueCheck)}
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
+            *pose_outcomes(case, load_case, links, lasting, self.acts_on),
             *collapse_outcomes(case, load_case, collapses, self.acts_on, lambda x: self._doubts_on(x, solved.get(x))),
             *whole,
         )
@@ -377,6 +388,7 @@ class _LoadCase:
             work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
             eyes=tuple(eye for _, found in eyes for eye in found),
+            fatigue={x: found for x, found in lasting.items() if isinstance(found, LinkFatigue)},
             collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 

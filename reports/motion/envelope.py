@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from alula.fea.common.verdict import by_nearness
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
-from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from alula.fea.outcomes.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.outcomes.unchecked import caveats
 from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record

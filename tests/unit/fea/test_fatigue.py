@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from alula.fea.motion.critical import critical_node
-from alula.fea.motion.fatigue import (
+from alula.fea.outcomes.fatigue import (
     cycles_to_failure,
     equivalent_peak,
     fatigue_life,
