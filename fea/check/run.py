@@ -18,7 +18,7 @@ from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
-from alula.fea.common.scatter import Scatter
+from alula.fea.common.scatter import Scatter, load_scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, overall
@@ -357,6 +357,8 @@ class _LoadCase:
             *solid_buckling_outcomes(case, load_case, solids),
         )
         eyes = self._eyes(reactions)
+        scattered = load_scatter(case, load_case).high
+        pressing = {x: scattered * joint.magnitude for x, joint in reactions.joints.items()}
         lasting = {x: pulsating(case, x, links[x]) for x in asked_of(case, FatigueCheck)}
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
@@ -364,7 +366,7 @@ class _LoadCase:
             *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
-            *pose_outcomes(case, load_case, links, lasting, self.acts_on),
+            *pose_outcomes(case, load_case, links, lasting, self.acts_on, pressing),
             *collapse_outcomes(case, load_case, collapses, self.acts_on, lambda x: self._doubts_on(x, solved.get(x))),
             *whole,
         )

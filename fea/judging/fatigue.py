@@ -13,10 +13,11 @@ import numpy as np
 
 from alula.fea.asked.asked import Asked, asked
 from alula.fea.common.band import Band
-from alula.fea.common.reason import Reason, reason
+from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import fatigue_scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.judging.bearing import contact_pressure
 from alula.fea.outcomes.fatigue import (
     LIFE_FACTOR,
     NOTCH,
@@ -156,7 +157,7 @@ def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason
     return LinkFatigue.of(
         ends,
         lives[worst][0],
-        np.array([-back, 1.0]) * extremes[worst][0],
+        np.array([-back * extremes[worst][0], extremes[worst][0]]),
         location[worst],
         distinct(result.decisive.sources, (NOTCH,) if notched else ()),
         material=material,
@@ -202,8 +203,12 @@ def pose_outcomes(
     links: Mapping[str, LinkResult],
     found: Mapping[str, LinkFatigue | Reason],
     acting: Callable[[str], bool],
+    forces: Mapping[str, float],
 ) -> Iterator[CheckOutcome]:
     """Yield the outcome of every check of fatigue in a pose.
+
+    Where a pin in a loose hole presses harder in the middle of its contact than what is borne so often, that is told:
+    peaks of stress leave it out, and S-N lines are not of wear.
 
     Parameters
     ----------
@@ -215,6 +220,8 @@ def pose_outcomes(
         As ``pulsating`` returns it, by link.
     acting : callable
         Whether anything acts on a link.
+    forces : mapping of str to float
+        Of the joints, with all that scatters [N].
 
     Yields
     ------
@@ -233,4 +240,13 @@ def pose_outcomes(
                     outcome = outcome.left_open(links[link].why)
                 elif outcome.verdict is Verdict.PASS and layers_of(case, link) is not None:
                     outcome = outcome.left_open(reason("layers_fatigue_over_motion"))
-                yield outcome
+                pressed = _pressed(case, link, forces, fatigue.strength or math.inf)
+                yield outcome.because(together(outcome.reason, pressed)) if pressed else outcome
+
+
+def _pressed(case: Case, link: str, forces: Mapping[str, float], strength: float) -> Reason | None:
+    """Return the pin that presses hardest on an eye of a link, where that is more than a strength [MPa]."""
+    own = [joint for joint in case.bearing_joints if link in case.joints[joint].links]
+    found = {joint: contact_pressure(case, joint, link, forces[joint]) for joint in own}
+    joint, most = max(((x, p[1]) for x, p in found.items() if p), key=lambda of: of[1], default=("", 0.0))
+    return reason("pin_presses_beside", joint=joint, pressure=most) if most > strength else None

@@ -23,8 +23,8 @@ class Conditions(CaseModel):
     """How long the loads stay; where stated, links creep (``sustained_modulus``) and their stress is set
     against ``sustained_stress``."""
     cycles: Annotated[float, Field(gt=0)] | None = None
-    """How often each load case comes and goes: in a pose from nothing to its load and back, over a motion one repetition
-    of it. Where stated, links are checked for fatigue."""
+    """How often each load case comes and goes: in a pose from nothing to its load and back, over a motion once with
+    each repetition. Where stated, links are checked for fatigue."""
     reverses: bool = False
     """True where in a pose each load goes to its opposite in place of nothing."""
     temperature: Temperature | None = None

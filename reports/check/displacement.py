@@ -11,6 +11,7 @@ from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.eyes import eye_parts, eye_record
+from alula.reports.check.fatigue import fatigue_parts, link_fatigue_record
 from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
@@ -41,7 +42,7 @@ def displacement_section(result: CheckResult) -> Section:
         title="Displacement of the linkage",
         short="Displacement",
         parts=(*parts, Folded("The frame model", (Text(_model(result)),))),
-        data={"load_cases": {name: _data(case) for name, case in result.load_cases.items()}},
+        data={"load_cases": {name: _data(result, case) for name, case in result.load_cases.items()}},
         not_covered=(("Large displacements", _large(result)), ("Buckling", _buckling(result))),
     )
 
@@ -60,6 +61,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from _ways_to_hold(result, case)
     yield from pin_parts(result.case, case)
     yield from eye_parts(case)
+    yield from fatigue_parts(result, case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -158,7 +160,7 @@ def _model(result: CheckResult) -> str:
     )
 
 
-def _data(case: LoadCaseResult) -> dict[str, Any]:
+def _data(result: CheckResult, case: LoadCaseResult) -> dict[str, Any]:
     moved = case.large_displacement
     deformed = moved.reactions
     return {
@@ -181,6 +183,7 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "pins": pin_record(case),
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
         **({"eyes": eye_record(case)} if case.eyes else {}),
+        **({"fatigue": link_fatigue_record(result, case)} if case.fatigue else {}),
     }
 
 
