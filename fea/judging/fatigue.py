@@ -151,13 +151,13 @@ def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason
         return reason("peak_not_known")
     extremes, location, notched = (_of_solid if isinstance(result, SolidResult) else _by_hand)(case, result, data)
     back = 1.0 if case.conditions.reverses else 0.0
-    lives = [[fatigue_life(np.array([-back * end, end]), material) for end in ends] for ends in extremes]
+    lives = [[fatigue_life(np.array([0.0 - back * end, end]), material) for end in ends] for ends in extremes]
     worst = max(range(len(lives)), key=lambda i: lives[i][0].stress)
     ends = [max(own, key=lambda life: life.stress) for own in zip(*lives, strict=True)]
     return LinkFatigue.of(
         ends,
         lives[worst][0],
-        np.array([-back * extremes[worst][0], extremes[worst][0]]),
+        np.array([0.0 - back * extremes[worst][0], extremes[worst][0]]),
         location[worst],
         distinct(result.decisive.sources, (NOTCH,) if notched else ()),
         material=material,
