@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,6 +76,7 @@ def test_each_load_case_has_its_worst_link(by_hand):
         assert outcome.value.value == pytest.approx(factor(stress.value))
         assert outcome.value.low == pytest.approx(factor(stress.high))
         assert found(by_hand, load_case, other).value.low == math.inf
+        assert told(found(by_hand, load_case, other).reason) == "nothing acts on it"
     assert found(by_hand, "pull", "level").value.value < found(by_hand, "lift", "rising").value.value
 
 
@@ -179,6 +181,25 @@ def test_over_a_motion_cycles_count_by_rainflow_times_those_of_the_conditions():
     assert "of 20000 cycles" in told(outcome.reason)
 
 
+def test_neither_beams_beyond_their_calibration_nor_layers_pass():
+    def thin(tables):
+        tables["parts"]["bar"]["thickness"] = tables["parts"]["bar"]["eye_thickness"] = "2 mm"
+
+    outcome = found(check_case(repeated({}, change=thin), fidelity="beam"), "pull", "level")
+    assert outcome.verdict is Verdict.UNDECIDED
+    assert "is not calibrated for this link" in told(outcome.reason)
+
+    def printed(tables):
+        tables["parts"]["bar"] |= {"material": "pla-fdm-xy", "build_direction": [0.0, 0.0, 1.0]}
+        tables["checks"]["strength"] = {"type": "safety-factor", "minimum": 1.0}
+        tables["load_cases"]["pull"]["forces"][0]["force"] = ["5 N", "0 N"]
+
+    outcome = found(check_case(repeated(change=printed), fidelity="beam"), "pull", "level")
+    assert outcome.value.low > 1.5
+    assert outcome.verdict is Verdict.UNDECIDED
+    assert "fatigue of its layers is not judged in a pose" in told(outcome.reason)
+
+
 def test_without_data_and_without_cycles():
     def steel(tables):
         tables["parts"]["bar"]["material"] = "brass-cuzn39pb3"
@@ -214,6 +235,8 @@ def test_notch_sensitivity_of_holes_after_peterson():
         assert low == pytest.approx([q, q, q, 1.0, 1.0], abs=1e-5)
         assert high[:3] == pytest.approx(q + (1.0 - q) * 0.6, abs=1e-5)
         assert (high[3:] == 1.0).all()
+    slotted = replace(body, pins=tuple(replace(pin, slot=4.0) for pin in body.pins))
+    assert (notch_factors(slotted, places, data)[0] == 1.0).all()
     plain = notch_factors(body, places, Fatigue.model_validate(CARD))
     assert (np.concatenate(plain) == 1.0).all()
 
@@ -223,24 +246,42 @@ def solved():
     return check_case(repeated({"notch_length": "0.51 mm"}), fidelity="solid")
 
 
+def followed(solved, load_case, link, *shares):
+    """The envelope of a link on its own mesh, over which the load of the pose has these shares."""
+    case, of = solved.case, solved.load_cases[load_case]
+    [loads] = cut_link(case, link, load_case, of.large_displacement, of.reactions, of.loads)
+    repeats = loads.chosen(None).chosen([0] * len(shares))
+    motion = LinkMotion(
+        of.links[link].solution.space, link=link, body=case.body(link), material=case.material_of(link),
+        histories=[repeats.with_wrenches([np.array(shares)[:, None] * wrench for _, wrench in repeats.wrenches])],
+        evaluated=np.ones(len(shares), dtype=bool), stated=case.torque_transfer, returns=True,
+    )  # fmt: skip
+    return motion.envelope(repetitions=case.conditions.cycles).load_cases[load_case].fatigue
+
+
 @pytest.mark.parametrize(("load_case", "link"), [("pull", "level"), ("lift", "rising")])
 def test_a_motion_whose_load_comes_and_goes_agrees(solved, load_case, link):
     """The same link on the same mesh: loads of 0, 1 and ½ over an envelope are one cycle of the load of the pose."""
-    case, of = solved.case, solved.load_cases[load_case]
-    [loads] = cut_link(case, link, load_case, of.large_displacement, of.reactions, of.loads)
-    shares = np.array([0.0, 1.0, 0.5, 0.0])
-    result, repeats = of.links[link], loads.chosen(None).chosen([0, 0, 0, 0])
-    motion = LinkMotion(
-        result.solution.space, link=link, body=case.body(link), material=case.material_of(link),
-        histories=[repeats.with_wrenches([shares[:, None] * wrench for _, wrench in repeats.wrenches])],
-        evaluated=np.ones(4, dtype=bool), stated=case.torque_transfer, returns=True,
-    )  # fmt: skip
-    over = motion.envelope(repetitions=case.conditions.cycles).load_cases[load_case].fatigue
-    pose = of.fatigue[link]
+    over, pose = (
+        followed(solved, load_case, link, 0.0, 1.0, 0.5, 0.0),
+        solved.load_cases[load_case].fatigue[link],
+    )
     assert pose.stress.value == pytest.approx(over.stress.value, rel=5e-3)
     assert pose.strength == over.strength
     assert np.abs(np.abs(pose.location) - np.abs(over.location))[:2].max() < 0.5
     assert over.life.count == pose.life.count == 1.0
+    q = 1.0 / (1.0 + 0.51 / 2.5)
+    assert over.stress.low < 0.98 * q / (q + 0.6 * (1.0 - q)) * over.stress.value
+
+
+def test_two_cycles_of_one_repetition_leave_the_strength_at_twice_the_cycles(solved):
+    once, twice = (
+        followed(solved, "pull", "level", 0.0, 1.0, 0.0),
+        followed(solved, "pull", "level", 0.0, 1.0, 0.0, 1.0, 0.0),
+    )
+    assert twice.stress.value == pytest.approx(once.stress.value)
+    assert twice.strength == pytest.approx(once.strength * 2.0 ** (-1.0 / 6.0))
+    assert twice.repetitions.value == pytest.approx(once.repetitions.value / 2.0)
 
 
 def test_the_solid_counts_the_hole_by_its_radius(solved):
