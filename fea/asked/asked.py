@@ -21,6 +21,7 @@ from alula.loads.records.check_spec import (
     ClearanceCheck,
     DisplacementCheck,
     EyeCheck,
+    FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
@@ -43,6 +44,7 @@ _QUANTITIES = {
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
     NotchCheck: Quantity.NOTCHES,
+    FatigueCheck: Quantity.FATIGUE_STRESS,
     ClearanceCheck: Quantity.CLEARANCE,
     FrequencyCheck: Quantity.FREQUENCY_RATIO,
     MassCheck: Quantity.MASS,
@@ -279,9 +281,15 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck():
-            return tuple(map(Subject.link, check.links or case.checked_links))
-        case PlasticCollapseCheck() | NotchCheck():
+        case (
+            SafetyFactorCheck()
+            | SustainedCheck()
+            | DisplacementCheck()
+            | EyeCheck()
+            | PlasticCollapseCheck()
+            | NotchCheck()
+            | FatigueCheck()
+        ):
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

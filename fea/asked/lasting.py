@@ -8,7 +8,7 @@ from alula.geometry.materials.material import Material
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import SustainedCheck
+from alula.loads.records.check_spec import FatigueCheck, SustainedCheck
 from alula.loads.text.caveat import Caveat, Topic
 
 
@@ -34,7 +34,7 @@ def creep_caveats(case: Case) -> Iterator[Caveat]:
 
 
 def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
-    """Yield the fatigue of what a speed of the drive repeats.
+    """Yield the fatigue of what a speed of the drive repeats, or the conditions, as far as no check judges it.
 
     Parameters
     ----------
@@ -46,10 +46,15 @@ def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     ------
     Caveat
     """
-    if not case.checked_links or all(one.speed == 0.0 for one in case.load_cases.values()):
+    moving, cycles = any(one.speed != 0.0 for one in case.load_cases.values()), case.conditions.cycles
+    if not case.checked_links or not (moving or cycles is not None):
         return
     if not over_motion:
-        yield Caveat(topic=Topic.FATIGUE, what=reason("fatigue"), why=reason("envelope_follows_motion"))
+        judged = asked_of(case, FatigueCheck)
+        if moving:
+            yield Caveat(topic=Topic.FATIGUE, what=reason("fatigue"), why=reason("envelope_follows_motion"))
+        elif left := [link for link in case.checked_links if link not in judged]:
+            yield Caveat(topic=Topic.FATIGUE, what=reason("fatigue_of", links=left), why=reason("no_check"))
         return
     bare = dict.fromkeys(
         case.part_of(link).material for link in case.checked_links if case.material_of(link).fatigue is None

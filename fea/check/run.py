@@ -18,7 +18,7 @@ from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.clock import Clock
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
-from alula.fea.common.scatter import Scatter
+from alula.fea.common.scatter import Scatter, load_scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.threads import bounded_run
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, overall
@@ -31,6 +31,7 @@ from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings,
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
+from alula.fea.judging.fatigue import pose_outcomes, pulsating
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
@@ -44,6 +45,7 @@ from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from alula.fea.outcomes.eye_modes import EyeFactors
+from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
@@ -67,7 +69,14 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, EyeCheck, PinCheck, PlasticCollapseCheck
+from alula.loads.records.check_spec import (
+    BearingCheck,
+    DisplacementCheck,
+    EyeCheck,
+    FatigueCheck,
+    PinCheck,
+    PlasticCollapseCheck,
+)
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.shares import parse_accuracy
 
@@ -349,7 +358,10 @@ class _LoadCase:
             *solid_buckling_outcomes(case, load_case, solids),
         )
         eyes = self._eyes(reactions)
-        doubts = {x: self._doubts_on(x, solved.get(x)) for x in self.plates}
+
+        def doubts(link: str) -> tuple[Growths, Shares]:
+            return self._doubts_on(link, solved.get(link))
+
         notches = [
             *notch_outcomes(
                 case,
@@ -358,17 +370,21 @@ class _LoadCase:
                 decided,
                 links,
                 self.acts_on,
-                doubts.__getitem__,
+                doubts,
             )
         ]
+        scattered = load_scatter(case, load_case).high
+        pressing = {x: scattered * joint.magnitude for x, joint in reactions.joints.items()}
+        lasting = {x: pulsating(case, x, links[x]) for x in asked_of(case, FatigueCheck)}
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
-            *collapse_outcomes(case, load_case, collapses, self.acts_on, doubts.__getitem__),
+            *collapse_outcomes(case, load_case, collapses, self.acts_on, doubts),
             *(outcome for outcome, _ in notches),
+            *pose_outcomes(case, load_case, links, lasting, self.acts_on, pressing),
             *whole,
         )
         found = [reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, outcome) for outcome in every]
@@ -392,6 +408,7 @@ class _LoadCase:
             loads=tuple(self.statics.loads[load_case]),
             eyes=tuple(eye for _, found in eyes for eye in found),
             notches=tuple(notch for _, notch in notches if notch is not None),
+            fatigue={x: found for x, found in lasting.items() if isinstance(found, LinkFatigue)},
             collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 

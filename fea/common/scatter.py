@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.source import Source, SourceKind, distinct
-from alula.geometry.materials.material import Material
+from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.case.case import Case
 
 
@@ -117,6 +117,21 @@ def strength_scatter(material: Material) -> Scatter:
     Scatter
     """
     return _range(SourceKind.STRENGTH, material.allowable, material.strength_range)
+
+
+def fatigue_scatter(data: Fatigue | None) -> Scatter:
+    """Return what the fatigue strength may be, over what it is.
+
+    Parameters
+    ----------
+    data : Fatigue or None
+        Of a card.
+
+    Returns
+    -------
+    Scatter
+    """
+    return Scatter() if data is None else _range(SourceKind.STRENGTH, data.stress, data.strength_range)
 
 
 def layer_scatter(material: Material) -> Scatter:

@@ -40,6 +40,7 @@ class SourceKind(StrEnum):
     DIRECTION = "direction of the force"
     EYE_FORMULAS = "limit analysis of eyes over the formulas"
     NOTCH_METHOD = "point or line method"
+    NOTCH = "notch sensitivity"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.motion.fatigue import equivalent_peak, signed_stress
+from alula.fea.outcomes.fatigue import equivalent_peak, signed_stress
 from alula.fea.superposition.peaks import ModeMeasures, signed_bounds
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Material

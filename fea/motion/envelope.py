@@ -210,7 +210,7 @@ def envelope_case(
         Path or built-in name of the case, for the report.
     threads : int, optional
     repetitions : float, optional
-        Of the motion that are wanted, for fatigue; the cycles of the material's card when left out.
+        Of the motion that are wanted, for fatigue; those of the conditions when left out, else the card's.
     growth : float, optional
         Of the drive torque towards a dead point; poses beyond it are left out.
     effort : Effort, optional
@@ -230,6 +230,7 @@ def envelope_case(
         Where a stage fails.
     """
     clock = Clock()
+    repetitions = case.conditions.cycles if repetitions is None else repetitions
     _require(case, repetitions)
     moved = rubbed_motion(case)
     case = moved.case

@@ -12,27 +12,28 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
 from alula.fea.judging.bearing import bearing_outcome, pressing
 from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, with_sharing, worst_pose
+from alula.fea.judging.fatigue import asked_fatigue, fatigue_outcomes, link_fatigue_outcomes, unasked
 from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
 from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
-from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
-from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from alula.fea.motion.envelope_result import LayerEnvelope, LinkEnvelope
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.linkage_history import when
 from alula.fea.motion.loosened import column_growth, joint_growth
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from alula.geometry.base.ties import first_largest
-from alula.geometry.materials.material import Fatigue, Material
+from alula.geometry.materials.material import Material
 from alula.loads.records.check_spec import (
     BearingCheck,
     EyeCheck,
+    FatigueCheck,
     LimitLoadCheck,
     PinCheck,
     SafetyFactorCheck,
@@ -40,10 +41,9 @@ from alula.loads.records.check_spec import (
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.joint_reaction import JointReaction
 
-BEYOND_CARD = reason("repetitions_beyond_card")
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, LimitLoadCheck)
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, FatigueCheck, LimitLoadCheck)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
@@ -89,19 +89,14 @@ def envelope_outcomes(
         found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
             if over.fatigue is not None:
-                found += fatigue_outcomes(case.material_of(link).fatigue, link, load_case, over.fatigue)
+                found += link_fatigue_outcomes(case, link, load_case, over.fatigue)
             elif lasting:
-                unknown = Band.unknown(envelope.no_fatigue or reason("peak_not_known"))
-                found.append(_fatigue(link, Quantity.FATIGUE_STRESS).outcome(load_case, unknown))
+                one = asked_fatigue(case, link)[0]
+                why = envelope.no_fatigue or reason("peak_not_known")
+                found.append(one.outcome(load_case, Band.unknown(why)))
         for load_case, layers in envelope.layers.items():
             found += layer_fatigue_outcomes(case.material_of(link), link, load_case, layers)
     return found
-
-
-def _fatigue(link: str, quantity: Quantity, name: str = "fatigue") -> Asked:
-    """What nobody has to ask for: fatigue over a motion, against its default limits."""
-    limit = STRESS_FACTOR if quantity is Quantity.FATIGUE_STRESS else LIFE_FACTOR
-    return Asked(name=name, subject=Subject.link(link), quantity=quantity, limit=limit)
 
 
 def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iterator[CheckOutcome]:
@@ -154,44 +149,15 @@ def layer_fatigue_outcomes(
     fatigue, name = layers.fatigue, f"fatigue of {LAYERS}"
     if fatigue is None:
         if layers.no_fatigue:
-            yield _fatigue(link, Quantity.FATIGUE_STRESS, name).outcome(load_case, Band.unknown(layers.no_fatigue))
+            yield unasked(link, name)[0].outcome(load_case, Band.unknown(layers.no_fatigue))
         return
+    data = material.fatigue_across_layers
+    assert data is not None
     place = tuple(map(float, fatigue.location))
     where = reason("fatigue_of_layers", tension=fatigue.tension, shear=fatigue.shear, place=place)
-    for outcome in fatigue_outcomes(material.fatigue_across_layers, link, load_case, fatigue, name=name):
+    for outcome in fatigue_outcomes(unasked(link, name), load_case, fatigue, data):
         told = outcome.because(together(outcome.reason, where))
         yield told if material.shear_strength_between_layers else without_shear(told, material.title)
-
-
-def fatigue_outcomes(
-    data: Fatigue | None, link: str, load_case: str, fatigue: LinkFatigue | LayerFatigue, *, name: str = "fatigue"
-) -> Iterator[CheckOutcome]:
-    """Yield the outcomes of a link's fatigue: on stress, and on life where the card has an exponent.
-
-    Parameters
-    ----------
-    data : Fatigue
-        Of the material's card.
-    link : str
-    load_case : str
-    fatigue : LinkFatigue or LayerFatigue
-    name : str, optional
-        Of the check.
-
-    Yields
-    ------
-    CheckOutcome
-    """
-    wanted, stress = fatigue.wanted, _fatigue(link, Quantity.FATIGUE_STRESS, name)
-    if fatigue.strength is not None:
-        yield stress.outcome(load_case, fatigue.stress.inverse(fatigue.strength))
-    elif fatigue.repetitions is None:
-        assert data is not None
-        why = reason("card_ends_before", cycles=data.cycles, wanted=wanted)
-        yield stress.outcome(load_case, Band.unknown(BEYOND_CARD), why)
-    if fatigue.repetitions is not None:
-        life = _fatigue(link, Quantity.FATIGUE_LIFE, name)
-        yield life.outcome(load_case, fatigue.repetitions.times(1.0 / wanted))
 
 
 def _joint(

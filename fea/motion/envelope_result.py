@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.motion.fatigue import FatigueLife
 from alula.fea.motion.linkage_history import LinkageOverMotion
+from alula.fea.outcomes.fatigue import Lasting, LinkFatigue
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.solid.stress import StressField
 from alula.fea.tractions.traction import Transfer
@@ -52,37 +52,6 @@ class VariantCurve:
     def peak(self) -> float:
         """Largest stress of the motion [MPa]."""
         return float(np.nanmax(self.stress))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LinkFatigue:
-    """Fatigue of a link under one load case, the motion repeated for ever.
-
-    Attributes
-    ----------
-    location : ndarray, shape (3,)
-        Of the critical node in the link's frame [mm].
-    history : ndarray, shape (n,)
-        Its signed stress over the motion [MPa].
-    life : FatigueLife
-        Of the variant that governs.
-    stress : Band
-        The equivalent peak stress [MPa].
-    wanted : float
-        Repetitions that are asked for.
-    strength : float or None
-        Peak stress borne for as many cycles [MPa]; None where the card does not tell.
-    repetitions : Band or None
-        The life; None where the card has no exponent.
-    """
-
-    location: Real
-    history: Real
-    life: FatigueLife
-    stress: Band
-    wanted: float
-    strength: float | None
-    repetitions: Band | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -156,34 +125,19 @@ class LoadCaseEnvelope:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LayerFatigue:
-    """Fatigue of the layers of a printed link under one load case, the motion repeated for ever.
+class LayerFatigue(Lasting):
+    """Fatigue of the layers of a printed link; its stress is that of tension across them.
 
     Attributes
     ----------
-    location : ndarray, shape (3,)
-        Of the critical node in the link's frame [mm].
     tension : tuple of (float, float)
         Mean and amplitude of the stress normal to the layers there [MPa].
     shear : tuple of (float, float)
         Of the shear stress along them [MPa]; zero where the card has no strength against it.
-    stress : Band
-        The equivalent peak of tension across the layers [MPa].
-    wanted : float
-        Repetitions that are asked for.
-    strength : float or None
-        Peak stress borne for as many cycles [MPa]; None where the card does not tell.
-    repetitions : Band or None
-        The life; None where the card has no exponent.
     """
 
-    location: Real
     tension: tuple[float, float]
     shear: tuple[float, float]
-    stress: Band
-    wanted: float
-    strength: float | None
-    repetitions: Band | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,9 +12,9 @@ from alula.fea.common.scatter import Scatter, layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
 from alula.fea.judging.layers import in_any_direction, may_lie_in_any_direction
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
-from alula.fea.motion.fatigue import closed_history, not_closed, strength_at
 from alula.fea.motion.layer_fatigue import LayerCycle, critical_layer
 from alula.fea.motion.link_envelope import LinkMotion
+from alula.fea.outcomes.fatigue import closed_history, life_scatter, not_closed, strength_at
 from alula.fea.refine.link_series import STRESS
 from alula.fea.superposition.link_measure import StatePeaks
 from alula.geometry.base.ties import first_largest
@@ -156,7 +156,7 @@ def _fatigue(
         stress=Band.around(stress, tuple(stresses), *sources),
         wanted=wanted,
         strength=strength_at(data, wanted),
-        repetitions=None if life is None else Band.around(life, tuple(lives), *sources),
+        repetitions=None if life is None else life_scatter(data).on(Band.around(life, tuple(lives), *sources)),
     )
 
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.motion.fatigue import NEGLIGIBLE, cycles_to_failure, equivalent_peak, repeated_cycles
+from alula.fea.outcomes.fatigue import NEGLIGIBLE, cycles_to_failure, equivalent_peak, repeated_cycles
 from alula.fea.solid.layers import Layers
 from alula.fea.superposition.peaks import ModeMeasures
 from alula.geometry.materials.material import Fatigue

@@ -15,9 +15,18 @@ from alula.fea.elements.space import DisplacementSpace
 from alula.fea.elements.supports import LineReference
 from alula.fea.motion.along import stress_along
 from alula.fea.motion.critical import critical_node
-from alula.fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
-from alula.fea.motion.fatigue import closed_history, fatigue_life, missing_data, not_closed, strength_at
+from alula.fea.motion.envelope_result import LinkEnvelope, LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.mesh_factors import MeshFactors
+from alula.fea.outcomes.fatigue import (
+    NOTCH,
+    FatigueLife,
+    LinkFatigue,
+    closed_history,
+    fatigue_life,
+    missing_data,
+    not_closed,
+    notch_factors,
+)
 from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.link_task import ElasticLink
 from alula.fea.refine.refinement import RefinedSolid
@@ -98,7 +107,7 @@ class LinkMotion:
         returns: bool,
         layers: Layers | None = None,
     ) -> None:
-        self.link, self.material, self.evaluated = link, material, evaluated
+        self.link, self.body, self.material, self.evaluated = link, body, material, evaluated
         self.stated, self.returns = stated, returns
         chosen = [history.chosen(evaluated) for history in histories]
         self.measure = LinkMeasure.of_units(ElasticLink.of(body, material, layers), space, chosen)
@@ -255,35 +264,30 @@ class LinkMotion:
     ) -> LinkFatigue:
         """Return the fatigue under a load case, at the critical node of the variant that governs."""
         assert self.material.fatigue is not None
-        every, found, meshes, count = [], [], list(series.sources), int(self.evaluated.sum())
+        every, found, meshes, count = list[FatigueLife](), [], list(series.sources), int(self.evaluated.sum())
         solved = self.measure.solved
+        least, most = notch_factors(self.body, solved.space.nodes[solved.nodes], self.material.fatigue)
+        stress = solved.stress if (most == 1.0).all() else most[:, None, None] * solved.stress
         for variant in load_case.variants:
             part = solved.combination[:, variant.first : variant.first + count]
-            number, history = critical_node(self.measure.decisive, solved.stress, part, self.material)
-            node = int(solved.nodes[number])
+            number, history = critical_node(self.measure.decisive, stress, part, self.material)
+            node, notch = int(solved.nodes[number]), float(least[number] / most[number])
             closed = closed_history(history, returns=self.returns)
             life = fatigue_life(closed, self.material)
             factors = series.of_variant(variant)
             if series.discretisation is not None and not series.holds_at(variant, solved.space.nodes, node):
-                factors = self._fatigue_factors(variant, node, history)
+                factors = self._fatigue_factors(variant, node, history / most[number])
                 meshes.append(FATIGUE_ELSEWHERE)
-            ends = (factors[0] * load.low, factors[1] * load.high)
+            if notch < 1.0:
+                meshes.append(NOTCH)
+            ends = (factors[0] * load.low * notch, factors[1] * load.high)
             every += [life, *(fatigue_life(factor * closed, self.material) for factor in ends)]
             if variant.transfer in (None, self.stated):
                 found.append((life, node, history))
         life, node, history = max(found, key=lambda f: f[0].stress)
         sources = distinct(_sources(load_case.governing), tuple(meshes), load.sources)
-        wanted = self.material.fatigue.cycles if repetitions is None else repetitions
-        counts = tuple(one.repetitions for one in every if one.repetitions is not None)
-        return LinkFatigue(
-            location=solved.space.nodes[node].copy(),
-            history=history,
-            life=life,
-            stress=Band.around(life.stress, tuple(one.stress for one in every), *sources),
-            wanted=wanted,
-            strength=strength_at(self.material.fatigue, wanted),
-            repetitions=None if life.repetitions is None else Band.around(life.repetitions, counts, *sources),
-        )
+        place, material = solved.space.nodes[node].copy(), self.material
+        return LinkFatigue.of(every, life, history, place, sources, material=material, repetitions=repetitions)
 
     def _fatigue_factors(self, variant: VariantCurve, node: int, history: Real) -> tuple[float, float]:
         """Factors for a node that no mesh was refined for, by the estimate beside it in its worst pose."""

@@ -5,8 +5,16 @@ from collections.abc import Iterator
 
 from alula.fea.asked.asked import asked, asked_of, cards_of, subjects_of
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
+from alula.fea.common.scatter import (
+    Scatter,
+    compliance_scatter,
+    fatigue_scatter,
+    layer_scatter,
+    load_scatter,
+    strength_scatter,
+)
 from alula.fea.common.verdict import Quantity, Subject
+from alula.fea.outcomes.fatigue import borne_pulsating
 from alula.fea.solid.layers import Layers
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed, is_solid_stock
@@ -15,6 +23,7 @@ from alula.loads.records.check_spec import (
     BearingCheck,
     DisplacementCheck,
     EyeCheck,
+    FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
     NotchCheck,
@@ -54,6 +63,12 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
             found.append(_spread(material.allowable / one.limit, strength))
         elif not math.isnan(one.limit):
             found.append(_spread(one.limit, load.inverse))
+    repeated = case.conditions
+    for one in asked(case, FatigueCheck, subject=Subject.link(link)):
+        assert repeated.cycles is not None
+        limit = borne_pulsating(material, repeated.cycles, one.limit, reverses=repeated.reverses)
+        if limit is not None:
+            found.append(_spread(limit, fatigue_scatter(material.fatigue).times(load.inverse)))
     return tuple(found)
 
 
@@ -169,7 +184,14 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
         elif isinstance(
             check,
-            SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck | PlasticCollapseCheck | NotchCheck,
+            SafetyFactorCheck
+            | PinCheck
+            | BearingCheck
+            | EyeCheck
+            | LimitLoadCheck
+            | PlasticCollapseCheck
+            | NotchCheck
+            | FatigueCheck,
         ):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:

@@ -16,6 +16,7 @@ from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.eye_modes import EyeFactors
+from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.notches import NotchFactor
 from alula.fea.outcomes.opinion import SecondOpinion
@@ -297,6 +298,8 @@ class LoadCaseResult:
         Of every link whose notches a check asks for and whose solid was solved.
     collapses : mapping of str to LinkCollapse
         Link -> at what factor it collapses, where a check asks for it and it was found.
+    fatigue : mapping of str to LinkFatigue
+        Link -> how often it bears its load, where a check asks for it and it is known.
     """
 
     name: str
@@ -313,6 +316,7 @@ class LoadCaseResult:
     eyes: tuple[EyeFactors, ...] = ()
     notches: tuple[NotchFactor, ...] = ()
     collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
+    fatigue: Mapping[str, LinkFatigue] = field(default_factory=dict)
 
     @property
     def reactions(self) -> Reactions:

@@ -27,6 +27,7 @@ from alula.loads.records.check_spec import (
     BearingCheck,
     DisplacementCheck,
     EyeCheck,
+    FatigueCheck,
     LimitLoadCheck,
     PinCheck,
     SafetyFactorCheck,
@@ -43,7 +44,7 @@ STRENGTHS = (
     "strength",
 )
 """Entries of a card, each with its range where it has one."""
-_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, LimitLoadCheck)
+_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, FatigueCheck, LimitLoadCheck)
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
 """One or the other says whether the linkage as a whole holds the load."""
 _Key = tuple[str, Quantity, Subject]

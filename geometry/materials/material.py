@@ -44,9 +44,9 @@ ToughnessRange = Annotated[
 
 
 class Fatigue(CaseModel):
-    """Fatigue data: one or more points of the S-N curve, or a power law through them.
+    """Fatigue data: one point of the S-N line, or a power law through it.
 
-    ``amplitude`` is the largest stress of a cycle from zero (R = 0) unless ``stress_ratio`` says
+    ``stress`` is the largest stress of a cycle from zero (R = 0) unless ``stress_ratio`` says
     otherwise; the law is N = N1 (sigma / sigma1)^(-exponent).
     """
 
@@ -56,12 +56,27 @@ class Fatigue(CaseModel):
     """Cycles that it bears at that stress."""
     exponent: Annotated[float, Field(gt=0)] | None = None
     """Exponent of the power law; none where a single point is known."""
+    endurance_cycles: Annotated[float, Field(gt=0)] | None = None
+    """Cycles from which on strength falls no further (endurance limit); left out, the line has no end."""
+    strength_range: Range | None = None
+    """Scatter of the stress at ``cycles``: least and greatest value."""
+    surface_factor: Annotated[float, Field(gt=0, le=1)] = 1.0
+    """Strength with the surface and size of the part over that of the specimens."""
+    notch_length: Annotated[Length, POSITIVE] | None = None
+    """Peterson's length a: beside a hole of radius r the share 1/(1 + a/r) of the concentration counts. Left out, all
+    of it counts."""
     stress_ratio: Annotated[float, Field(ge=-1, lt=1)] = 0.0
     """Least over largest stress of the cycle in the test."""
     rule: Literal["goodman", "peak-stress"] = "goodman"
     """How cycles with another mean count: by Goodman's line, or by their peak stress alone, whatever their range."""
     source: Text
     """Where the data come from."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Fatigue":
+        if self.strength_range and not self.strength_range[0] <= self.stress <= self.strength_range[1]:
+            raise refusal("strength_range of fatigue leaves out its stress; correct one of them")
+        return self
 
 
 class Material(CaseModel):
@@ -128,7 +143,7 @@ class Material(CaseModel):
     modulus_temperature_factors: TemperatureFactors = ()
     """(temperature, factor on the modulus), as temperature_factors."""
     fatigue: Fatigue | None = None
-    """Fatigue data; without them an envelope judges no fatigue of its links."""
+    """Fatigue data; without them nothing is known of the fatigue of links."""
     fatigue_across_layers: Fatigue | None = None
     """Of a printed material: of specimens built upright, so that its stress is tension normal to the layers."""
     minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None

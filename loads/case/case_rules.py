@@ -24,6 +24,7 @@ from alula.loads.records.check_spec import (
     ClearanceCheck,
     DisplacementCheck,
     EyeCheck,
+    FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
@@ -269,7 +270,12 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
         for link in check.links or case.checked_links:
             _check_notched(case, name, link)
-    elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
+    elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck | FatigueCheck):
+        if isinstance(check, FatigueCheck) and case.conditions.cycles is None:
+            raise CaseError(
+                f"checks.{name}: a check of fatigue needs the number of cycles; add [conditions] with cycles, for "
+                "example 1e6"
+            )
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
                 f"checks.{name}: a check of sustained load needs the duration of the load; "

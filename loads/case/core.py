@@ -30,6 +30,7 @@ from alula.loads.records.check_spec import (
     Check,
     ClearanceCheck,
     DisplacementCheck,
+    FatigueCheck,
     SafetyFactorCheck,
     SustainedCheck,
 )
@@ -246,11 +247,13 @@ class CoreCase(Revisable):
     def all_checks(self) -> dict[str, Check]:
         """The stated checks, or the safety factor of every link where none is, and what is checked without being asked.
 
-        That is whether loads may stay as long as they do, and whether links in layers touch.
+        That is whether loads may stay as long and come as often as they do, and whether links in layers touch.
         """
         checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
         if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
             checks["sustained load"] = SustainedCheck(type="sustained")
+        if self.conditions.cycles is not None and not any(isinstance(c, FatigueCheck) for c in checks.values()):
+            checks["fatigue"] = FatigueCheck(type="fatigue")
         if self.stacked and self.checked_links and not any(isinstance(c, ClearanceCheck) for c in checks.values()):
             checks["clearance"] = ClearanceCheck(type="clearance")
         return checks

@@ -164,6 +164,20 @@ class NotchCheck(CaseModel):
     """The links to check; all that have a part when left out. Each is solved as a solid."""
 
 
+class FatigueCheck(CaseModel):
+    """The fatigue strength of each link for the cycles of [conditions], over its stress, must be at least the minimum.
+
+    Both as peaks of a cycle like that of the tests on its material's card. In a pose the stress goes from nothing to
+    that of the load and back, over a motion its cycles are counted by rainflow.
+    """
+
+    type: Literal["fatigue"]
+    minimum: Annotated[float, Field(gt=0)] = 2.0
+    """The least factor. Lives scatter much more than stress, so that it is the stress that is judged."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out."""
+
+
 class ClearanceCheck(CaseModel):
     """Links that lie at one height, and pins and the links that they pass, must stay apart.
 
@@ -228,6 +242,7 @@ Check = Annotated[
     | LimitLoadCheck
     | PlasticCollapseCheck
     | NotchCheck
+    | FatigueCheck
     | ClearanceCheck
     | FrequencyCheck
     | MassCheck

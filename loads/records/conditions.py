@@ -1,6 +1,8 @@
-"""How long and how warm: what a material bears and how stiff it is under the conditions of a case."""
+"""How long, how often and how warm: what a material bears and how stiff it is under the conditions of a case."""
 
 from typing import Annotated
+
+from pydantic import Field
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
@@ -21,6 +23,11 @@ class Conditions(CaseModel):
     duration: Annotated[Time, POSITIVE] | None = None
     """How long the loads stay; where stated, links creep (``sustained_modulus``) and their stress is set
     against ``sustained_stress``."""
+    cycles: Annotated[float, Field(gt=0)] | None = None
+    """How often each load case comes and goes: in a pose from nothing to its load and back, over a motion once with
+    each repetition. Where stated, links are checked for fatigue."""
+    reverses: bool = False
+    """True where in a pose each load goes to its opposite in place of nothing."""
     temperature: Temperature | None = None
     """Where stated, strengths and moduli are multiplied by the factors of the material's card; what needs a strength or
     a modulus that the card does not tell at this temperature is undecided."""
@@ -105,7 +112,8 @@ def at_temperature(material: Material, conditions: Conditions) -> Material:
 
 def _times(value: float | tuple[float, float] | Fatigue, factor: float) -> float | tuple[float, float] | Fatigue:
     if isinstance(value, Fatigue):
-        return value.model_copy(update={"stress": factor * value.stress})
+        ends = value.strength_range and tuple(factor * end for end in value.strength_range)
+        return value.model_copy(update={"stress": factor * value.stress, "strength_range": ends})
     return (factor * value[0], factor * value[1]) if isinstance(value, tuple) else factor * value
 
 

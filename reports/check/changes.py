@@ -147,7 +147,13 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
             _of_itself(check)
             if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
             else "No factor on the loads is told: the number is not in proportion to them, since "
-            + ("springs act." if result.case.sprung else "the shape of the deformed linkage counts.")
+            + (
+                "springs act."
+                if result.case.sprung
+                else "mean stress counts."
+                if check.quantity is Quantity.FATIGUE_STRESS
+                else "the shape of the deformed linkage counts."
+            )
         )
     return found
 

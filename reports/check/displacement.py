@@ -13,6 +13,7 @@ from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.eyes import eye_parts, eye_record, notch_parts, notch_record
 from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
+from alula.reports.sections.fatigue import fatigue_parts, link_fatigue_record
 from alula.reports.sections.markup import bold
 from alula.reports.sections.play import play_parts, play_record
 from alula.reports.sections.reactions import reaction_records
@@ -41,7 +42,7 @@ def displacement_section(result: CheckResult) -> Section:
         title="Displacement of the linkage",
         short="Displacement",
         parts=(*parts, Folded("The frame model", (Text(_model(result)),))),
-        data={"load_cases": {name: _data(case) for name, case in result.load_cases.items()}},
+        data={"load_cases": {name: _data(result, case) for name, case in result.load_cases.items()}},
         not_covered=(("Large displacements", _large(result)), ("Buckling", _buckling(result))),
     )
 
@@ -61,6 +62,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from pin_parts(result.case, case)
     yield from eye_parts(case)
     yield from notch_parts(case)
+    yield from fatigue_parts(result, case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -159,7 +161,7 @@ def _model(result: CheckResult) -> str:
     )
 
 
-def _data(case: LoadCaseResult) -> dict[str, Any]:
+def _data(result: CheckResult, case: LoadCaseResult) -> dict[str, Any]:
     moved = case.large_displacement
     deformed = moved.reactions
     return {
@@ -183,6 +185,7 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
         **({"eyes": eye_record(case)} if case.eyes else {}),
         **({"notches": notch_record(case)} if case.notches else {}),
+        **({"fatigue": link_fatigue_record(result, case)} if case.fatigue else {}),
     }
 
 

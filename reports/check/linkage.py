@@ -8,8 +8,7 @@ from alula.fea.common.verdict import by_nearness
 from alula.fea.outcomes.result import CheckResult
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.reports.figures.drawings import linkage_drawing
-from alula.reports.sections.pose import pose_tables
-from alula.reports.sections.reactions import shown_components
+from alula.reports.sections.reactions import pose_tables, shown_components
 from alula.reports.sections.section import Beside, Folded, Part, Picture, Section, paragraph, say
 from alula.reports.sections.table import Number
 from alula.reports.sentences.verdicts import checks_of

@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from typing import Any
 
+from alula.fea.asked.asked import asks
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.geometry.materials.material import Material
+from alula.loads.records.check_spec import FatigueCheck
 from alula.loads.sources.published_statics import StaticsAudit
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold, code, link
@@ -25,6 +27,7 @@ _PROPERTIES = (
     ("shear_strength_between_layers", "shear strength between layers", "MPa", 1.0),
 )
 _HAND = ("name", "link", "load_case", "kind", "x", "unit", "hand", "solid", "difference")
+_FATIGUE_OF_LINKS = "Links that a check names were checked for loads that come and go in this pose; pins were not."
 _IMPACT = "A sudden load causes higher stresses than the same load applied slowly."
 
 
@@ -63,7 +66,7 @@ def case_section(result: CheckResult, published: str = "") -> Section:
         short="Case",
         parts=tuple(parts),
         data={
-            "conditions": entries(case.conditions, "duration temperature"),
+            "conditions": entries(case.conditions, "duration cycles reverses temperature"),
             "not_checked": not_checked(result.caveats),
             "caveats": [entries(one, "heading topic what why") for one in result.caveats],
             "assumptions": list(case.assumptions),
@@ -73,6 +76,7 @@ def case_section(result: CheckResult, published: str = "") -> Section:
         not_covered=(
             ("Other poses", "Only this pose was checked; another pose can give higher stresses"
              + (f". The command {envelope} checks all poses of the motion." if moves else ".")),
+            ("Fatigue", _FATIGUE_OF_LINKS) if asks(case, FatigueCheck) else
             ("Fatigue", "The loads are static. Repeated loads break parts at lower stresses"
              + (f". The command {envelope} checks fatigue over the motion." if moves else ".")),
             ("Creep, temperature, moisture, ageing", _conditions(result)),

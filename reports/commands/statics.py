@@ -12,8 +12,7 @@ from alula.loads.statics.statics import Reactions
 from alula.loads.statics.system import System
 from alula.reports.sections.data import data
 from alula.reports.sections.play import play_parts, play_record
-from alula.reports.sections.pose import pose_tables
-from alula.reports.sections.reactions import friction_record, reaction_parts, reaction_records
+from alula.reports.sections.reactions import friction_record, pose_tables, reaction_parts, reaction_records
 from alula.reports.sections.section import Cell, Column, Group, Number, Part, Section, Table, say, words
 from alula.reports.sections.springs import standing_record
 

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from alula.fea.common.verdict import by_nearness
-from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
-from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
 from alula.fea.outcomes.unchecked import caveats
 from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record
@@ -20,6 +19,7 @@ from alula.reports.renderers.page import Page, page_footer
 from alula.reports.renderers.record import as_brief_record
 from alula.reports.sections.checks import checks_section
 from alula.reports.sections.data import data, entries
+from alula.reports.sections.fatigue import fatigue_record, measure_of, scatter_of
 from alula.reports.sections.section import (
     Cell,
     Column,
@@ -257,7 +257,7 @@ def _fatigue(result: EnvelopeResult) -> Section:
     parts: list[Part] = [Table(key="fatigue", columns=columns, rows=tuple(cells), caption=caption)] if rows else []
     materials = {result.case.part_of(link.link).material: result.case.material_of(link.link) for link, _, _ in rows}
     parts += [
-        Text(f"Fatigue of {one.title}: cycles of {_measure_of(one)}; {_scatter_of(one)}.") for one in materials.values()
+        Text(f"Fatigue of {one.title}: cycles of {measure_of(one)}; {scatter_of(one)}.") for one in materials.values()
     ]
     missing: dict[str, list[str]] = {}
     for name, link in result.links.items():
@@ -325,7 +325,7 @@ def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material:
     return {
         **entries(found, "stress safety_factor"),
         "at": _place(result, found),
-        "fatigue": None if found.fatigue is None else _fatigue_record(found.fatigue, material),
+        "fatigue": None if found.fatigue is None else fatigue_record(found.fatigue, material),
     }
 
 
@@ -339,43 +339,3 @@ def _place(result: EnvelopeResult, found: LoadCaseEnvelope) -> dict[str, Any]:
         "pin_pressure_span": found.governing.span,
         "transfer": found.governing.transfer,
     }
-
-
-def _fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
-    assert material.fatigue is not None
-    life = fatigue.life
-    return {
-        "measure": _measure_of(material),
-        "rule": material.fatigue.rule,
-        "location": fatigue.location.tolist(),
-        "smallest": life.smallest,
-        "largest": life.largest,
-        "range": life.stress_range,
-        "cycles": [{"range": size, "mean": mean, "count": count} for size, mean, count in life.cycles],
-        "equivalent_peak_stress": data(fatigue.stress),
-        "wanted_repetitions": fatigue.wanted,
-        "strength_at_wanted": fatigue.strength,
-        "repetitions": data(fatigue.repetitions),
-        "scatter": _scatter_of(material),
-        "source": material.fatigue.source,
-    }
-
-
-def _measure_of(material: Material) -> str:
-    """Return the stress whose cycles count for fatigue."""
-    if material.brittle:
-        return "the principal stress of largest magnitude"
-    return "the von Mises stress with the sign of the principal stress of largest magnitude"
-
-
-def _scatter_of(material: Material) -> str:
-    """Return the uncertainty of a fatigue life, in one sentence."""
-    fatigue = material.fatigue
-    assert fatigue is not None
-    asked = f"the required factors of {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life must cover it"
-    if fatigue.exponent is None:
-        return f"the material card states one point of the S-N curve and no scatter; {asked}"
-    return (
-        f"the material card states no scatter; 10 % more stress shortens the life by a factor of "
-        f"{1.1**fatigue.exponent:.2g}; {asked}"
-    )

@@ -1,4 +1,4 @@
-"""Joint forces of a load case, what drives or holds its pose, springs, friction: of a check and of statics alone."""
+"""Pose, joint forces, what drives or holds the pose, springs, friction: of a check and of statics alone."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,6 +8,8 @@ import numpy as np
 
 from alula.fea.standing.joint_forces import JointForces
 from alula.fea.standing.thrust import thrusts
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.states.rubbing import told_direction
@@ -288,3 +290,35 @@ def _ends(work: DriveWork) -> tuple[float, float]:
 
 def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
+
+
+def pose_tables(pose: Pose, case: Case) -> tuple[Table, Table]:
+    """Return points and directions of the links in a pose.
+
+    Parameters
+    ----------
+    pose : Pose
+    case : Case
+
+    Returns
+    -------
+    tuple of 2 Table
+    """
+    return (
+        Table(
+            key="points",
+            columns=(words("point"), Column("x", "mm"), Column("y", "mm")),
+            rows=tuple((name, *(Number(float(x), decimals=3) for x in at)) for name, at in pose.points.items()),
+            caption="Points in global axes",
+        ),
+        Table(
+            key="directions",
+            columns=(words("link"), words("from → to"), Column("direction", "deg")),
+            rows=tuple(
+                (link, f"{names[0]} → {names[-1]}", Number(math.degrees(pose.angles[link]) % 360.0, "", 6))
+                for link in pose.linkage.moving
+                for names in [list(case.links[link].points)]
+            ),
+            caption="Directions of the links",
+        ),
+    )

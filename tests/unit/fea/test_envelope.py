@@ -31,10 +31,10 @@ from alula.fea.motion import envelope_outcomes as outcomes_over_motion
 from alula.fea.motion.envelope import envelope_case, evaluated_poses
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
-from alula.fea.motion.fatigue import closed_history, missing_data, signed_stress
 from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.mesh_factors import MeshFactors
+from alula.fea.outcomes.fatigue import closed_history, missing_data, signed_stress
 from alula.fea.outcomes.pins import stress_at, stress_of
 from alula.fea.refine.refinement import START, Effort
 from alula.fea.solid.stress import principal, stress_field, von_mises

@@ -2,12 +2,15 @@ import math
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from alula.fea.motion.critical import critical_node
-from alula.fea.motion.fatigue import (
+from alula.fea.outcomes.fatigue import (
+    borne,
     cycles_to_failure,
     equivalent_peak,
     fatigue_life,
+    life_scatter,
     missing_data,
     rainflow,
     repeated_cycles,
@@ -98,6 +101,38 @@ def test_vinsons_law_for_pvc(stress):
     assert cycles_to_failure(np.array([stress]), PVC.fatigue) == pytest.approx([5.05e21 * psi**-4.906], rel=0.03)
 
 
+def test_basquins_line_with_surface_and_endurance_limit():
+    """Strength at two points by hand, 0.8 (300) 10^(2/8) and 0.8 (300); from 1e7 cycles on that of 1e7."""
+    data = steel(surface_factor=0.8, endurance_cycles=1e7).fatigue
+    assert strength_at(data, 1e4) == pytest.approx(426.8, rel=1e-4)
+    assert strength_at(data, 1e6) == pytest.approx(240.0)
+    assert strength_at(data, 1e9) == strength_at(data, 1e7) == pytest.approx(179.97, rel=1e-4)
+    assert cycles_to_failure(np.array([426.8, 240.0]), data) == pytest.approx([1e4, 1e6], rel=1e-3)
+    assert cycles_to_failure(np.array([179.9, 100.0]), data).tolist() == [math.inf, math.inf]
+    # One stress above the limit, and the lower one harms too (Miner's elementary rule).
+    assert cycles_to_failure(np.array([240.0, 120.0]), data) == pytest.approx([1e6, 2.56e8])
+    assert strength_at(steel(exponent=None, endurance_cycles=1e6).fatigue, 1e9) == 300.0
+
+
+def test_nothing_bears_more_than_its_static_strength():
+    assert borne(steel(), 1.0) == 800.0
+    assert borne(steel(), 1e6) == 300.0
+    assert strength_at(steel().fatigue, 1.0) > 1600.0
+
+
+def test_structural_steel_bears_nine_tenths_of_its_strength_a_thousand_times():
+    card = library()["steel-s235"]
+    assert strength_at(card.fatigue, 1e3) == pytest.approx(0.84 * 0.9 * 360.0, rel=1e-3)
+    assert strength_at(card.fatigue, 1e9) == pytest.approx(0.84 * 0.5 * 360.0)
+
+
+def test_the_scatter_of_the_strength_is_in_the_life_to_the_power_of_the_exponent():
+    scatter = life_scatter(steel(strength_range=["270 MPa", "330 MPa"]).fatigue)
+    assert (scatter.low, scatter.high) == (pytest.approx(0.9**8), pytest.approx(1.1**8))
+    with pytest.raises(ValidationError, match="leaves out its stress"):
+        steel(strength_range=["310 MPa", "330 MPa"])
+
+
 def test_miners_sum_of_two_blocks():
     # One cycle of 300 MPa costs 1e-6, two of 150 MPa cost 2/(1e6 2^8), all reversed.
     history = np.array([300.0, -300.0, 150.0, -150.0, 150.0, -150.0])
@@ -105,6 +140,7 @@ def test_miners_sum_of_two_blocks():
     assert life.repetitions == pytest.approx(1.0 / (1e-6 + 2e-6 / 2**8))
     assert life.cycles == ((600.0, 0.0, 1.0), (300.0, 0.0, 2.0))
     assert life.stress == 300.0
+    assert life.count == pytest.approx(1.0 + 2.0 / 2**8)
 
 
 def test_ripples_are_left_out():

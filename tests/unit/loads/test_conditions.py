@@ -57,6 +57,9 @@ def test_warm_and_long():
     softer = 0.88 - 0.18 * (40.0 - 37.8) / (60.0 - 37.8)
     assert warm.youngs_modulus == pytest.approx(2800.0 * softer)
     assert warm.fatigue.stress == pytest.approx(10.9 * 0.7)
+    ranged = PVC.model_copy(update={"fatigue": PVC.fatigue.model_copy(update={"strength_range": (10.0, 12.0)})})
+    warm_ends = at_temperature(ranged, Conditions.model_validate({"temperature": "40 degC"})).fatigue.strength_range
+    assert warm_ends == pytest.approx((7.0, 8.4))
     both = under(PVC, Conditions.model_validate({"temperature": "30 degC", "duration": "10 year"}))
     assert both.sustained_stress == pytest.approx(11.0 * 0.87)
     assert both.youngs_modulus == pytest.approx(1200.0 * (1.0 - 0.12 * 7.0 / 14.8))
