@@ -29,6 +29,7 @@ from alula.loads.records.check_spec import (
     SafetyFactorCheck,
     SizeCheck,
     SustainedCheck,
+    WallCheck,
 )
 
 GRAMS = 1e6
@@ -39,6 +40,7 @@ _QUANTITIES = {
     PinCheck: Quantity.SAFETY_FACTOR,
     BearingCheck: Quantity.SAFETY_FACTOR,
     EyeCheck: Quantity.EYES,
+    WallCheck: Quantity.WALLS,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
     ClearanceCheck: Quantity.CLEARANCE,
@@ -278,6 +280,8 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
         case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | EyeCheck() | PlasticCollapseCheck():
+            return tuple(map(Subject.link, check.links or case.checked_links))
+        case WallCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

@@ -21,6 +21,7 @@ from alula.loads.records.check_spec import (
     PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
+    WallCheck,
 )
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
@@ -167,7 +168,8 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
         elif isinstance(
-            check, SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck | PlasticCollapseCheck
+            check,
+            SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | WallCheck | LimitLoadCheck | PlasticCollapseCheck,
         ):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:

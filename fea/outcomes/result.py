@@ -20,6 +20,7 @@ from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
+from alula.fea.outcomes.wall_modes import WallFactor
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
@@ -292,6 +293,8 @@ class LoadCaseResult:
         All that acts on the links, friction included.
     eyes : tuple of EyeFactors
         Of every eye of the links whose eyes a check asks for.
+    walls : tuple of WallFactor
+        Of every mode of the links whose walls a check asks for.
     collapses : mapping of str to LinkCollapse
         Link -> at what factor it collapses, where a check asks for it and it was found.
     """
@@ -308,6 +311,7 @@ class LoadCaseResult:
     work: DriveWork | None = None
     loads: tuple[Load, ...] = ()
     eyes: tuple[EyeFactors, ...] = ()
+    walls: tuple[WallFactor, ...] = ()
     collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
 
     @property

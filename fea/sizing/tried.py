@@ -30,6 +30,7 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     PinCheck,
     SafetyFactorCheck,
+    WallCheck,
 )
 
 MODULI = ("youngs_modulus", "sustained_modulus")
@@ -43,7 +44,7 @@ STRENGTHS = (
     "strength",
 )
 """Entries of a card, each with its range where it has one."""
-_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, LimitLoadCheck)
+_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, WallCheck, LimitLoadCheck)
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
 """One or the other says whether the linkage as a whole holds the load."""
 _Key = tuple[str, Quantity, Subject]

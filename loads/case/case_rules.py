@@ -18,6 +18,7 @@ from alula.loads.case.layers import check_layers, pin_masses
 from alula.loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
 from alula.loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from alula.loads.case.toleranced import toleranced
+from alula.loads.case.wall_rules import check_wall_check
 from alula.loads.records.check_spec import (
     BearingCheck,
     Check,
@@ -32,6 +33,7 @@ from alula.loads.records.check_spec import (
     PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
+    WallCheck,
 )
 from alula.loads.records.conditions import Conditions
 from alula.loads.records.motion_spec import MotionSpec
@@ -258,6 +260,8 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
     elif isinstance(check, EyeCheck):
         check_eye_check(case, name, check)
+    elif isinstance(check, WallCheck):
+        check_wall_check(case, name, check)
     elif isinstance(check, PlasticCollapseCheck):
         for link in check.links:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")

@@ -12,6 +12,7 @@ from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.eyes import eye_parts, eye_record
 from alula.reports.check.pins import pin_parts, pin_record
+from alula.reports.check.walls import wall_parts, wall_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
 from alula.reports.sections.play import play_parts, play_record
@@ -60,6 +61,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from _ways_to_hold(result, case)
     yield from pin_parts(result.case, case)
     yield from eye_parts(case)
+    yield from wall_parts(case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -181,6 +183,7 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "pins": pin_record(case),
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
         **({"eyes": eye_record(case)} if case.eyes else {}),
+        **({"walls": wall_record(case)} if case.walls else {}),
     }
 
 
