@@ -32,8 +32,8 @@ from alula.fea.outcomes.wall_modes import WallFactor, WallMode
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 
-THIN, LEAST_THIN = 100.0, 25.0
-"""R/t from which on the tests behind SP-8007 lie, and below which a wall is no thin shell."""
+THIN, LEAST_THIN = 100.0 * (1.0 - 1e-9), 25.0
+"""R/t from which on the tests behind SP-8007 lie, but for rounding, and below which a wall is no thin shell."""
 ROUND = 9.0 / (2.0 * math.sqrt(6.0))
 """Moment at which the wall of a perfect tube buckles that stays round, over that at which a long one flattens."""
 EXACT = 0.971
@@ -86,9 +86,8 @@ def _of_tube(
 
     def stresses(forces: Floats) -> tuple[Floats, Floats]:
         """Of compression, and of bending in the middle of the wall."""
-        return np.maximum(-forces[:, 0], 0.0) / section.area, np.hypot(
-            forces[:, 4], forces[:, 5]
-        ) * radius / section.i_z
+        bent = np.hypot(forces[:, 4], forces[:, 5]) * radius / section.i_z
+        return np.maximum(-forces[:, 0], 0.0) / section.area, bent
 
     def used(forces: Floats) -> Floats:
         pressed, bent = stresses(forces)
@@ -96,13 +95,14 @@ def _of_tube(
 
     def told(mode: WallMode, x: float, side: Side, bears: float, factor: Band, why: Reason | str) -> WallFactor:
         forces = beam.forces.at(x, side)
+        pressed, bent = (float(one) > NOTHING * largest for one in np.squeeze(stresses(forces[None])))
         return WallFactor(
             check=one.name,
             link=one.subject.name,
             mode=mode,
             x=x,
-            compression=max(0.0, -float(forces[0])),
-            moment=math.hypot(*forces[4:6]),
+            compression=-float(forces[0]) if pressed else 0.0,
+            moment=math.hypot(*forces[4:6]) if bent else 0.0,
             bears=bears,
             ratio=radius / thickness,
             factor=more.on(factor),
@@ -111,20 +111,25 @@ def _of_tube(
 
     x, side, most = beam.forces.largest(used)
     largest = beam.forces.largest(lambda forces: np.add(*stresses(forces)))[2]
-    if most <= 0.0:
+    if largest <= NOTHING * _size(beam):
         return
     strength, scatter = material.allowable, strength_scatter(material)
-    yields = math.inf if material.brittle else yielding_stress(*wall, young, strength) / largest
-    value = min(1.0 / most, yields)
-    low = min(value, 1.0 / most / own.high)
-    sources = (*own.sources, IMPERFECT)
-    if not material.brittle:
-        soft = (yielding_stress(*wall, young / own.high, share * strength) / largest for share in (1.0, scatter.low))
-        low, plain = min(low, *soft), low
-        sources = (*sources, *scatter.sources, YIELDS) if low < plain or yields <= value else sources
-    found = Band(value=value, low=low, high=perfect / largest / own.low, sources=sources)
+
+    def yields(modulus: float, strength: float) -> float:
+        return math.inf if material.brittle else yielding_stress(*wall, modulus, strength)
+
+    value, plain = min(1.0 / most, yields(young, strength) / largest), 1.0 / most / own.high
+    soft = (yields(young / own.high, share * strength) / largest for share in (1.0, scatter.low))
+    low = min(value, plain, *soft)
+    found = Band(
+        value=value,
+        low=low,
+        high=perfect / largest / own.low,
+        sources=(*own.sources, IMPERFECT, *((*scatter.sources, YIELDS) if low < plain else ())),
+    )
+    bears = min(bent_bears, yields(young, strength)) * section.i_z / radius
     why = _told(radius / thickness, min(pressed_bears, bent_bears), strength)
-    yield told(WallMode.WALL, x, side, bent_bears * section.i_z / radius, found, why)
+    yield told(WallMode.WALL, x, side, bears, found, why)
     x, side, moment = beam.forces.largest(lambda forces: np.hypot(forces[:, 4], forces[:, 5]))
     if moment * radius / section.i_z > NOTHING * largest:
         bears = flattening_moment(*wall, young, ratio)
@@ -135,6 +140,11 @@ def _of_tube(
             sources=(*own.sources, LARGE, STAYS_ROUND),
         )
         yield told(WallMode.FLATTENING, x, side, bears, found, "")
+
+
+def _size(beam: BeamCheck) -> float:
+    """Return the largest normal stress, as rounding is judged by it."""
+    return float((np.abs(beam.axial) + beam.bending).max())
 
 
 def _told(ratio: float, bears: float, strength: float) -> Reason | str:
@@ -153,9 +163,10 @@ def _of_strip(case: Case, load_case: str, one: Asked, beam: BeamCheck, growth: S
     young = material.youngs_modulus
     twisting = young / (2.0 * (1.0 + material.poissons_ratio)) * section.torsion
     stiffness = math.sqrt(young * weak * twisting)
-    value = lateral_factor(beam.forces, about, stiffness, where.outermost)
-    if weak == stiff or math.isinf(value):
+    x, side, moment = beam.forces.largest(lambda forces: np.abs(forces[:, about]))
+    if weak == stiff or moment * max(section.half_y, section.half_z) / stiff <= NOTHING * _size(beam):
         return
+    value = lateral_factor(beam.forces, about, stiffness, where.outermost)
     least = min([value, *(lateral_factor(beam.forces, about, stiffness, (x,)) for x in where.alone)])
     pressed = column(case, link, beam)
     least = 1.0 / (1.0 / least + (0.0 if pressed is None else 1.0 / pressed.least))
@@ -163,7 +174,6 @@ def _of_strip(case: Case, load_case: str, one: Asked, beam: BeamCheck, growth: S
     if where.across is not None:
         bent = math.sqrt((1.0 - weak / stiff) * (1.0 - twisting / (young * stiff)))
         most = lateral_factor(beam.forces, about, stiffness, where.across, kept=True) / bent
-    x, side, moment = beam.forces.largest(lambda forces: np.abs(forces[:, about]))
     yield WallFactor(
         check=one.name,
         link=link,
@@ -199,7 +209,5 @@ def wall_outcome(load_case: str, one: Asked, found: Sequence[WallFactor]) -> Che
     worst = min(found, key=lambda of: of.factor.low)
     outcome = one.outcome(load_case, Band.least([of.factor for of in found]))
     why = together(outcome.reason, worst.told)
-    return outcome.because(
-        reason("mode_of_wall", mode=str(worst.mode), moment=worst.moment, compression=worst.compression,
-               bears=worst.bears, why=why)
-    )  # fmt: skip
+    acting = {"moment": worst.moment or None, "compression": worst.compression or None}
+    return outcome.because(reason("mode_of_wall", mode=str(worst.mode), bears=worst.bears, **acting, why=why))

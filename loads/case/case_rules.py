@@ -8,7 +8,9 @@ from alula.geometry.bodies.body_rules import check_body, check_length
 from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
+from alula.geometry.parts.bar import Bar
 from alula.geometry.parts.part import Body, FilePart
+from alula.geometry.parts.tube import Tube
 from alula.loads.case.core import CoreCase
 from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
@@ -18,7 +20,6 @@ from alula.loads.case.layers import check_layers, pin_masses
 from alula.loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
 from alula.loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from alula.loads.case.toleranced import toleranced
-from alula.loads.case.wall_rules import check_wall_check
 from alula.loads.records.check_spec import (
     BearingCheck,
     Check,
@@ -261,7 +262,10 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, EyeCheck):
         check_eye_check(case, name, check)
     elif isinstance(check, WallCheck):
-        check_wall_check(case, name, check)
+        for link in check.links:
+            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
+        for link in check.links or case.checked_links:
+            _check_thin(case, name, link)
     elif isinstance(check, PlasticCollapseCheck):
         for link in check.links:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
@@ -293,6 +297,19 @@ def _check_ductile(case: CoreCase, name: str, link: str) -> None:
         f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and name the "
         "other links in links"
     )
+
+
+def _check_thin(case: CoreCase, name: str, link: str) -> None:
+    """Check that a link is of a shape whose buckling as a thin one has a formula."""
+    part = case.part_of(link)
+    slotted = any(pin.slot > 0.0 for pin in case.body(link).pins)
+    varying = isinstance(part, Bar) and bool(part.widths)
+    if not isinstance(part, Tube | Bar) or slotted or varying:
+        what = "has a slot" if slotted else f"is a {part.shape}{' of varying width' if varying else ''}"
+        raise CaseError(
+            f"checks.{name}.links: its formulas are those of tubes and of bars of one section, but link '{link}' "
+            f"{what}; name the other links alone"
+        )
 
 
 def _check_minimum(name: str, title: str, material: Material, of: str) -> None:
