@@ -6,7 +6,7 @@ where these are two, or one that is built in, nothing hinders v'', and the energ
 
     G J ∫φ'² dx = λ² ∫M²/(E I) φ² dx   with φ = 0 where the twist is held,
 
-of which the least λ is the factor (Prandtl 1899, Michell 1899; ``docs/theory/walls.md``). Under an even moment between
+of which the least λ is the factor (derived in ``docs/theory/walls.md``). Under an even moment between
 two such points λ M = π √(E I G J)/L, under a force at the end of a cantilever λ F = 4.013 √(E I G J)/L². Where points
 also keep the slope v', v'' has no mean and no first moment between them, which takes the nearest straight line off M φ.
 Loads act on the axis; the section does not warp.

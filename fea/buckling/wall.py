@@ -21,7 +21,7 @@ DUCTILE = 0.115
 REPRESENTATIVE = 0.3
 """Elastic stress of a real wall over E t/R (ISO 19902)."""
 ELASTIC = 1.911
-"""Yield strength over the elastic stress of a real wall from which on yielding takes off nothing (ISO 19902)."""
+"""Yield strength over the elastic stress of a real wall from which on yielding takes off nothing: where both meet."""
 
 
 def perfect_stress(radius: float, thickness: float, modulus: float, poisson: float) -> float:
@@ -84,7 +84,7 @@ def flattening_moment(radius: float, thickness: float, modulus: float, poisson: 
 
     References
     ----------
-    Brazier, Proc. R. Soc. A 116 (1927), as derived in ``docs/theory/walls.md``.
+    Brazier (1927); derived in ``docs/theory/walls.md``.
     """
     return 2.0 * math.sqrt(2.0) / 9.0 * math.pi * modulus * radius * thickness**2 / math.sqrt(1.0 - poisson**2)
 

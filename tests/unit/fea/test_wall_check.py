@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import rocker_case
 from edited_cases import edited
 from wall_case import checked, strip, walls
 
@@ -13,13 +14,16 @@ from alula.fea.asked.asked import asked
 from alula.fea.buckling.wall import BENDING, COMPRESSION, flattening_moment, knock_down, perfect_stress
 from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
+from alula.fea.doubts.force_doubt import stress_by_hand
 from alula.fea.judging.walls import EXACT, ROUND, wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.envelope_outcomes import wall_outcomes
 from alula.fea.motion.link_history import link_histories
 from alula.fea.outcomes.wall_modes import WallMode
+from alula.fea.superposition.link_answers import LinkAnswers, widest
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import WallCheck
@@ -232,6 +236,27 @@ def test_over_a_motion_the_worst_pose_counts():
         again = {outcome.link: outcome for outcome in wall_outcomes(moved, loaded, left, lambda *_: grown)}
         assert again[link].value.low == min(np.array(singly)[left])
         assert again[link].verdict is not Verdict.PASS
+
+
+def test_over_a_motion_play_and_the_sharing_of_couples_widen_the_band_and_edges_of_clamps_do_not():
+    text = rocker_case.TOML.replace(
+        'B = { links = ["coupler", "rocker"]', 'B = { clearance = "0.3 mm", links = ["coupler", "rocker"]'
+    )
+    case = validate(tomllib.loads(text) | {"checks": {"wall": {"type": "wall", "minimum": 1.0}}})
+    over = _Envelope(solve_case_motion(case), np.ones(7, dtype=bool), 1, print)
+    [plain] = [one for one in over.outcomes({}) if one.quantity is Quantity.WALLS]
+    assert SourceKind.PLAY in {source.kind for source in plain.value.sources}
+    key = ("turn", "rocker")
+    over.shares[key] = Scatter(high=9.0)
+    [history] = over.loaded["rocker"]
+    ways = [(history.chosen(pose),) for pose in (0, 6)]
+    stressed = [stress_by_hand(case, "rocker", way) for way in ways]
+    high = max(stressed) / min(stressed)
+    assert high > 1.0
+    first, second = sorted(ways, key=lambda way: stress_by_hand(case, "rocker", way))
+    over.ways[key] = LinkAnswers(stated=first, others=(second,), stress=widest(COUPLES), displacement=widest(COUPLES))
+    [shared] = [one for one in over.outcomes({}) if one.quantity is Quantity.WALLS]
+    assert shared.value.low == pytest.approx(plain.value.low / high)
 
 
 def wavy(tables):
