@@ -161,7 +161,7 @@ def _of_strip(case: Case, load_case: str, one: Asked, beam: BeamCheck, growth: S
     about = ABOUT_Z if section.i_z > section.i_y else ABOUT_Y
     weak, stiff = sorted((section.i_y, section.i_z))
     young = material.youngs_modulus
-    twisting = young / (2.0 * (1.0 + material.poissons_ratio)) * section.torsion
+    twisting = material.shear_modulus * section.torsion
     stiffness = math.sqrt(young * weak * twisting)
     x, side, moment = beam.forces.largest(lambda forces: np.abs(forces[:, about]))
     if weak == stiff or moment * max(section.half_y, section.half_z) / stiff <= NOTHING * _size(beam):

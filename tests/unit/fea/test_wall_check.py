@@ -11,9 +11,11 @@ from edited_cases import edited
 from wall_case import checked, strip, walls
 
 from alula.fea.asked.asked import asked
+from alula.fea.buckling.buckling import column
+from alula.fea.buckling.lateral import ABOUT_Y, ABOUT_Z, lateral_factor
 from alula.fea.buckling.wall import BENDING, COMPRESSION, flattening_moment, knock_down, perfect_stress
 from alula.fea.check.run import check_case
-from alula.fea.common.scatter import Scatter
+from alula.fea.common.scatter import Scatter, compliance_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.force_doubt import stress_by_hand
@@ -75,6 +77,8 @@ def test_a_bent_tube_and_a_pressed_one_by_hand():
     assert (band.value, band.low) == pytest.approx((yields, yields))
     assert strut[WallMode.WALL].bears == pytest.approx(yields * 400.0 / area * ring(*NARROW)[1])
     assert band.high == pytest.approx(perfect_stress(*NARROW, E, NU) / (400.0 / area))
+    for of, yielding in (arm, False), (strut, True):
+        assert (SourceKind.STRENGTH in {source.kind for source in of[WallMode.WALL].factor.sources}) is yielding
     worst = outcome_of(found, "arm")
     assert (worst.value.low, worst.verdict) == (pytest.approx(EXACT * flat), Verdict.PASS)
     assert str(WallMode.FLATTENING) in told(worst.reason)
@@ -187,9 +191,19 @@ def test_the_frame_turns_aside_as_the_strip_does():
 def test_a_driven_strip_may_be_held_at_its_drive_alone():
     """A crank of a four-bar: at its least it is a cantilever, at its best both pins keep its slope."""
     case = edited("four-bar", ['checks.wall={type="wall", minimum=1, links=["crank"]}'])
-    [lateral] = [one for one in check(case).walls if one.link == "crank"]
-    assert lateral.factor.low < lateral.factor.value / 3.5
-    assert lateral.factor.high > 1.4 * lateral.factor.value
+    result = check(case)
+    [lateral], beam = [one for one in result.walls if one.link == "crank"], result.links["crank"].beam
+    pins = beam.forces.breaks[[0, -1]].tolist()
+    both, alone, best = (
+        lateral_factor(beam.forces, ABOUT_Z, 1.0, held, kept=kept)
+        for held, kept in ((pins, False), (pins[:1], False), (pins, True))
+    )
+    pressed = column(case, "crank", beam)
+    least = 1.0 / (both / alone / lateral.factor.value + (0.0 if pressed is None else 1.0 / pressed.least))
+    assert alone < 0.9 * both
+    softer = compliance_scatter(case.material_of("crank")).high
+    assert lateral.factor.low == pytest.approx(least / 3.0 / softer, rel=1e-3)
+    assert lateral.factor.high > best / both * lateral.factor.value > lateral.factor.value
 
 
 def check(case):
@@ -199,6 +213,22 @@ def check(case):
 def test_a_square_bar_and_one_bent_about_its_weak_axis_do_not_turn_aside():
     assert modes_of(checked(walls(strip("20 mm", "20 mm"))), "arm") == {}
     assert modes_of(checked(walls(strip("20 mm", "40 mm"))), "arm") == {}
+    case = walls(strip("20 mm", "20 mm"))
+    [one], beam = asked(case, WallCheck, subject=Subject.link("arm")), checked(case).links["arm"].beam
+    both = beam.forces.coefficients.copy()
+    both[:, ABOUT_Y] = both[:, ABOUT_Z]
+    across = replace(beam, forces=replace(beam.forces, coefficients=both))
+    assert not tuple(wall_factors(case, "tip", one, [across], Scatter()))
+
+
+def test_a_brittle_wall_does_not_yield():
+    case = walls()
+    name = "aluminium-7075-t6"
+    card = case.all_materials[name].model_copy(update={"strength": "ultimate", "ultimate_strength": STRENGTH})
+    found = checked(case.model_copy(update={"materials": {**case.materials, name: card}}))
+    band = modes_of(found, "strut")[WallMode.WALL].factor
+    assert card.brittle
+    assert band.value == band.low == pytest.approx(1.0 / used(NARROW, 400.0, 0.0))
 
 
 def test_page_and_file_have_every_mode():
