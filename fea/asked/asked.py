@@ -31,6 +31,7 @@ from alula.loads.records.check_spec import (
     SafetyFactorCheck,
     SizeCheck,
     SustainedCheck,
+    WallCheck,
 )
 
 GRAMS = 1e6
@@ -41,6 +42,7 @@ _QUANTITIES = {
     PinCheck: Quantity.SAFETY_FACTOR,
     BearingCheck: Quantity.SAFETY_FACTOR,
     EyeCheck: Quantity.EYES,
+    WallCheck: Quantity.WALLS,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
     NotchCheck: Quantity.NOTCHES,
@@ -290,6 +292,8 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
             | NotchCheck()
             | FatigueCheck()
         ):
+            return tuple(map(Subject.link, check.links or case.checked_links))
+        case WallCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))

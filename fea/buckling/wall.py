@@ -1,25 +1,38 @@
-"""Whether the wall of a thin tube may buckle before its material yields."""
+"""What the wall of a round tube bears before it buckles or flattens (``docs/theory/walls.md``).
+
+R is the radius of the wall's middle and t its thickness. Stresses are those of the plain section.
+"""
 
 import math
 from collections.abc import Iterator
 
+from alula.fea.asked.asked import asked_of
 from alula.fea.common.reason import reason
 from alula.geometry.parts.tube import Tube
 from alula.loads.case.case import Case
+from alula.loads.records.check_spec import WallCheck
 from alula.loads.text.caveat import Caveat, Topic
 
+COMPRESSION, BENDING = 0.901, 0.731
+"""Largest shares that imperfections take off the stress of a perfect cylinder (NASA SP-8007)."""
+DUCTILE = 0.115
+"""Yield strength over ``REPRESENTATIVE`` E t/R up to which a wall yields without buckling: ISO 19902 has D/t of at most
+0.069 E/f_y for ductile tubes."""
+REPRESENTATIVE = 0.3
+"""Elastic stress of a real wall over E t/R (ISO 19902)."""
+ELASTIC = 1.911
+"""Yield strength over the elastic stress of a real wall from which on yielding takes off nothing: where both meet."""
 
-def wall_stress(radius: float, thickness: float, modulus: float) -> float:
-    """Return the compressive stress at which the wall of a round tube may buckle.
 
-    A long cylinder under axial compression, knocked down for imperfections; bending lets a wall bear somewhat more.
+def perfect_stress(radius: float, thickness: float, modulus: float, poisson: float) -> float:
+    """Return the stress at which the wall of a perfect long cylinder buckles, in compression or at its bent side.
 
     Parameters
     ----------
     radius, thickness : float
-        Of the wall's middle, and of the wall [mm].
-    modulus : float
-        Young's modulus [MPa].
+        [mm]
+    modulus, poisson : float
+        Young's modulus [MPa] and Poisson's ratio.
 
     Returns
     -------
@@ -28,15 +41,100 @@ def wall_stress(radius: float, thickness: float, modulus: float) -> float:
 
     References
     ----------
-    NASA SP-8007, Buckling of thin-walled circular cylinders (1968): 0.6 γ E t/R with γ = 1 - 0.901 (1 - e^-φ),
-    φ = √(R/t)/16; as handbooks quote it, unchecked.
+    E t/(R √(3 (1 - ν²))): Timoshenko & Gere, Theory of Elastic Stability, 2nd ed., section 11.1.
     """
-    knock_down = 1.0 - 0.901 * (1.0 - math.exp(-math.sqrt(radius / thickness) / 16.0))
-    return 0.6 * knock_down * modulus * thickness / radius
+    return modulus * thickness / radius / math.sqrt(3.0 * (1.0 - poisson**2))
+
+
+def knock_down(radius: float, thickness: float, most: float) -> float:
+    """Return what imperfections leave of the stress of a perfect cylinder, a curve below nearly all tests.
+
+    Parameters
+    ----------
+    radius, thickness : float
+        [mm]
+    most : float
+        ``COMPRESSION`` or ``BENDING``.
+
+    Returns
+    -------
+    float
+
+    References
+    ----------
+    NASA SP-8007, Buckling of Thin-Walled Circular Cylinders (1968): γ = 1 - most (1 - e^-φ) with φ = √(R/t)/16.
+    """
+    return 1.0 - most * (1.0 - math.exp(-math.sqrt(radius / thickness) / 16.0))
+
+
+def flattening_moment(radius: float, thickness: float, modulus: float, poisson: float) -> float:
+    """Return the largest moment of a long tube whose section flattens as it bends.
+
+    Parameters
+    ----------
+    radius, thickness : float
+        [mm]
+    modulus, poisson : float
+        Young's modulus [MPa] and Poisson's ratio.
+
+    Returns
+    -------
+    float
+        [N·mm]
+
+    References
+    ----------
+    Brazier (1927); derived in ``docs/theory/walls.md``.
+    """
+    return 2.0 * math.sqrt(2.0) / 9.0 * math.pi * modulus * radius * thickness**2 / math.sqrt(1.0 - poisson**2)
+
+
+def yielding_stress(radius: float, thickness: float, modulus: float, strength: float) -> float:
+    """Return the stress at which a ductile wall buckles where yielding lowers it; infinite where it does not.
+
+    Parameters
+    ----------
+    radius, thickness : float
+        [mm]
+    modulus, strength : float
+        Young's modulus and yield strength [MPa].
+
+    Returns
+    -------
+    float
+        [MPa]
+
+    References
+    ----------
+    ISO 19902:2020, equations 13.2-8 and 13.2-9 and section 11.4.
+    """
+    share = strength * radius / (REPRESENTATIVE * modulus * thickness)
+    if share <= DUCTILE or share >= ELASTIC:
+        return math.inf
+    return strength * min(1.0, 1.047 - 0.274 * share)
+
+
+def wall_of(case: Case, link: str) -> tuple[float, float] | None:
+    """Return the radius of the middle of a tube's wall, and its thickness.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    tuple of 2 float or None
+        [mm]; None of what is no hollow tube.
+    """
+    part = case.part_of(link)
+    if not isinstance(part, Tube) or part.inner_diameter == 0.0:
+        return None
+    return (part.outer_diameter + part.inner_diameter) / 4.0, (part.outer_diameter - part.inner_diameter) / 2.0
 
 
 def wall_caveats(case: Case) -> Iterator[Caveat]:
-    """Yield the tubes whose wall may buckle below the strength of their material, which no check looks at.
+    """Yield the tubes whose wall may buckle below the strength of their material, where no check asks for it.
 
     Parameters
     ----------
@@ -48,14 +146,10 @@ def wall_caveats(case: Case) -> Iterator[Caveat]:
     """
     thin = []
     for link in case.checked_links:
-        part, material = case.part_of(link), case.material_of(link)
-        if isinstance(part, Tube) and part.inner_diameter > 0.0:
-            wall = (part.outer_diameter - part.inner_diameter) / 2.0
-            if wall_stress(part.outer_diameter / 2.0 - wall / 2.0, wall, material.youngs_modulus) < material.allowable:
+        if (wall := wall_of(case, link)) and link not in asked_of(case, WallCheck):
+            material = case.material_of(link)
+            stress = perfect_stress(*wall, material.youngs_modulus, material.poissons_ratio)
+            if stress * knock_down(*wall, COMPRESSION) < material.allowable:
                 thin.append(link)
     if thin:
-        yield Caveat(
-            topic=Topic.BUCKLING,
-            what=reason("buckling_of_walls", links=thin),
-            why=reason("thin_wall"),
-        )
+        yield Caveat(topic=Topic.BUCKLING, what=reason("buckling_of_walls", links=thin), why=reason("thin_wall"))

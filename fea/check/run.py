@@ -39,6 +39,7 @@ from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, l
 from alula.fea.judging.notches import notch_outcomes
 from alula.fea.judging.plastic_collapse import Found, collapse_outcomes, find_collapses
 from alula.fea.judging.solid_buckling import solid_buckling_outcomes
+from alula.fea.judging.walls import wall_factors, wall_outcome
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from alula.fea.links.second_order import NEGLIGIBLE
@@ -51,6 +52,7 @@ from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
+from alula.fea.outcomes.wall_modes import WallFactor
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS
@@ -76,6 +78,7 @@ from alula.loads.records.check_spec import (
     FatigueCheck,
     PinCheck,
     PlasticCollapseCheck,
+    WallCheck,
 )
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.shares import parse_accuracy
@@ -357,7 +360,7 @@ class _LoadCase:
             *buckling_outcomes(case, load_case, columns, moved),
             *solid_buckling_outcomes(case, load_case, solids),
         )
-        eyes = self._eyes(reactions)
+        eyes, walls = self._eyes(reactions), self._walls()
 
         def doubts(link: str) -> tuple[Growths, Shares]:
             return self._doubts_on(link, solved.get(link))
@@ -380,6 +383,7 @@ class _LoadCase:
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(eye_outcome(load_case, one, found) for one, found in eyes),
+            *(wall_outcome(load_case, one, found) for one, found in walls),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *collapse_outcomes(case, load_case, collapses, self.acts_on, doubts),
@@ -409,6 +413,7 @@ class _LoadCase:
             eyes=tuple(eye for _, found in eyes for eye in found),
             notches=tuple(notch for _, notch in notches if notch is not None),
             fatigue={x: found for x, found in lasting.items() if isinstance(found, LinkFatigue)},
+            walls=tuple(mode for _, found in walls for mode in found),
             collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 
@@ -420,6 +425,15 @@ class _LoadCase:
             growth = with_sharing(self.case, link, self.uneven.joints, ways)
             plates = [loads for loads, _ in self.plates[link]]
             found.append((one, tuple(eye_factors(self.case, self.load_case, one, plates, growth))))
+        return found
+
+    def _walls(self) -> list[tuple[Asked, tuple[WallFactor, ...]]]:
+        """Return the checks that ask for thin walls, each with the modes of its link."""
+        found, grown = [], self.uneven.times(self.shared).stress
+        for one in asked(self.case, WallCheck):
+            beams = [hand.check for _, hand in self.plates[one.subject.name]]
+            growth = grown.get(one.subject.name, Scatter())
+            found.append((one, tuple(wall_factors(self.case, self.load_case, one, beams, growth))))
         return found
 
 

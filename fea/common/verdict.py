@@ -110,6 +110,8 @@ class Quantity(StrEnum):
     """Of a printed part: against tension normal to its layers and shear along them."""
     EYES = "safety factor of the eyes", "", Sense.AT_LEAST
     """Of a link: what the weakest mode of its weakest eye bears over the force of the pin."""
+    WALLS = "buckling factor of thin walls", "", Sense.AT_LEAST
+    """Of a link: by what its loads may grow until its wall buckles, it flattens, or it turns aside as a deep strip."""
     SUSTAINED_STRESS = "sustained stress", "MPa", Sense.AT_MOST
     DEFLECTION = "deflection from its pins", "mm", Sense.AT_MOST
     """Of a link by itself: displacement from the line through its own pins, as if these stayed."""

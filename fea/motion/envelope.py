@@ -20,12 +20,13 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter
 from alula.fea.common.threads import bounded, bounded_run
 from alula.fea.common.verdict import CheckOutcome, overall
+from alula.fea.doubts.force_doubt import stress_by_hand
 from alula.fea.elements.space import DisplacementSpace, displacement_space
 from alula.fea.judging.linkage import unless_it_gives_way
 from alula.fea.links.clamp_edge import CLAMP_SCATTER
 from alula.fea.links.solid_result import link_task
 from alula.fea.motion.buckling_history import with_second_order
-from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes, eye_outcomes
+from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes, eye_outcomes, wall_outcomes
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from alula.fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
 from alula.fea.motion.layered import with_couples
@@ -81,6 +82,7 @@ class _Envelope:
         edges = {(history.name, link): CLAMP_SCATTER for link in held for history in self.loaded[link]}
         self.shares: dict[tuple[str, str], Scatter] = {}
         for doubt in (loosened(moved, evaluated), otherwise(moved, evaluated), bent, edges):
+            self.uneven = dict(self.shares)  # in the end without ``edges``
             for key, scatter in doubt.items():
                 self.shares[key] = self.shares.get(key, Scatter()).times(scatter)
         self.ended = threading.Event()
@@ -149,6 +151,15 @@ class _Envelope:
                 return found
             return replace(found, layers=layer_envelopes(motion, scatter("layers"), repetitions))
 
+    def _growth(self, load_case: str, link: str) -> Scatter:
+        """Return by what the stress of a link may differ by hand, but for the scatter of loads and edges of clamps."""
+        found = self.uneven.get((load_case, link), Scatter())
+        answers = self.ways.get((load_case, link))
+        if answers is None:
+            return found
+        stated, *others = (stress_by_hand(self.moved.case, link, plates) for plates in answers.every)
+        return found.times(answers.stress(stated, others))
+
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""
         if self.ended.is_set():
@@ -176,6 +187,7 @@ class _Envelope:
         checks = envelope_outcomes(moved, links, evaluated, self.grown, lasting=lasting)
         checks += column_outcomes(moved, self.loaded, evaluated, self.grown)
         checks += eye_outcomes(moved, self.loaded, evaluated, self.grown)
+        checks += wall_outcomes(moved, self.loaded, evaluated, self._growth)
         checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
         for load_case in self.idle:
             joints = moved.forces[load_case].forces

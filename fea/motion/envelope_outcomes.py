@@ -1,6 +1,7 @@
 """From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,8 @@ from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
 from alula.fea.judging.solid_buckling import undecided_buckling
+from alula.fea.judging.walls import wall_factors, wall_outcome
+from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LinkEnvelope
 from alula.fea.motion.layered import forces_at
@@ -37,13 +40,14 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     PinCheck,
     SafetyFactorCheck,
+    WallCheck,
 )
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.joint_reaction import JointReaction
 
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, FatigueCheck, LimitLoadCheck)
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, WallCheck, FatigueCheck, LimitLoadCheck)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
@@ -223,6 +227,45 @@ def eye_outcomes(
             found = tuple(eye_factors(case, load_case, one, here, growth))
             outcome = _complete(eye_outcome(load_case, one, found), evaluated)
             yield outcome.because(reason("eyes_over_motion", when=when(moved, pose), why=outcome.reason))
+
+
+def wall_outcomes(
+    moved: CaseMotion,
+    loaded: Mapping[str, Sequence[LinkLoads]],
+    evaluated: NDArray[np.bool_],
+    growth: Callable[[str, str], Scatter],
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of the thin walls of every link that a check asks for, at the pose where they bear least.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    loaded : mapping of str to sequence of LinkLoads
+        Link -> what acts on it, one record per load case and plate.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    growth : callable
+        Of load case and link, to what else than the scatter of loads makes of its stress.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    case = moved.case
+    for one in asked(case, WallCheck):
+        link = one.subject.name
+        for load_case in moved.forces:
+            plates = [loads for loads in loaded.get(link, ()) if loads.name == load_case]
+            if not plates:
+                continue
+            spread = growth(load_case, link)
+            found = {}
+            for pose in np.flatnonzero(evaluated).tolist():
+                beams = [link_by_hand(case, link, loads.chosen(pose)).check for loads in plates]
+                found[pose] = tuple(wall_factors(case, load_case, one, beams, spread))
+            worst = min(found, key=lambda pose: min((mode.factor.low for mode in found[pose]), default=math.inf))
+            outcome = _complete(wall_outcome(load_case, one, found[worst]), evaluated)
+            yield outcome.because(reason("walls_over_motion", when=when(moved, worst), why=outcome.reason))
 
 
 def _worst_bearing(

@@ -31,6 +31,7 @@ from alula.loads.records.check_spec import (
     PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
+    WallCheck,
 )
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
@@ -188,6 +189,7 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
             | PinCheck
             | BearingCheck
             | EyeCheck
+            | WallCheck
             | LimitLoadCheck
             | PlasticCollapseCheck
             | NotchCheck

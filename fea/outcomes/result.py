@@ -22,6 +22,7 @@ from alula.fea.outcomes.notches import NotchFactor
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
+from alula.fea.outcomes.wall_modes import WallFactor
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
@@ -296,6 +297,8 @@ class LoadCaseResult:
         Of every eye of the links whose eyes a check asks for.
     notches : tuple of NotchFactor
         Of every link whose notches a check asks for and whose solid was solved.
+    walls : tuple of WallFactor
+        Of every mode of the links whose walls a check asks for.
     collapses : mapping of str to LinkCollapse
         Link -> at what factor it collapses, where a check asks for it and it was found.
     fatigue : mapping of str to LinkFatigue
@@ -315,6 +318,7 @@ class LoadCaseResult:
     loads: tuple[Load, ...] = ()
     eyes: tuple[EyeFactors, ...] = ()
     notches: tuple[NotchFactor, ...] = ()
+    walls: tuple[WallFactor, ...] = ()
     collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
     fatigue: Mapping[str, LinkFatigue] = field(default_factory=dict)
 

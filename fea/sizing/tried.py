@@ -31,6 +31,7 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     PinCheck,
     SafetyFactorCheck,
+    WallCheck,
 )
 
 MODULI = ("youngs_modulus", "sustained_modulus")
@@ -44,7 +45,16 @@ STRENGTHS = (
     "strength",
 )
 """Entries of a card, each with its range where it has one."""
-_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, FatigueCheck, LimitLoadCheck)
+_STATIC = (
+    SafetyFactorCheck,
+    DisplacementCheck,
+    PinCheck,
+    BearingCheck,
+    EyeCheck,
+    WallCheck,
+    FatigueCheck,
+    LimitLoadCheck,
+)
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
 """One or the other says whether the linkage as a whole holds the load."""
 _Key = tuple[str, Quantity, Subject]

@@ -8,7 +8,9 @@ from alula.geometry.bodies.body_rules import check_body, check_length
 from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
+from alula.geometry.parts.bar import Bar
 from alula.geometry.parts.part import Body, FilePart
+from alula.geometry.parts.tube import Tube
 from alula.loads.case.core import CoreCase
 from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
@@ -34,6 +36,7 @@ from alula.loads.records.check_spec import (
     PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
+    WallCheck,
 )
 from alula.loads.records.conditions import Conditions
 from alula.loads.records.motion_spec import MotionSpec
@@ -260,6 +263,11 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
     elif isinstance(check, EyeCheck):
         check_eye_check(case, name, check)
+    elif isinstance(check, WallCheck):
+        for link in check.links:
+            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
+        for link in check.links or case.checked_links:
+            _check_thin(case, name, link)
     elif isinstance(check, PlasticCollapseCheck):
         for link in check.links:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
@@ -321,6 +329,19 @@ def _check_notched(case: CoreCase, name: str, link: str) -> None:
         raise CaseError(
             f"parts.{case.links[link].part}.build_direction: it is missing, and '{entry}' judges notches of link "
             f"'{link}' along its layers alone; state how the part is built"
+        )
+
+
+def _check_thin(case: CoreCase, name: str, link: str) -> None:
+    """Check that a link is of a shape whose buckling as a thin one has a formula."""
+    part = case.part_of(link)
+    slotted = any(pin.slot > 0.0 for pin in case.body(link).pins)
+    varying = isinstance(part, Bar) and bool(part.widths)
+    if not isinstance(part, Tube | Bar) or slotted or varying:
+        what = "has a slot" if slotted else f"is a {part.shape}{' of varying width' if varying else ''}"
+        raise CaseError(
+            f"checks.{name}.links: its formulas are those of tubes and of bars of one section, but link '{link}' "
+            f"{what}; name the other links alone"
         )
 
 

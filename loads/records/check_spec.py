@@ -92,6 +92,20 @@ class EyeCheck(CaseModel):
     """The links to check; all that have a part when left out."""
 
 
+class WallCheck(CaseModel):
+    """All loads on each tube or bar must be able to grow by a factor before it buckles as a thin one.
+
+    The wall of a tube buckles where it is compressed and bent, a bent tube flattens, and a deep strip that is bent in
+    its stiff plane turns aside and twists. Buckling as a column is checked of every link.
+    """
+
+    type: Literal["wall"]
+    minimum: Annotated[float, Field(gt=0)]
+    """The least factor. Imperfections are in its band: for strips as for columns, where 1 is the limit."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out."""
+
+
 class MotorCheck(CaseModel):
     """The motor must cover the drive power over the [motion], in every load case with a speed.
 
@@ -239,6 +253,7 @@ Check = Annotated[
     | PinCheck
     | BearingCheck
     | EyeCheck
+    | WallCheck
     | LimitLoadCheck
     | PlasticCollapseCheck
     | NotchCheck

@@ -10,7 +10,7 @@ from alula.fea.solid.buckling_factor import MOST
 from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
-from alula.reports.check.eyes import eye_parts, eye_record, notch_parts, notch_record
+from alula.reports.check.modes import eye_parts, eye_record, notch_parts, notch_record, wall_parts, wall_record
 from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.fatigue import fatigue_parts, link_fatigue_record
@@ -63,6 +63,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from eye_parts(case)
     yield from notch_parts(case)
     yield from fatigue_parts(result, case)
+    yield from wall_parts(case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -186,6 +187,7 @@ def _data(result: CheckResult, case: LoadCaseResult) -> dict[str, Any]:
         **({"eyes": eye_record(case)} if case.eyes else {}),
         **({"notches": notch_record(case)} if case.notches else {}),
         **({"fatigue": link_fatigue_record(result, case)} if case.fatigue else {}),
+        **({"walls": wall_record(case)} if case.walls else {}),
     }
 
 

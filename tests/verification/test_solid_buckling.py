@@ -37,8 +37,8 @@ ON_PINS = conditions((0, X), (0, Y), (0, Z), (0, TURN_X), (1, Y), (1, Z))
 def pushed_box(size, counts, wrench, nu=0.0):
     """A box under a wrench at its far end, balanced at the near one: its solution, its loads and the places of both."""
     mesh = solid_meshes.box((0.0, -size[1] / 2, -size[2] / 2), (size[0], size[1] / 2, size[2] / 2), counts)
-    far = np.array([*wrench, 0.0, 0.0, 0.0])
-    near = -far - np.array([0.0, 0.0, 0.0, *np.cross([size[0], 0.0, 0.0], wrench)])
+    far = np.array([*wrench, 0.0, 0.0, 0.0])[:6]
+    near = -far - np.array([0.0, 0.0, 0.0, *np.cross([size[0], 0.0, 0.0], far[:3])])
     ends = {"end:0": (np.zeros(3), near), "end:1": (np.array([size[0], 0.0, 0.0]), far)}
     loads = LinkLoads(
         name="push",
@@ -83,13 +83,24 @@ def test_a_column_has_the_least_factor_of_all_ways_in_which_its_joints_may_move(
     assert link_buckling(solved, free, chord=0.0)["push"].least == found.value
 
 
-def test_a_strip_bent_in_its_plane_buckles_sideways():
-    """Prandtl's cantilever under a force at its end: 4.013 √(E I G J)/L² (Timoshenko & Gere, section 6.3)."""
+FORKED = np.vstack([ON_PINS, conditions((1, TURN_X))])
+KEPT = np.vstack([FORKED, conditions((0, TURN_Y), (1, TURN_Y))])
+
+
+@pytest.mark.parametrize(
+    ("wrench", "held", "closed"),
+    [
+        ((0.0, -1.0, 0.0), BUILT_IN, 4.013 / 100.0**2),
+        ((0.0, 0.0, 0.0, 0.0, 0.0, 10.0), FORKED, math.pi / 1000.0),
+        ((0.0, 0.0, 0.0, 0.0, 0.0, 10.0), KEPT, 2.0 * math.pi / 1000.0),
+    ],
+)
+def test_a_strip_bent_in_its_plane_buckles_sideways(wrench, held, closed):
+    """Prandtl's cantilever under a force at its end, and an even moment (Timoshenko & Gere, sections 6.1 and 6.3)."""
     length, deep, thick = 100.0, 10.0, 1.0
     inertia, torsion = deep * thick**3 / 12.0, deep * thick**3 / 3.0 * (1.0 - 0.63 * thick / deep)
-    expected = 4.013 * math.sqrt(E * inertia * E / 2.0 * torsion) / length**2
-    found = box_factor((length, deep, thick), (24, 3, 1), (0.0, -1.0, 0.0), BUILT_IN)
-    assert found == pytest.approx(expected, rel=0.03)
+    found = box_factor((length, deep, thick), (24, 3, 1), wrench, held)
+    assert found == pytest.approx(closed * math.sqrt(E * inertia * E / 2.0 * torsion), rel=0.04)
 
 
 def test_tension_buckles_nothing():

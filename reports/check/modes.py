@@ -1,9 +1,10 @@
-"""Eyes and notches: by what each bears more than its load, mode by mode, and method by method."""
+"""In which modes eyes, walls, strips and notches end: by what each bears more than what acts."""
 
 from collections.abc import Iterator
 from typing import Any
 
 from alula.fea.outcomes.result import LoadCaseResult
+from alula.fea.outcomes.wall_modes import WallMode
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import Part
 from alula.reports.sections.table import Column, Number, Table, words
@@ -57,6 +58,60 @@ def eye_record(case: LoadCaseResult) -> list[dict[str, Any]]:
         entries(eye, "check link eye force angle")
         | {"modes": [{"mode": str(mode), "factor": data(factor)} for mode, factor in eye.factors.items()]}
         for eye in case.eyes
+    ]
+
+
+def wall_parts(case: LoadCaseResult) -> Iterator[Part]:
+    """Yield the factors of every mode of every checked link under a load case.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Yields
+    ------
+    Part
+    """
+    rows = [
+        (of.check, of.link, str(of.mode), Number(of.ratio), Number(of.compression), Number(of.moment),
+         Number(of.bears), Number(of.factor))
+        for of in sorted(case.walls, key=lambda of: of.factor.low)
+    ]  # fmt: skip
+    known, beside = case.large_displacement.buckling, ""
+    if known is not None and any(of.mode is WallMode.LATERAL for of in case.walls):
+        beside = f"; the frame of the linkage turns aside and twists as well: it buckles at {known:.3g} times its load"
+    if rows:
+        yield Table.of(
+            (
+                *map(words, ("check", "link", "mode")),
+                Column("R/t"),
+                Column("compression", "N"),
+                Column("moment", "N·mm"),
+                Column("moment that it bears alone", "N·mm"),
+                Column("factor"),
+            ),
+            rows,
+            key="walls",
+            caption="Thin walls and deep strips: by what loads may grow until a link buckles, ordered by "
+            f"low ends; of a strip R/t is its depth over its thickness{beside}",
+            under=(("load case", case.name),),
+        )
+
+
+def wall_record(case: LoadCaseResult) -> list[dict[str, Any]]:
+    """Return the factors of thin walls as entries of ``result.json``.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    list of dict
+    """
+    return [
+        entries(of, "check link mode x compression moment bears ratio") | {"factor": data(of.factor)}
+        for of in case.walls
     ]
 
 
