@@ -18,6 +18,8 @@ STRENGTH = (
     Quantity.SAFETY_FACTOR,
     Quantity.LAYERS,
     Quantity.EYES,
+    Quantity.LINE_CONTACT,
+    Quantity.CONNECTION,
     Quantity.SUSTAINED_STRESS,
     Quantity.PLASTIC_COLLAPSE,
     Quantity.FATIGUE_STRESS,

@@ -30,8 +30,10 @@ from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
 from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.judging.bearing import bearing_outcome
+from alula.fea.judging.connections import connection_factors, connection_outcome, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
 from alula.fea.judging.judge import outcomes
+from alula.fea.judging.line_contact import contact_of, contact_outcome
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
@@ -42,7 +44,9 @@ from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, s
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
+from alula.fea.outcomes.connection_modes import ConnectionFactors
 from alula.fea.outcomes.eye_modes import EyeFactors
+from alula.fea.outcomes.line_contact import LineContact
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
@@ -66,7 +70,15 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import BearingCheck, DisplacementCheck, EyeCheck, PinCheck, PlasticCollapseCheck
+from alula.loads.records.check_spec import (
+    BearingCheck,
+    ConnectionCheck,
+    DisplacementCheck,
+    EyeCheck,
+    LineContactCheck,
+    PinCheck,
+    PlasticCollapseCheck,
+)
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.shares import parse_accuracy
 
@@ -347,11 +359,13 @@ class _LoadCase:
             *buckling_outcomes(case, load_case, columns, moved),
             *solid_buckling_outcomes(case, load_case, solids),
         )
-        eyes = self._eyes(reactions)
+        eyes, contacts, connections = self._eyes(reactions), self._contacts(reactions), self._connections(reactions)
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(eye_outcome(load_case, one, found) for one, found in eyes),
+            *(contact_outcome(load_case, one, found) for one, found in contacts),
+            *(connection_outcome(load_case, one, found) for one, found in connections),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *collapse_outcomes(case, load_case, collapses, self.acts_on, lambda x: self._doubts_on(x, solved.get(x))),
@@ -377,6 +391,8 @@ class _LoadCase:
             work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
             eyes=tuple(eye for _, found in eyes for eye in found),
+            contacts=tuple(found for _, found in contacts),
+            connections=tuple(found for _, found in connections),
             collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 
@@ -388,6 +404,26 @@ class _LoadCase:
             growth = with_sharing(self.case, link, self.uneven.joints, ways)
             plates = [loads for loads, _ in self.plates[link]]
             found.append((one, tuple(eye_factors(self.case, self.load_case, one, plates, growth))))
+        return found
+
+    def _contacts(self, reactions: Reactions) -> list[tuple[Asked, LineContact]]:
+        """Return the checks that ask for pins in slots, each with its contact."""
+        found, ways = [], (reactions, *self.forces.sharings)
+        for one in asked(self.case, LineContactCheck):
+            joint = one.subject.name
+            wrenches = [way.joints[joint].wrench for way in ways]
+            found.append((one, contact_of(self.case, self.load_case, one, wrenches, self.uneven.joints.get(joint))))
+        return found
+
+    def _connections(self, reactions: Reactions) -> list[tuple[Asked, ConnectionFactors]]:
+        """Return the checks that ask for connections, each with its factors."""
+        found, ways = [], (reactions, *self.forces.sharings)
+        for one in asked(self.case, ConnectionCheck):
+            check, joint = one.check, one.subject.name
+            assert isinstance(check, ConnectionCheck)
+            through = [transmitted(self.case, check, way.joints[joint].wrench, way.driving[0]) for way in ways]
+            growth = self.uneven.joints.get(joint)
+            found.append((one, connection_factors(self.case, self.load_case, one, through, growth)))
         return found
 
 

@@ -38,6 +38,7 @@ class SourceKind(StrEnum):
     BUILD = "direction of building"
     CLAMP = "edge of a clamp"
     DIRECTION = "direction of the force"
+    GRIP = "pressure and friction of a press"
 
 
 @dataclass(frozen=True, kw_only=True)

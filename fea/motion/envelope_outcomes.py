@@ -16,10 +16,12 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
 from alula.fea.judging.bearing import bearing_outcome, pressing
+from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, with_sharing, worst_pose
 from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
+from alula.fea.judging.line_contact import contact_of, contact_outcome, line_load
 from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
@@ -27,13 +29,16 @@ from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.linkage_history import when
 from alula.fea.motion.loosened import column_growth, joint_growth
+from alula.fea.outcomes.connection_modes import Transmitted
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.records.check_spec import (
     BearingCheck,
+    ConnectionCheck,
     EyeCheck,
     LimitLoadCheck,
+    LineContactCheck,
     PinCheck,
     SafetyFactorCheck,
 )
@@ -43,7 +48,8 @@ from alula.loads.statics.joint_reaction import JointReaction
 BEYOND_CARD = reason("repetitions_beyond_card")
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, LimitLoadCheck)
+OF_JOINTS = (PinCheck, BearingCheck, LineContactCheck, ConnectionCheck)
+FOLLOWED = (SafetyFactorCheck, *OF_JOINTS, EyeCheck, LimitLoadCheck)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
@@ -78,8 +84,8 @@ def envelope_outcomes(
         Where neither check nor material states a limit, or a pin has no diameter.
     """
     case, found = moved.case, list[CheckOutcome]()
-    for one in asked(case, SafetyFactorCheck, PinCheck, BearingCheck):
-        if one.subject.kind == "pin":
+    for one in asked(case, SafetyFactorCheck, *OF_JOINTS):
+        if isinstance(one.check, OF_JOINTS):
             found += _joint(moved, one, evaluated, grown or {})
         elif one.subject.name in links:
             for load_case, over in links[one.subject.name].load_cases.items():
@@ -197,12 +203,11 @@ def fatigue_outcomes(
 def _joint(
     moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
 ) -> Iterator[CheckOutcome]:
-    """Outcome of a joint under every load case, at the pose where its pin or its eyes bear most."""
+    """Outcome of a joint under every load case, at the pose where its pin, its eyes or its connection bear most."""
     joint = one.subject.name
     for load_case, solved in moved.forces.items():
         growth = _growth(moved, load_case, joint, evaluated, grown)
-        worst = _worst_bearing if isinstance(one.check, BearingCheck) else _worst_pin
-        pose, outcome = worst(moved, one, load_case, evaluated, growth)
+        pose, outcome = _WORST[type(one.check)](moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
         yield outcome.because(reason("under_force", force=force, when=when(moved, pose), why=outcome.reason))
@@ -273,6 +278,35 @@ def _worst_bearing(
     return pose, bearing_outcome(case, load_case, one, every, growth)
 
 
+def _worst_contact(
+    moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> tuple[int, CheckOutcome]:
+    """Return the pose where a pin presses most on the flank of its slot, and the outcome there."""
+    case, joint = moved.case, one.subject.name
+    wrenches = moved.forces[load_case].joints[joint].wrench
+    pose = first_largest(np.where(evaluated, line_load(case, joint, wrenches), -np.inf))
+    every = [wrenches[pose]]
+    if case.linkage.rise(joint) != 0.0:
+        every += [way.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
+    return pose, contact_outcome(load_case, one, contact_of(case, load_case, one, every, growth))
+
+
+def _worst_connection(
+    moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> tuple[int, CheckOutcome]:
+    """Return the pose where a connection bears least beyond what goes through it, and the outcome there."""
+    case, check = moved.case, one.check
+    assert isinstance(check, ConnectionCheck)
+    solved = moved.forces[load_case]
+    load = transmitted(case, check, solved.joints[check.joint].wrench, solved.driving[0])
+    pose = int(np.argmin(np.where(evaluated, least_factor(case, check, load), np.inf)))
+    every = [Transmitted(**{name: of[pose] for name, of in vars(load).items()})]
+    if case.linkage.rise(check.joint) != 0.0:
+        ways = forces_at(moved, load_case, pose).sharings
+        every += [transmitted(case, check, way.joints[check.joint].wrench, way.driving[0]) for way in ways]
+    return pose, connection_outcome(load_case, one, connection_factors(case, load_case, one, every, growth))
+
+
 def _worst_pin(
     moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
 ) -> tuple[int, CheckOutcome]:
@@ -296,6 +330,14 @@ def _worst_pin(
     pose = first_largest(np.array(bent))
     shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
     return pose, pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
+
+
+_WORST = {
+    PinCheck: _worst_pin,
+    BearingCheck: _worst_bearing,
+    LineContactCheck: _worst_contact,
+    ConnectionCheck: _worst_connection,
+}
 
 
 def _at(reaction: JointReaction, pose: int) -> JointReaction:

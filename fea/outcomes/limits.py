@@ -13,10 +13,12 @@ from alula.geometry.materials.printable import is_printed, is_solid_stock
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
     BearingCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FrequencyCheck,
     LimitLoadCheck,
+    LineContactCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -25,6 +27,11 @@ from alula.loads.records.check_spec import (
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
 Ends = tuple[float, float]
+_ON_LOADS = (
+    *(SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, LineContactCheck, ConnectionCheck),
+    *(LimitLoadCheck, PlasticCollapseCheck),
+)
+"""Checks whose least factor is one on loads or stress."""
 
 
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
@@ -166,9 +173,7 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
     for name, check in case.checks.items():
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
-        elif isinstance(
-            check, SafetyFactorCheck | PinCheck | BearingCheck | EyeCheck | LimitLoadCheck | PlasticCollapseCheck
-        ):
+        elif isinstance(check, _ON_LOADS):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:
             for card in (x for one in subjects_of(case, name, check) for x in cards_of(case, check, one)):

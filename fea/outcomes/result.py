@@ -15,8 +15,10 @@ from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.outcomes.connection_modes import ConnectionFactors
 from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.layer_stress import LayerStress
+from alula.fea.outcomes.line_contact import LineContact
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
@@ -292,6 +294,10 @@ class LoadCaseResult:
         All that acts on the links, friction included.
     eyes : tuple of EyeFactors
         Of every eye of the links whose eyes a check asks for.
+    contacts : tuple of LineContact
+        Of every pin in a slot that a check asks for.
+    connections : tuple of ConnectionFactors
+        Of every connection that a check asks for.
     collapses : mapping of str to LinkCollapse
         Link -> at what factor it collapses, where a check asks for it and it was found.
     """
@@ -308,6 +314,8 @@ class LoadCaseResult:
     work: DriveWork | None = None
     loads: tuple[Load, ...] = ()
     eyes: tuple[EyeFactors, ...] = ()
+    contacts: tuple[LineContact, ...] = ()
+    connections: tuple[ConnectionFactors, ...] = ()
     collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
 
     @property

@@ -9,6 +9,7 @@ from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
 from alula.geometry.parts.part import Body, FilePart
+from alula.loads.case.connection_rules import check_connection, check_line_contact
 from alula.loads.case.core import CoreCase
 from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
@@ -22,10 +23,12 @@ from alula.loads.records.check_spec import (
     BearingCheck,
     Check,
     ClearanceCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FrequencyCheck,
     LimitLoadCheck,
+    LineContactCheck,
     MassCheck,
     MotorCheck,
     PinCheck,
@@ -258,6 +261,10 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
     elif isinstance(check, EyeCheck):
         check_eye_check(case, name, check)
+    elif isinstance(check, ConnectionCheck):
+        check_connection(case, name, check)
+    elif isinstance(check, LineContactCheck):
+        check_line_contact(case, name, check)
     elif isinstance(check, PlasticCollapseCheck):
         for link in check.links:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")

@@ -327,8 +327,12 @@ class CoreCase(Revisable):
     @property
     def bearing_joints(self) -> tuple[str, ...]:
         """The joints whose pin bears on a part: those of ``pinned_joints``, and pins in slots of links with a part."""
-        slotted = [name for name, joint in self.joints.items() if joint.slotted in self.checked_links]
-        return (*self.pinned_joints, *slotted)
+        return (*self.pinned_joints, *self.slotted_joints)
+
+    @property
+    def slotted_joints(self) -> tuple[str, ...]:
+        """The joints whose pin slides in the slot of a link with a part."""
+        return tuple(name for name, joint in self.joints.items() if joint.slotted in self.checked_links)
 
     def part_of(self, link: str) -> PartKind:
         """Return the part of a link.

@@ -10,6 +10,7 @@ from alula.fea.solid.buckling_factor import MOST
 from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
+from alula.reports.check.connections import connection_parts, connection_record, contact_record
 from alula.reports.check.eyes import eye_parts, eye_record
 from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
@@ -60,6 +61,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from _ways_to_hold(result, case)
     yield from pin_parts(result.case, case)
     yield from eye_parts(case)
+    yield from connection_parts(case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
