@@ -1,4 +1,4 @@
-"""A lever on the shaft of a drive, with a plate bonded to its tip: torque and force at both follow by hand."""
+"""A lever on the shaft of a drive, with a plate bonded to its tip, and a slotted one: what bears follows by hand."""
 
 import tomllib
 
@@ -46,6 +46,54 @@ forces = [{ link = "plate", at = "B", force = ["0 N", "-20 N"] }]
 [load_cases.pull]
 forces = [{ link = "plate", at = "B", force = ["0 N", "-50 N"] }]
 """
+QUICK_RETURN = """
+schema_version = 1
+title = "Quick return"
+large_displacement = "off"
+[links.frame]
+ground = true
+points.A = ["0 mm", "0 mm"]
+points.O = ["0 mm", "-60 mm"]
+[links.crank]
+points.A = ["0 mm", "0 mm"]
+points.B = ["30 mm", "0 mm"]
+[links.lever]
+part = "bar"
+points.O = ["0 mm", "0 mm"]
+points.S = ["60 mm", "0 mm"]
+points.E = ["150 mm", "0 mm"]
+slots.S = { first = "28 mm", last = "92 mm" }
+[joints]
+A = { links = ["frame", "crank"], pin_diameter = "5 mm" }
+O = { links = ["frame", "lever"], pin_diameter = "5 mm" }
+B = { links = ["lever", "crank"], type = "pin-in-slot", points = ["S", "B"], pin_diameter = "5 mm" }
+[drive]
+link = "crank"
+joint = "A"
+[pose]
+coordinate = "crank"
+angle = "30 deg"
+near = { lever = "75 deg" }
+[motion]
+turn = true
+poses = 9
+[parts.bar]
+shape = "bar"
+material = "aluminium-6061-t6"
+width = "14 mm"
+thickness = "4 mm"
+eye_diameter = "14 mm"
+eye_thickness = "4 mm"
+fillet_radius = "1 mm"
+[load_cases.pushed]
+forces = [{ link = "lever", at = "E", force = ["-80 N", "0 N"] }]
+[load_cases.weakly]
+forces = [{ link = "lever", at = "E", force = ["-20 N", "0 N"] }]
+[checks.slot]
+type = "line-contact"
+minimum = 2.0
+"""
+"""A crank whose pin runs in the slot of a lever with a load at its tip; the crank has no part."""
 HORN = {"count": 4, "circle_diameter": "12 mm", "diameter": "1.6 mm", "material": "steel-wire", "length": "2 mm"}
 
 

@@ -26,11 +26,11 @@ from alula.fea.doubts.air_doubt import air_doubt, air_warnings
 from alula.fea.doubts.force_doubt import sharing_answers, sharing_doubt, stiffness_answers, stiffness_doubt
 from alula.fea.doubts.friction_doubt import friction_doubt, friction_warnings
 from alula.fea.doubts.load_growth import Growths, growths
-from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
-from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
+from alula.fea.doubts.other_case import Doubt, OtherCase, Plates, on_shape, widened
+from alula.fea.doubts.play_doubt import play_answers, play_at_joint, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from alula.fea.judging.bearing import bearing_outcome
-from alula.fea.judging.connections import connection_factors, connection_outcome, transmitted
+from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.line_contact import contact_of, contact_outcome
@@ -70,6 +70,7 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
+from alula.loads.case.connection_rules import turned_by_drive
 from alula.loads.records.check_spec import (
     BearingCheck,
     ConnectionCheck,
@@ -422,7 +423,18 @@ class _LoadCase:
             check, joint = one.check, one.subject.name
             assert isinstance(check, ConnectionCheck)
             through = [transmitted(self.case, check, way.joints[joint].wrench, way.driving[0]) for way in ways]
-            growth = self.uneven.joints.get(joint)
+
+            def demand(other: OtherCase, check: ConnectionCheck = check) -> float:
+                reactions = other.reactions
+                load = transmitted(other.case, check, reactions.joints[check.joint].wrench, reactions.driving[0])
+                return 1.0 / float(least_factor(other.case, check, load))
+
+            driven = turned_by_drive(self.case, joint)
+            growth = self.grown.joints.get(joint, Scatter()).times(
+                play_at_joint(self.forces.play, joint, driven=driven)
+            )
+            for doubt in self.doubts:
+                growth = growth.times(doubt.cause.scatter(doubt.stated, demand))
             found.append((one, connection_factors(self.case, self.load_case, one, through, growth)))
         return found
 

@@ -148,8 +148,7 @@ def least_factor(case: Case, check: ConnectionCheck, load: Transmitted) -> Real:
     -------
     ndarray, shape (n,)
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.min([np.broadcast_to(x, load.torque.shape) for x in _factors(case, check, load, LOW).values()], 0)
+    found = np.min([np.broadcast_to(x, load.torque.shape) for x in _factors(case, check, load, LOW).values()], axis=0)
     return np.where(np.isnan(found), -np.inf, found)
 
 
@@ -177,8 +176,7 @@ def connection_factors(
     check = one.check
     assert isinstance(check, ConnectionCheck)
     spread = load_scatter(case, load_case).times(growth or Scatter()).inverse
-    with np.errstate(divide="ignore", invalid="ignore"):
-        every = [[_factors(case, check, load, end) for end in (VALUE, LOW, HIGH)] for load in ways]
+    every = [[_factors(case, check, load, end) for end in (VALUE, LOW, HIGH)] for load in ways]
     sources, bands = _sources(case, check), {}
     for mode in every[0][VALUE]:
         values = [[float(end[mode]) for end in way] for way in every]

@@ -74,7 +74,9 @@ def contact_of(
     check, name = one.check, one.subject.name
     assert isinstance(check, LineContactCheck)
     record = case.joints[name]
-    assert record.slotted is not None and record.pin_diameter is not None
+    assert record.slotted is not None
+    assert record.pin_diameter is not None
+    radius = record.pin_diameter / 2.0
     cards = {"pin": case.pin_material(name), "flank": case.material_of(record.slotted)}
     loads = [float(line_load(case, name, wrench)) for wrench in wrenches]
     spread = load_scatter(case, load_case).times(growth or Scatter())
@@ -88,7 +90,7 @@ def contact_of(
             for card, scatter in zip(cards.values(), moduli, strict=True)
         ]
         pin, flank = ((e, card.poissons_ratio) for e, card in zip(young, cards.values(), strict=True))
-        return hertz_pressure(ends[end], record.pin_diameter / 2.0, pin, flank)
+        return hertz_pressure(ends[end], radius, pin, flank)
 
     value, low, high = map(pressure, range(3))
     sources = distinct(spread.told, shared, *(scatter.told for scatter in moduli))

@@ -1,6 +1,6 @@
 """From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -28,9 +28,10 @@ from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEn
 from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.linkage_history import when
-from alula.fea.motion.loosened import column_growth, joint_growth
+from alula.fea.motion.loosened import column_growth, connection_growth, joint_growth
 from alula.fea.outcomes.connection_modes import Transmitted
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
+from alula.geometry.base.model import CaseModel
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.records.check_spec import (
@@ -206,7 +207,8 @@ def _joint(
     """Outcome of a joint under every load case, at the pose where its pin, its eyes or its connection bear most."""
     joint = one.subject.name
     for load_case, solved in moved.forces.items():
-        growth = _growth(moved, load_case, joint, evaluated, grown)
+        growth = _growth(moved, load_case, joint, evaluated, grown, one.check)
+        assert one.check is not None
         pose, outcome = _WORST[type(one.check)](moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
@@ -214,10 +216,23 @@ def _joint(
 
 
 def _growth(
-    moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
+    moved: CaseMotion,
+    load_case: str,
+    joint: str,
+    evaluated: NDArray[np.bool_],
+    grown: Mapping[str, Growths],
+    check: CaseModel | None = None,
 ) -> Scatter:
-    """Return what may become of a joint's greatest force besides scattered loads."""
-    growth = joint_growth(moved, load_case, joint, evaluated)
+    """Return what may become of a joint's greatest force, or of what a connection bears, besides scattered loads."""
+
+    def demand(other: CaseMotion) -> NDArray[np.float64]:
+        assert isinstance(check, ConnectionCheck)
+        return 1.0 / least_factor(other.case, check, _through(other, load_case, check))
+
+    if isinstance(check, ConnectionCheck):
+        growth = connection_growth(moved, load_case, joint, evaluated, demand)
+    else:
+        growth = joint_growth(moved, load_case, joint, evaluated)
     if load_case in grown and joint in grown[load_case].joints:
         growth = growth.times(grown[load_case].joints[joint])
     return growth
@@ -297,8 +312,7 @@ def _worst_connection(
     """Return the pose where a connection bears least beyond what goes through it, and the outcome there."""
     case, check = moved.case, one.check
     assert isinstance(check, ConnectionCheck)
-    solved = moved.forces[load_case]
-    load = transmitted(case, check, solved.joints[check.joint].wrench, solved.driving[0])
+    load = _through(moved, load_case, check)
     pose = int(np.argmin(np.where(evaluated, least_factor(case, check, load), np.inf)))
     every = [Transmitted(**{name: of[pose] for name, of in vars(load).items()})]
     if case.linkage.rise(check.joint) != 0.0:
@@ -332,7 +346,14 @@ def _worst_pin(
     return pose, pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
 
 
-_WORST = {
+def _through(moved: CaseMotion, load_case: str, check: ConnectionCheck) -> Transmitted:
+    """Return what goes through a connection at all poses."""
+    solved = moved.forces[load_case]
+    return transmitted(moved.case, check, solved.joints[check.joint].wrench, solved.driving[0])
+
+
+Worst = Callable[[CaseMotion, Asked, str, NDArray[np.bool_], Scatter], tuple[int, CheckOutcome]]
+_WORST: dict[type[CaseModel], Worst] = {
     PinCheck: _worst_pin,
     BearingCheck: _worst_bearing,
     LineContactCheck: _worst_contact,

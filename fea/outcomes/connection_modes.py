@@ -25,6 +25,12 @@ ROUNDING = 1e-6
 """Share of the other loads below which a load that nothing holds is taken for rounding."""
 
 
+def _over(borne: float, stress: Any) -> Any:
+    """Return what is borne over a stress; infinity where there is none."""
+    some = stress > 0.0
+    return np.where(some, borne / np.where(some, stress, 1.0), np.inf)
+
+
 class ConnectionMode(StrEnum):
     """A way in which a connection gives way; its value says for people what it is."""
 
@@ -127,8 +133,8 @@ class Strength:
         float or array
         """
         if self.brittle:
-            return self.stress / (tension / 2.0 + np.hypot(tension / 2.0, shear))
-        return self.stress / np.sqrt(tension**2 + 3.0 * shear**2)
+            return _over(self.stress, tension / 2.0 + np.hypot(tension / 2.0, shear))
+        return _over(self.stress, np.sqrt(tension**2 + 3.0 * shear**2))
 
 
 def bond(way: Bond, shaft: float, strength: float, load: Transmitted) -> dict[ConnectionMode, Any]:
@@ -149,15 +155,15 @@ def bond(way: Bond, shaft: float, strength: float, load: Transmitted) -> dict[Co
     """
     if way.length is not None:
         area = math.pi * shaft * way.length
-        return {ConnectionMode.BOND: strength / np.hypot(load.torque / (area * shaft / 2.0), load.thrust / area)}
+        return {ConnectionMode.BOND: _over(strength, np.hypot(2.0 * load.torque / shaft, load.thrust) / area)}
     assert way.outer_diameter is not None
     outer, inner = way.outer_diameter, way.inner_diameter
     area, polar = math.pi / 4.0 * (outer**2 - inner**2), math.pi / 32.0 * (outer**4 - inner**4)
     used = (load.force / area + load.torque * outer / 2.0 / polar) / strength
     pulled = load.thrust / area + load.couple * outer / polar
     if way.tensile_strength is None:
-        return {ConnectionMode.BOND: 1.0 / used, **_not_held(pulled / strength, used)}
-    return {ConnectionMode.BOND: 1.0 / (used + pulled / way.tensile_strength)}
+        return {ConnectionMode.BOND: _over(1.0, used), **_not_held(pulled / strength, used)}
+    return {ConnectionMode.BOND: _over(1.0, used + pulled / way.tensile_strength)}
 
 
 def _not_held(share: Any, of: Any) -> dict[ConnectionMode, Any]:
@@ -186,8 +192,8 @@ def press(way: Press, shaft: float, pressure: float, friction: float, load: Tran
     area = math.pi * shaft * way.length
     sideways = 2.0 * load.force / area + 12.0 * load.couple / (area * way.length)
     return {
-        ConnectionMode.SLIP: friction * pressure / np.hypot(load.torque / (area * shaft / 2.0), load.thrust / area),
-        ConnectionMode.GAP: pressure / sideways,
+        ConnectionMode.SLIP: _over(friction * pressure, np.hypot(2.0 * load.torque / shaft, load.thrust) / area),
+        ConnectionMode.GAP: _over(pressure, sideways),
     }
 
 
@@ -210,7 +216,7 @@ def flat(way: Flat, shaft: float, strength: float, load: Transmitted) -> dict[Co
     width = 2.0 * math.sqrt((shaft - way.across) * way.across)
     used = (12.0 * load.torque / width + load.force) / (way.length * width) / strength
     along = load.thrust / (way.length * width) / strength
-    return {ConnectionMode.FLAT: 1.0 / used, **_not_held(along, used)}
+    return {ConnectionMode.FLAT: _over(1.0, used), **_not_held(along, used)}
 
 
 def cross_pin(
@@ -244,8 +250,8 @@ def cross_pin(
     on_hub = np.hypot(4.0 * load.torque / (hub**2 - shaft**2), load.thrust / (hub - shaft)) / size
     return {
         ConnectionMode.CROSS_PIN: pin.over(sheared),
-        ConnectionMode.IN_SHAFT: in_shaft / on_shaft,
-        ConnectionMode.HUB: in_hub / on_hub,
+        ConnectionMode.IN_SHAFT: _over(in_shaft, on_shaft),
+        ConnectionMode.HUB: _over(in_hub, on_hub),
     }
 
 
@@ -269,7 +275,7 @@ def screws(way: Screws, screw: Strength, in_hole: float, load: Transmitted) -> d
     across = load.force / way.count + load.torque / (way.count * radius)
     along = load.thrust / way.count
     tilting = load.couple / (way.count * radius)
-    found = {ConnectionMode.HOLES: in_hole / (across / (way.diameter * way.length))}
+    found = {ConnectionMode.HOLES: _over(in_hole, across / (way.diameter * way.length))}
     if way.count == 2:  # they hold no couple about the line through both
         found |= _not_held(tilting, across)
     else:

@@ -81,14 +81,14 @@ def check_connection(case: CoreCase, name: str, check: ConnectionCheck) -> None:
     joint = case.linkage.joints[check.joint]
     if not joint.fixed and not turned_by_drive(case, check.joint):
         raise CaseError(
-            f"{entry}.joint: no torque goes through '{check.joint}', which is neither the joint of a drive with a torque "
-            "nor bonded nor clamped; name such a joint, or leave the check out"
+            f"{entry}.joint: no torque goes through '{check.joint}', which is neither the joint of a drive with a "
+            "torque nor bonded nor clamped; name such a joint, or leave the check out"
         )
     if check.link is not None:
         require(f"{entry}.link", check.link, joint.links, f"is no link of joint '{check.joint}'")
-    for way, stated in (("cross_pin", check.cross_pin), ("screws", check.screws)):
+    for kind, stated in (("cross_pin", check.cross_pin), ("screws", check.screws)):
         if stated is not None:
-            require(f"{entry}.{way}.material", stated.material, case.all_materials, "is no material")
+            require(f"{entry}.{kind}.material", stated.material, case.all_materials, "is no material")
     link, way = connected_link(case, check), check.way
     if case.links[link].part is None and (isinstance(way, Flat | CrossPin | Screws) or check.press_by_excess):
         raise CaseError(
@@ -128,15 +128,16 @@ def _check_shaft(case: CoreCase, entry: str, check: ConnectionCheck, link: str) 
 def _check_hub(case: CoreCase, entry: str, press: Press, joint: str, link: str) -> None:
     """Check that the hub stays elastic under the largest interference, which the formula of its pressure needs."""
     shaft, hub, material = case.joints[joint].pin_diameter, press.hub_diameter, case.material_of(link)
-    assert shaft is not None and hub is not None
+    assert shaft is not None
+    assert hub is not None
     _, pressure = press.pressures(shaft, material, case.pin_material(joint))
     share = (shaft / hub) ** 2
     stress = pressure * ((1.0 + share) if material.brittle else 2.0) / (1.0 - share)
     if stress > material.allowable:
         raise CaseError(
             f"{entry}.press.interference: it makes a pressure of {pressure:.4g} MPa and {stress:.4g} MPa in the hub, "
-            f"link '{link}', above its strength of {material.allowable:g} MPa, so that its pressure is not known; state "
-            "less interference, a larger hub_diameter, or a measured pressure"
+            f"link '{link}', above its strength of {material.allowable:g} MPa, so that its pressure is not known; "
+            "state less interference, a larger hub_diameter, or a measured pressure"
         )
 
 

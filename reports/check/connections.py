@@ -22,7 +22,15 @@ def connection_parts(case: LoadCaseResult) -> Iterator[Part]:
     """
     under = (("load case", case.name),)
     rows = [
-        (one.check, one.joint, Number(one.line_load), Number(one.pressure), Number(one.half_width), what, Number(factor))
+        (
+            one.check,
+            one.joint,
+            Number(one.line_load),
+            Number(one.pressure),
+            Number(one.half_width),
+            what,
+            Number(factor),
+        )
         for one in case.contacts
         for what, factor in one.factors.items()
     ]
@@ -38,15 +46,18 @@ def connection_parts(case: LoadCaseResult) -> Iterator[Part]:
             ),
             rows,
             key="contacts",
-            caption="Pins in slots, along their line of contact: force over length, largest pressure by Hertz, half the "
-            "width of contact, and the safety factor against yield of pin and flank, or on a stated pressure",
+            caption="Pins in slots, along their line of contact: force over length, largest pressure by Hertz, half "
+            "the width of contact, and the safety factor against yield of pin and flank, or on a stated pressure",
             under=under,
         )
     held = [
-        (one.check, one.joint, one.link, Number(float(one.load.torque)), Number(float(one.load.force)), str(mode))
-        + (Number(factor),)
+        (
+            *(one.check, one.joint, one.link),
+            *(Number(float(size)) for size in (one.load.torque, one.load.force)),
+            *(str(mode), Number(factor)),
+        )
         for one in case.connections
-        for mode, factor in sorted(one.factors.items(), key=lambda of: of[1].low)
+        for mode, factor in sorted(one.factors.items(), key=lambda of: (not of[1].unknowable, of[1].low))
     ]
     if held:
         yield Table.of(

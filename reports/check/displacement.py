@@ -183,6 +183,8 @@ def _data(case: LoadCaseResult) -> dict[str, Any]:
         "pins": pin_record(case),
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
         **({"eyes": eye_record(case)} if case.eyes else {}),
+        **({"contacts": contact_record(case)} if case.contacts else {}),
+        **({"connections": connection_record(case)} if case.connections else {}),
     }
 
 

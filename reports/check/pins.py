@@ -24,9 +24,7 @@ _CLAMPS = (
     "The stress that the grip of clamps at {joints} alone makes is not checked{slips}. Displacements take what is held "
     "for rigid up to the mouth of the clamp."
 )
-_LINES = (
-    'Pins in slots at {joints} touch a flank along a line; a check of type "line-contact" judges its pressure.'
-)
+_LINES = 'Pins in slots at {joints} touch a flank along a line; a check of type "line-contact" judges its pressure.'
 
 
 def pin_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
