@@ -21,7 +21,18 @@ LAYERS = {
     "fea": (
         *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
         *("standing", "nonlinear", "buckling"),
-        *("refine", "plastic", "superposition", "vibration", "outcomes", "links", "doubts", "judging", "whole"),
+        *(
+            "refine",
+            "plastic",
+            "superposition",
+            "vibration",
+            "joints",
+            "outcomes",
+            "links",
+            "doubts",
+            "judging",
+            "whole",
+        ),
         *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
     "reports": (

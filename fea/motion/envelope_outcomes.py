@@ -15,6 +15,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
+from alula.fea.joints.connection_modes import Transmitted
 from alula.fea.judging.bearing import bearing_outcome, pressing
 from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, with_sharing, worst_pose
@@ -29,7 +30,6 @@ from alula.fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.linkage_history import when
 from alula.fea.motion.loosened import column_growth, connection_growth, joint_growth
-from alula.fea.outcomes.connection_modes import Transmitted
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.ties import first_largest

@@ -14,11 +14,11 @@ from alula.fea.common.band import Band
 from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.joints.connection_modes import ConnectionFactors
+from alula.fea.joints.line_contact import LineContact
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
-from alula.fea.outcomes.connection_modes import ConnectionFactors
 from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.layer_stress import LayerStress
-from alula.fea.outcomes.line_contact import LineContact
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats

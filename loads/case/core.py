@@ -23,7 +23,6 @@ from alula.loads.acting.springs import Spring, Tendon
 from alula.loads.acting.stop import Stop
 from alula.loads.case.eyes import with_eye
 from alula.loads.case.heights import heights
-from alula.loads.case.revisable import Revisable
 from alula.loads.records.aero import AirForces, air_forces
 from alula.loads.records.carried import Carried
 from alula.loads.records.check_spec import (
@@ -41,6 +40,7 @@ from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseS
 from alula.loads.records.tolerances import TolerancesTable
 from alula.loads.statics.statics import Drive
 from alula.loads.text.places import check_point
+from alula.loads.text.revisable import Revisable
 
 
 class CoreCase(Revisable):

@@ -10,9 +10,8 @@ from alula.fea.solid.buckling_factor import MOST
 from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
-from alula.reports.check.connections import connection_parts, connection_record, contact_record
 from alula.reports.check.eyes import eye_parts, eye_record
-from alula.reports.check.pins import pin_parts, pin_record
+from alula.reports.check.pins import connection_parts, connection_record, contact_record, pin_parts, pin_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.markup import bold
 from alula.reports.sections.play import play_parts, play_record

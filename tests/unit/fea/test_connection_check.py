@@ -4,6 +4,7 @@ import math
 import re
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,15 +16,17 @@ from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
+from alula.fea.doubts.play_doubt import play_at_joint
+from alula.fea.joints.connection_modes import ConnectionMode
 from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
-from alula.fea.outcomes.connection_modes import ConnectionMode
 from alula.fea.outcomes.unchecked import caveats
 from alula.fea.sizing.changes import changes
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import ConnectionCheck
 from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.play import Span
 from alula.reports.check.pins import pins_left_out
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import not_checked
@@ -206,6 +209,41 @@ def test_where_it_is_not_made_for_a_load_no_pose_counts_before_that():
     wrenches = np.array([[0.0, 40.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 5.0, 0.0, 0.0, 0.0]])
     found = least_factor(case, one.check, transmitted(case, one.check, wrenches, np.array([900.0, 1.0])))
     assert found[1] == -math.inf < found[0]
+
+
+def rubbed(tables):
+    """Friction at the drive's joint changes its torque, and not its force."""
+    tables["joints"]["O"] |= {"friction": 0.3, "friction_range": [0.2, 0.5]}
+    tables["motion"]["speed"] = "1 rpm"
+    tables["motion"]["inertia"] = False
+
+
+def test_friction_changes_the_torque_where_it_leaves_the_force():
+    case = connected(rubbed, press=GRIP | {"pressure": ["40 MPa", "40 MPa"], "friction": [0.1, 0.1]})
+    name = next(name for name in check_case(case, fidelity="beam").load_cases if name.startswith("pull"))
+    found, _ = only(case, name)
+    sign = math.copysign(1.0, float(found.load.torque) - 3500.0)
+    ends = [3500.0 + sign * friction * 150.0 for friction in (0.3, 0.5, 0.2)]
+    assert found.load.torque == pytest.approx(ends[0], rel=2e-3)  # friction acts on a circle a little smaller
+    slip, bears = found.factors[ConnectionMode.SLIP], 0.1 * 40.0 * math.pi * 6.0 * 4.0 * 3.0
+    assert (slip.low, slip.high) == pytest.approx((bears / max(ends), bears / min(ends)), rel=2e-3)
+    assert slip.low < 0.997 * slip.value or slip.high > 1.003 * slip.value
+    assert SourceKind.FRICTION in {source.kind for source in slip.sources}
+    moved = solve_case_motion(case)
+    outcome = next(one for one in envelope_outcomes(moved, {}, np.ones(4, dtype=bool)) if "pull" in one.load_case)
+    assert SourceKind.FRICTION in {source.kind for source in outcome.value.sources}
+    assert outcome.value.high / outcome.value.low == pytest.approx(3575.0 / 3530.0, rel=1e-3)
+
+
+def test_play_counts_by_the_torque_where_that_changes_more():
+    force, wide = Span(value=50.0, low=49.0, high=51.0), Span(value=-3500.0, low=-4200.0, high=-2800.0)
+    play = SimpleNamespace(clearances={"O": 0.2}, forces={"O": force}, effort=wide)
+    at_drive, elsewhere = (play_at_joint(play, "O", driven=driven) for driven in (True, False))
+    assert (at_drive.low, at_drive.high) == pytest.approx((0.8, 1.2))
+    assert (elsewhere.low, elsewhere.high) == pytest.approx((0.98, 1.02))
+    turned = SimpleNamespace(clearances={"O": 0.2}, forces={"O": force}, effort=Span(value=7.0, low=-3.0, high=14.0))
+    assert play_at_joint(turned, "O", driven=True).low == 0.0
+    assert play_at_joint(None, "O", driven=True) == Scatter()
 
 
 def test_page_and_file_have_every_mode():
