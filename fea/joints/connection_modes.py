@@ -241,8 +241,7 @@ def cross_pin(
 
     References
     ----------
-    INGGO, Maschinenelemente, Querstift unter Drehmoment (TEDATA, 2023), in words; written out in
-    ``docs/theory/connections.md``.
+    INGGO, cross pin under torque (TEDATA, 2023), in words; written out in ``docs/theory/connections.md``.
     """
     size, hub = way.diameter, way.hub_diameter
     sheared = np.hypot(load.torque / shaft, load.thrust / 2.0) / (math.pi / 4.0 * size**2)

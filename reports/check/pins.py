@@ -122,12 +122,10 @@ def connection_parts(case: LoadCaseResult) -> Iterator[Part]:
             under=under,
         )
     held = [
-        (
-            *(one.check, one.joint, one.link),
-            *(Number(float(size)) for size in (one.load.torque, one.load.force)),
-            *(str(mode), Number(factor)),
-        )
+        (*names, Number(torque), Number(force), str(mode), Number(factor))
         for one in case.connections
+        for names in [(one.check, one.joint, one.link)]
+        for torque, force in [(float(one.load.torque), float(one.load.force))]
         for mode, factor in sorted(one.factors.items(), key=lambda of: (not of[1].unknowable, of[1].low))
     ]
     if held:

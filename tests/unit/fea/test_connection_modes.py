@@ -61,6 +61,15 @@ def test_pressure_of_an_interference_by_elements_along_the_radius(bore):
     assert told == pytest.approx(found, rel=2e-3)
 
 
+def test_a_press_by_a_worked_example():
+    """Of aionlinecalculator.com: 50 mm in 80 mm of steel, too large by 0.04 mm, 40 mm long: some 51 MPa and 965 N m."""
+    pressure = lame_pressure(0.04 / 50.0, (0.0, 50.0 / 80.0), (210e3, 210e3), (0.3, 0.3))
+    assert pressure == pytest.approx(51.2, abs=0.05)
+    grip = of(Press, length="40 mm", friction=[0.12, 0.12], pressure=["51 MPa", "52 MPa"])
+    slip = press(grip, 50.0, pressure, 0.12, through(965e3))[ConnectionMode.SLIP]
+    assert slip == pytest.approx(1.0, rel=2e-3)
+
+
 def test_what_grips_a_shaft_bears_its_friction_over_the_surface():
     around, along = middle(0.0, 2.0 * math.pi), middle(-2.5, 2.5)
     grip = of(Press, length="5 mm", friction=[0.1, 0.2], pressure=["20 MPa", "30 MPa"])
