@@ -183,7 +183,10 @@ def test_couples_are_about_the_middle_of_the_link_and_of_pairs_on_their_plates()
     glued = connected(layers, at="A", bond=face)
     [asks] = asked(glued, ConnectionCheck)
     rise = glued.linkage.rise("A")
-    assert transmitted(glued, asks.check, wrench, 0.0).couple == pytest.approx(max(300.0, abs(300.0 - rise * 40.0)))
+    for couple in (300.0, -300.0):
+        wrench[3] = couple
+        most = max(300.0, abs(couple - rise * 40.0))
+        assert transmitted(glued, asks.check, wrench, 0.0).couple == pytest.approx(most)
     peeled = connection_factors(glued, "pull", asks, [transmitted(glued, asks.check, wrench, 0.0)])
     outcome = connection_outcome("pull", asks, peeled)
     assert outcome.verdict is Verdict.UNDECIDED
