@@ -28,6 +28,7 @@ from alula.loads.records.check_spec import ConnectionCheck
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.play import Span
 from alula.reports.check.pins import pins_left_out
+from alula.reports.renderers.record import field_units
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import not_checked
 
@@ -252,6 +253,7 @@ def test_play_counts_by_the_torque_where_that_changes_more():
 def test_page_and_file_have_every_mode():
     record = result_record(check_case(connected(), fidelity="beam"))["load_cases"]["pull"]["connections"]
     [found] = record
+    assert {f"connections.{name}" for name in ("torque", "force", "thrust", "couple")} <= field_units()["fields"].keys()
     assert (found["joint"], found["link"], found["torque"]) == ("O", "lever", pytest.approx(3500.0))
     assert {one["mode"] for one in found["modes"]} == {str(ConnectionMode.HOLES), str(ConnectionMode.SCREWS)}
 
