@@ -16,14 +16,17 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
+from alula.loads.case.connection_rules import cards_of_connection
 from alula.loads.records.check_spec import (
     BearingCheck,
     ClearanceCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
+    LineContactCheck,
     MassCheck,
     NotchCheck,
     PinCheck,
@@ -43,6 +46,8 @@ _QUANTITIES = {
     BearingCheck: Quantity.SAFETY_FACTOR,
     EyeCheck: Quantity.EYES,
     WallCheck: Quantity.WALLS,
+    LineContactCheck: Quantity.LINE_CONTACT,
+    ConnectionCheck: Quantity.CONNECTION,
     LimitLoadCheck: Quantity.LIMIT_LOAD,
     PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
     NotchCheck: Quantity.NOTCHES,
@@ -227,13 +232,17 @@ def cards_of(case: Case, check: CaseModel | None, subject: Subject) -> tuple[str
     Returns
     -------
     tuple of str
-        That of the link, or of the pin; for bearing those of the eyes.
+        That of the link, or of the pin; for bearing those of the eyes, for line contact those of pin and slot.
     """
     if subject.kind == "link":
         return (case.part_of(subject.name).material,)
+    if isinstance(check, ConnectionCheck):
+        return cards_of_connection(case, check)
     joint = case.joints[subject.name]
     if isinstance(check, PinCheck):
         return (joint.pin_material,)
+    if isinstance(check, LineContactCheck) and joint.slotted is not None:
+        return () if check.pressure else (joint.pin_material, case.part_of(joint.slotted).material)
     return tuple(case.part_of(link).material for link in joint.links if link in case.checked_links)
 
 
@@ -301,6 +310,10 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
             return tuple(map(Subject.pin, check.joints or case.pinned_joints))
         case BearingCheck():
             return tuple(map(Subject.pin, check.joints or case.bearing_joints))
+        case LineContactCheck():
+            return tuple(map(Subject.pin, check.joints or case.slotted_joints))
+        case ConnectionCheck():
+            return (Subject.joint(check.joint),)
     return (LINKAGE,)
 
 

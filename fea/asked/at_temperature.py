@@ -19,6 +19,8 @@ STRENGTH = (
     Quantity.LAYERS,
     Quantity.EYES,
     Quantity.WALLS,
+    Quantity.LINE_CONTACT,
+    Quantity.CONNECTION,
     Quantity.SUSTAINED_STRESS,
     Quantity.PLASTIC_COLLAPSE,
     Quantity.NOTCHES,

@@ -26,13 +26,17 @@ from alula.fea.doubts.air_doubt import air_doubt, air_warnings
 from alula.fea.doubts.force_doubt import sharing_answers, sharing_doubt, stiffness_answers, stiffness_doubt
 from alula.fea.doubts.friction_doubt import friction_doubt, friction_warnings
 from alula.fea.doubts.load_growth import Growths, growths
-from alula.fea.doubts.other_case import Doubt, Plates, on_shape, widened
-from alula.fea.doubts.play_doubt import play_answers, play_doubt, play_warnings, shaken
+from alula.fea.doubts.other_case import Doubt, OtherCase, Plates, on_shape, widened
+from alula.fea.doubts.play_doubt import play_answers, play_at_joint, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
+from alula.fea.joints.connection_modes import ConnectionFactors
+from alula.fea.joints.line_contact import LineContact
 from alula.fea.judging.bearing import bearing_outcome
+from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
 from alula.fea.judging.fatigue import pose_outcomes, pulsating
 from alula.fea.judging.judge import outcomes
+from alula.fea.judging.line_contact import contact_of, contact_outcome
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
@@ -71,11 +75,14 @@ from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
+from alula.loads.case.connection_rules import turned_by_drive
 from alula.loads.records.check_spec import (
     BearingCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FatigueCheck,
+    LineContactCheck,
     PinCheck,
     PlasticCollapseCheck,
     WallCheck,
@@ -360,7 +367,8 @@ class _LoadCase:
             *buckling_outcomes(case, load_case, columns, moved),
             *solid_buckling_outcomes(case, load_case, solids),
         )
-        eyes, walls = self._eyes(reactions), self._walls()
+        eyes, contacts, connections = self._eyes(reactions), self._contacts(reactions), self._connections(reactions)
+        walls = self._walls()
 
         def doubts(link: str) -> tuple[Growths, Shares]:
             return self._doubts_on(link, solved.get(link))
@@ -384,6 +392,8 @@ class _LoadCase:
             *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(eye_outcome(load_case, one, found) for one, found in eyes),
             *(wall_outcome(load_case, one, found) for one, found in walls),
+            *(contact_outcome(load_case, one, found) for one, found in contacts),
+            *(connection_outcome(load_case, one, found) for one, found in connections),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *collapse_outcomes(case, load_case, collapses, self.acts_on, doubts),
@@ -414,6 +424,8 @@ class _LoadCase:
             notches=tuple(notch for _, notch in notches if notch is not None),
             fatigue={x: found for x, found in lasting.items() if isinstance(found, LinkFatigue)},
             walls=tuple(mode for _, found in walls for mode in found),
+            contacts=tuple(found for _, found in contacts),
+            connections=tuple(found for _, found in connections),
             collapses={x: found for x, found in collapses.items() if isinstance(found, LinkCollapse)},
         )
 
@@ -434,6 +446,37 @@ class _LoadCase:
             beams = [hand.check for _, hand in self.plates[one.subject.name]]
             growth = grown.get(one.subject.name, Scatter())
             found.append((one, tuple(wall_factors(self.case, self.load_case, one, beams, growth))))
+        return found
+
+    def _contacts(self, reactions: Reactions) -> list[tuple[Asked, LineContact]]:
+        """Return the checks that ask for pins in slots, each with its contact."""
+        found, ways = [], (reactions, *self.forces.sharings)
+        for one in asked(self.case, LineContactCheck):
+            joint = one.subject.name
+            wrenches = [way.joints[joint].wrench for way in ways]
+            found.append((one, contact_of(self.case, self.load_case, one, wrenches, self.uneven.joints.get(joint))))
+        return found
+
+    def _connections(self, reactions: Reactions) -> list[tuple[Asked, ConnectionFactors]]:
+        """Return the checks that ask for connections, each with its factors."""
+        found, ways = [], (reactions, *self.forces.sharings)
+        for one in asked(self.case, ConnectionCheck):
+            check, joint = one.check, one.subject.name
+            assert isinstance(check, ConnectionCheck)
+            through = [transmitted(self.case, check, way.joints[joint].wrench, way.driving[0]) for way in ways]
+
+            def demand(other: OtherCase, check: ConnectionCheck = check) -> float:
+                reactions = other.reactions
+                load = transmitted(other.case, check, reactions.joints[check.joint].wrench, reactions.driving[0])
+                return 1.0 / float(least_factor(other.case, check, load))
+
+            driven = turned_by_drive(self.case, joint)
+            growth = self.grown.joints.get(joint, Scatter()).times(
+                play_at_joint(self.forces.play, joint, driven=driven)
+            )
+            for doubt in self.doubts:
+                growth = growth.times(doubt.cause.scatter(doubt.stated, demand))
+            found.append((one, connection_factors(self.case, self.load_case, one, through, growth)))
         return found
 
 

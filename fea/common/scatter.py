@@ -65,6 +65,21 @@ class Scatter:
         sources = distinct(self.told, other.told)
         return Scatter(low=self.low * other.low, high=self.high * other.high, sources=sources)
 
+    def either(self, other: "Scatter") -> "Scatter":
+        """Return the scatter of what goes with this number, with another one, or with both.
+
+        Parameters
+        ----------
+        other : Scatter
+            Of the other number.
+
+        Returns
+        -------
+        Scatter
+        """
+        sources = distinct(self.told, other.told)
+        return Scatter(low=min(self.low, other.low), high=max(self.high, other.high), sources=sources)
+
     @property
     def told(self) -> tuple[Source, ...]:
         """The sources; a single one has the whole width."""

@@ -41,6 +41,7 @@ class SourceKind(StrEnum):
     EYE_FORMULAS = "limit analysis of eyes over the formulas"
     NOTCH_METHOD = "point or line method"
     NOTCH = "notch sensitivity"
+    GRIP = "pressure and friction of a press"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -112,6 +112,10 @@ class Quantity(StrEnum):
     """Of a link: what the weakest mode of its weakest eye bears over the force of the pin."""
     WALLS = "buckling factor of thin walls", "", Sense.AT_LEAST
     """Of a link: by what its loads may grow until its wall buckles, it flattens, or it turns aside as a deep strip."""
+    LINE_CONTACT = "safety factor of line contact", "", Sense.AT_LEAST
+    """Of a pin on the flank of its slot: against yield below the line, or on its largest pressure."""
+    CONNECTION = "safety factor of the connection", "", Sense.AT_LEAST
+    """Of what fixes a link at a joint: what its weakest mode bears over what goes through it."""
     SUSTAINED_STRESS = "sustained stress", "MPa", Sense.AT_MOST
     DEFLECTION = "deflection from its pins", "mm", Sense.AT_MOST
     """Of a link by itself: displacement from the line through its own pins, as if these stayed."""
@@ -198,12 +202,12 @@ class Subject:
 
     Attributes
     ----------
-    kind : {"link", "pin", "point", "the linkage"}
+    kind : {"link", "pin", "joint", "point", "the linkage"}
     name : str
-        Of the link; of the joint, for its pin; ``"H of CH"`` for a point; none for the linkage.
+        Of the link; of the joint, also for its pin; ``"H of CH"`` for a point; none for the linkage.
     """
 
-    kind: Literal["link", "pin", "point", "the linkage"]
+    kind: Literal["link", "pin", "joint", "point", "the linkage"]
     name: str = ""
 
     @classmethod
@@ -233,6 +237,20 @@ class Subject:
         Subject
         """
         return cls("pin", joint)
+
+    @classmethod
+    def joint(cls, joint: str) -> "Subject":
+        """Return a joint, for what fixes its links to each other.
+
+        Parameters
+        ----------
+        joint : str
+
+        Returns
+        -------
+        Subject
+        """
+        return cls("joint", joint)
 
     @classmethod
     def point(cls, name: str, link: str) -> "Subject":

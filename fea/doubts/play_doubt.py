@@ -98,6 +98,32 @@ def play_doubt(
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints), columns=_open(columns))
 
 
+def play_at_joint(play: Play | None, joint: str, *, driven: bool) -> Scatter:
+    """Return what play makes of all that goes through a joint: of its force and, where that drives, of the torque.
+
+    Parameters
+    ----------
+    play : Play or None
+    joint : str
+    driven : bool
+        Whether the drive's torque goes through it.
+
+    Returns
+    -------
+    Scatter
+    """
+    if play is None:
+        return Scatter()
+    source = play_source(play.clearances)
+    force = _scatter(play.forces[joint], source)
+    if not driven:
+        return force
+    effort = play.effort
+    low, high = sorted((abs(effort.low), abs(effort.high)))
+    least = 0.0 if effort.low <= 0.0 <= effort.high else low
+    return force.either(_scatter(Span(value=abs(effort.value), low=least, high=high), source))
+
+
 def play_answers(
     case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]
 ) -> LinkAnswers | None:

@@ -16,12 +16,15 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
+from alula.fea.joints.connection_modes import Transmitted
 from alula.fea.judging.bearing import bearing_outcome, pressing
+from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, with_sharing, worst_pose
 from alula.fea.judging.fatigue import asked_fatigue, fatigue_outcomes, link_fatigue_outcomes, unasked
 from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
+from alula.fea.judging.line_contact import contact_of, contact_outcome, line_load
 from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.judging.walls import wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand
@@ -29,15 +32,18 @@ from alula.fea.motion.buckling_history import axial_compression, factors_over_mo
 from alula.fea.motion.envelope_result import LayerEnvelope, LinkEnvelope
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.linkage_history import when
-from alula.fea.motion.loosened import column_growth, joint_growth
+from alula.fea.motion.loosened import column_growth, connection_growth, joint_growth
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
+from alula.geometry.base.model import CaseModel
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Material
 from alula.loads.records.check_spec import (
     BearingCheck,
+    ConnectionCheck,
     EyeCheck,
     FatigueCheck,
     LimitLoadCheck,
+    LineContactCheck,
     PinCheck,
     SafetyFactorCheck,
     WallCheck,
@@ -47,7 +53,8 @@ from alula.loads.statics.joint_reaction import JointReaction
 
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, WallCheck, FatigueCheck, LimitLoadCheck)
+OF_JOINTS = (PinCheck, BearingCheck, LineContactCheck, ConnectionCheck)
+FOLLOWED = (SafetyFactorCheck, *OF_JOINTS, EyeCheck, WallCheck, FatigueCheck, LimitLoadCheck)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
@@ -82,8 +89,8 @@ def envelope_outcomes(
         Where neither check nor material states a limit, or a pin has no diameter.
     """
     case, found = moved.case, list[CheckOutcome]()
-    for one in asked(case, SafetyFactorCheck, PinCheck, BearingCheck):
-        if one.subject.kind == "pin":
+    for one in asked(case, SafetyFactorCheck, *OF_JOINTS):
+        if isinstance(one.check, OF_JOINTS):
             found += _joint(moved, one, evaluated, grown or {})
         elif one.subject.name in links:
             for load_case, over in links[one.subject.name].load_cases.items():
@@ -167,22 +174,35 @@ def layer_fatigue_outcomes(
 def _joint(
     moved: CaseMotion, one: Asked, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
 ) -> Iterator[CheckOutcome]:
-    """Outcome of a joint under every load case, at the pose where its pin or its eyes bear most."""
+    """Outcome of a joint under every load case, at the pose where its pin, its eyes or its connection bear most."""
     joint = one.subject.name
     for load_case, solved in moved.forces.items():
-        growth = _growth(moved, load_case, joint, evaluated, grown)
-        worst = _worst_bearing if isinstance(one.check, BearingCheck) else _worst_pin
-        pose, outcome = worst(moved, one, load_case, evaluated, growth)
+        growth = _growth(moved, load_case, joint, evaluated, grown, one.check)
+        assert one.check is not None
+        pose, outcome = _WORST[type(one.check)](moved, one, load_case, evaluated, growth)
         force = float(np.linalg.norm(solved.forces[joint][pose]))
         outcome = _complete(outcome, evaluated)
         yield outcome.because(reason("under_force", force=force, when=when(moved, pose), why=outcome.reason))
 
 
 def _growth(
-    moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_], grown: Mapping[str, Growths]
+    moved: CaseMotion,
+    load_case: str,
+    joint: str,
+    evaluated: NDArray[np.bool_],
+    grown: Mapping[str, Growths],
+    check: CaseModel | None = None,
 ) -> Scatter:
-    """Return what may become of a joint's greatest force besides scattered loads."""
-    growth = joint_growth(moved, load_case, joint, evaluated)
+    """Return what may become of a joint's greatest force, or of what a connection bears, besides scattered loads."""
+
+    def demand(other: CaseMotion) -> NDArray[np.float64]:
+        assert isinstance(check, ConnectionCheck)
+        return 1.0 / least_factor(other.case, check, _through(other, load_case, check))
+
+    if isinstance(check, ConnectionCheck):
+        growth = connection_growth(moved, load_case, joint, evaluated, demand)
+    else:
+        growth = joint_growth(moved, load_case, joint, evaluated)
     if load_case in grown and joint in grown[load_case].joints:
         growth = growth.times(grown[load_case].joints[joint])
     return growth
@@ -282,6 +302,34 @@ def _worst_bearing(
     return pose, bearing_outcome(case, load_case, one, every, growth)
 
 
+def _worst_contact(
+    moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> tuple[int, CheckOutcome]:
+    """Return the pose where a pin presses most on the flank of its slot, and the outcome there."""
+    case, joint = moved.case, one.subject.name
+    wrenches = moved.forces[load_case].joints[joint].wrench
+    pose = first_largest(np.where(evaluated, line_load(case, joint, wrenches), -np.inf))
+    every = [wrenches[pose]]
+    if case.linkage.rise(joint) != 0.0:
+        every += [way.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
+    return pose, contact_outcome(load_case, one, contact_of(case, load_case, one, every, growth))
+
+
+def _worst_connection(
+    moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> tuple[int, CheckOutcome]:
+    """Return the pose where a connection bears least beyond what goes through it, and the outcome there."""
+    case, check = moved.case, one.check
+    assert isinstance(check, ConnectionCheck)
+    load = _through(moved, load_case, check)
+    pose = int(np.argmin(np.where(evaluated, least_factor(case, check, load), np.inf)))
+    every = [Transmitted(**{name: of[pose] for name, of in vars(load).items()})]
+    if case.linkage.rise(check.joint) != 0.0:
+        ways = forces_at(moved, load_case, pose).sharings
+        every += [transmitted(case, check, way.joints[check.joint].wrench, way.driving[0]) for way in ways]
+    return pose, connection_outcome(load_case, one, connection_factors(case, load_case, one, every, growth))
+
+
 def _worst_pin(
     moved: CaseMotion, one: Asked, load_case: str, evaluated: NDArray[np.bool_], growth: Scatter
 ) -> tuple[int, CheckOutcome]:
@@ -305,6 +353,21 @@ def _worst_pin(
     pose = first_largest(np.array(bent))
     shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
     return pose, pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
+
+
+def _through(moved: CaseMotion, load_case: str, check: ConnectionCheck) -> Transmitted:
+    """Return what goes through a connection at all poses."""
+    solved = moved.forces[load_case]
+    return transmitted(moved.case, check, solved.joints[check.joint].wrench, solved.driving[0])
+
+
+Worst = Callable[[CaseMotion, Asked, str, NDArray[np.bool_], Scatter], tuple[int, CheckOutcome]]
+_WORST: dict[type[CaseModel], Worst] = {
+    PinCheck: _worst_pin,
+    BearingCheck: _worst_bearing,
+    LineContactCheck: _worst_contact,
+    ConnectionCheck: _worst_connection,
+}
 
 
 def _at(reaction: JointReaction, pose: int) -> JointReaction:

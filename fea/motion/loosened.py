@@ -40,6 +40,7 @@ from alula.fea.motion.linkage_history import causes_over, looked_at, shape_at
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, with_growth
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.ties import first_largest
+from alula.loads.case.connection_rules import turned_by_drive
 from alula.loads.records.applied import chosen
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.dead_point_reach import pose_at
@@ -190,18 +191,58 @@ def joint_growth(moved: CaseMotion, load_case: str, joint: str, evaluated: NDArr
     Scatter
         On its force without play, at the stated C_N.
     """
-    loose = loose_motion(moved)
 
     def sizes(one: CaseMotion) -> NDArray[np.float64]:
         return np.asarray(np.linalg.norm(one.forces[load_case].forces[joint], axis=1)[evaluated])
 
-    force = sizes(moved)
     found = _spread(moved, load_case, evaluated, lambda one: float(sizes(one).max()))
-    if loose is None or not force.max() > 0.0:
-        return found
-    slack = loose.slack(load_case, f"force {joint}")[evaluated]
-    low, high = (float((force + sign * slack).max() / force.max()) for sign in (-1.0, 1.0))
-    return Scatter(low=max(low, 0.0), high=high, sources=(play_source(loose.clearances),)).times(found)
+    return _slack_of(moved, load_case, f"force {joint}", sizes(moved), evaluated).times(found)
+
+
+def connection_growth(
+    moved: CaseMotion,
+    load_case: str,
+    joint: str,
+    evaluated: NDArray[np.bool_],
+    demand: Callable[[CaseMotion], NDArray[np.float64]],
+) -> Scatter:
+    """Return what play, C_N and friction make of the most that a connection has to bear over a motion.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case, joint : str
+        Their names.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    demand : callable
+        Returns what goes through it over what it bears, at n poses.
+
+    Returns
+    -------
+    Scatter
+        Play counts by what it makes of the joint's force and, where that drives, of the torque, to first order.
+    """
+    forces = moved.forces[load_case]
+    play = _slack_of(
+        moved, load_case, f"force {joint}", np.linalg.norm(forces.forces[joint], axis=1)[evaluated], evaluated
+    )
+    if turned_by_drive(moved.case, joint):
+        torque = np.abs(np.broadcast_to(forces.driving[0], evaluated.shape))[evaluated]
+        play = play.either(_slack_of(moved, load_case, "effort", torque, evaluated))
+    return play.times(_spread(moved, load_case, evaluated, lambda one: float(demand(one)[evaluated].max())))
+
+
+def _slack_of(
+    moved: CaseMotion, load_case: str, key: str, sizes: NDArray[np.float64], evaluated: NDArray[np.bool_]
+) -> Scatter:
+    """Return what play makes of the greatest of some sizes, to first order."""
+    loose = loose_motion(moved)
+    if loose is None or not sizes.max() > 0.0:
+        return Scatter()
+    slack = loose.slack(load_case, key)[evaluated]
+    low, high = (float((sizes + sign * slack).max() / sizes.max()) for sign in (-1.0, 1.0))
+    return Scatter(low=max(low, 0.0), high=high, sources=(play_source(loose.clearances),))
 
 
 def _link(loose: LooseMotion, load_case: str, link: str, evaluated: NDArray[np.bool_]) -> Scatter:

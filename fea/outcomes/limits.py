@@ -21,11 +21,13 @@ from alula.geometry.materials.printable import is_printed, is_solid_stock
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
     BearingCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
+    LineContactCheck,
     NotchCheck,
     PinCheck,
     PlasticCollapseCheck,
@@ -36,6 +38,11 @@ from alula.loads.records.check_spec import (
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
 Ends = tuple[float, float]
+_ON_LOADS = (
+    *(SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, LineContactCheck, ConnectionCheck),
+    *(WallCheck, LimitLoadCheck, PlasticCollapseCheck, NotchCheck, FatigueCheck),
+)
+"""Checks whose least factor is one on loads or stress."""
 
 
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
@@ -183,18 +190,7 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
     for name, check in case.checks.items():
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
-        elif isinstance(
-            check,
-            SafetyFactorCheck
-            | PinCheck
-            | BearingCheck
-            | EyeCheck
-            | WallCheck
-            | LimitLoadCheck
-            | PlasticCollapseCheck
-            | NotchCheck
-            | FatigueCheck,
-        ):
+        elif isinstance(check, _ON_LOADS):
             least[f"checks.{name}.minimum"] = (check.minimum, breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:
             for card in (x for one in subjects_of(case, name, check) for x in cards_of(case, check, one)):

@@ -57,12 +57,11 @@ from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import Ring
 from alula.loads.case.case import Case
+from alula.loads.case.connection_rules import connected_joints, turned_by_drive
 from alula.loads.case.eyes import other_link
 from alula.loads.case.forks import eye_of, eyes, outer_link
 from alula.loads.records.applied import shifted
-from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction
-from alula.loads.statics.statics import Drive
 from alula.loads.text.caveat import Caveat, Topic
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
@@ -115,17 +114,11 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
     Band
         [N mm]; of a bonded joint from 0, since nothing states what its faces take.
     """
-    drive = case.pinned_drive
     if case.linkage.joints[joint].fixed:
         return Band(value=abs(moment), low=0.0, high=abs(moment), sources=TWIST)
-    if drive is None or drive.joint != joint or not _turns(case, drive):
+    if not turned_by_drive(case, joint):
         return Band.exact(0.0)
     return Band.exact(abs(torque) if case.torque_transfer == "bore-shear" else 0.0)
-
-
-def _turns(case: Case, drive: Drive) -> bool:
-    """Return True where the drive exerts a torque, and neither a stop nor the balance of the pose takes its place."""
-    return not drive.stop and not drive.idle and drive.effort(case.linkage) is DriveEffort.TORQUE
 
 
 def shaft_caveats(case: Case) -> Iterator[Caveat]:
@@ -140,9 +133,10 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
     Caveat
     """
     drive = case.pinned_drive
-    if drive is None or case.pose.equilibrium or not _turns(case, drive):
+    if drive is None or case.pose.equilibrium or not turned_by_drive(case, drive.joint):
         return
-    if case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].fixed:
+    judged = drive.joint in connected_joints(case, on_shaft=True)
+    if not judged and case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].fixed:
         why = reason("torque_by_flat_faces")
         yield Caveat(topic=Topic.SHAFT, what=reason("drive_shaft", joint=drive.joint), why=why)
 

@@ -14,6 +14,8 @@ from alula.fea.common.band import Band
 from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.joints.connection_modes import ConnectionFactors
+from alula.fea.joints.line_contact import LineContact
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.fatigue import LinkFatigue
@@ -299,6 +301,10 @@ class LoadCaseResult:
         Of every link whose notches a check asks for and whose solid was solved.
     walls : tuple of WallFactor
         Of every mode of the links whose walls a check asks for.
+    contacts : tuple of LineContact
+        Of every pin in a slot that a check asks for.
+    connections : tuple of ConnectionFactors
+        Of every connection that a check asks for.
     collapses : mapping of str to LinkCollapse
         Link -> at what factor it collapses, where a check asks for it and it was found.
     fatigue : mapping of str to LinkFatigue
@@ -319,6 +325,8 @@ class LoadCaseResult:
     eyes: tuple[EyeFactors, ...] = ()
     notches: tuple[NotchFactor, ...] = ()
     walls: tuple[WallFactor, ...] = ()
+    contacts: tuple[LineContact, ...] = ()
+    connections: tuple[ConnectionFactors, ...] = ()
     collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
     fatigue: Mapping[str, LinkFatigue] = field(default_factory=dict)
 

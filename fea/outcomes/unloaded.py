@@ -159,7 +159,7 @@ def undecided(
     """
     bearing = {name for name, force in joints.items() if force > SHARE * size}
     for outcome in outcomes:
-        borne = outcome.subject.kind == "pin" and outcome.subject.name in bearing
+        borne = outcome.subject.kind in ("pin", "joint") and outcome.subject.name in bearing
         moved = outcome.quantity is Quantity.DRIVE_POWER and bearing
         if borne or moved or outcome.quantity.unloaded:
             yield outcome

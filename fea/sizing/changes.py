@@ -174,6 +174,8 @@ def _load(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> float |
     straight = load_case.large_displacement.state == "small" and str(check.subject) != case.linkage.ground
     if not straight or check.quantity in (Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE):
         return None
+    if check.quantity is Quantity.LINE_CONTACT:
+        return check.margin**2  # its stress goes with the root of the force
     return None if _loose(check) else check.margin
 
 
@@ -201,7 +203,7 @@ def _material(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> Mat
     rule = case.all_checks.get(check.name)
     if any(source.kind is SourceKind.BUILD for source in check.value.sources):
         return None  # strengths along the layers and across them share in its ends
-    if subject.kind == "pin":
+    if subject.kind in ("pin", "joint"):
         if not isinstance(rule, PinCheck):
             return None
         joint = subject.name

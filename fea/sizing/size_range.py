@@ -72,7 +72,7 @@ def _entry(trials: Trials, check: CheckOutcome) -> tuple[str, float] | None:
     case, subject = trials.result.case, check.subject
     if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.LAYER_GAP):
         return None
-    if subject.kind == "pin":
+    if subject.kind in ("pin", "joint"):
         path, size = f"joints.{subject.name}.pin_diameter", case.joints[subject.name].pin_diameter
     else:
         moved = trials.result.load_cases[check.load_case].large_displacement

@@ -21,14 +21,17 @@ from alula.fea.common.verdict import (
 )
 from alula.fea.outcomes.result import CheckResult, HandResult, LoadCaseResult
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.model import CaseModel
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
     BearingCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FatigueCheck,
     LimitLoadCheck,
+    LineContactCheck,
     PinCheck,
     SafetyFactorCheck,
     WallCheck,
@@ -46,15 +49,11 @@ STRENGTHS = (
 )
 """Entries of a card, each with its range where it has one."""
 _STATIC = (
-    SafetyFactorCheck,
-    DisplacementCheck,
-    PinCheck,
-    BearingCheck,
-    EyeCheck,
-    WallCheck,
-    FatigueCheck,
-    LimitLoadCheck,
+    *(SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, WallCheck),
+    *(LineContactCheck, ConnectionCheck, FatigueCheck, LimitLoadCheck),
 )
+_IN_CHECKS = ("pressure", "shear_strength", "shear_strength_range", "tensile_strength", "clamping_force")
+"""What checks of contact and connections state of strengths and pressures beside cards."""
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
 """One or the other says whether the linkage as a whole holds the load."""
 _Key = tuple[str, Quantity, Subject]
@@ -104,7 +103,10 @@ class Scaled:
         """
         every = case.all_materials
         names = [self.material] if self.material else list(every)
-        return case.model_copy(update={"materials": {**every, **{name: self._on(every[name]) for name in names}}})
+        changed: dict[str, object] = {"materials": {**every, **{name: self._on(every[name]) for name in names}}}
+        if not self.material:
+            changed["checks"] = {name: _weaker(check, self.strength) for name, check in case.checks.items()}
+        return case.model_copy(update=changed)
 
     def _on(self, material: Material) -> Material:
         factors = {**dict.fromkeys(MODULI, self.modulus), **dict.fromkeys(STRENGTHS, self.strength)}
@@ -153,6 +155,16 @@ class Resized:
 
 
 Change = Scaled | Resized
+
+
+def _weaker(check: CaseModel, factor: float) -> CaseModel:
+    """Return a check, or what it holds, with the strengths and pressures that it states by itself times a factor."""
+    held = {entry: getattr(check, entry) for entry in type(check).model_fields}
+    changed: dict[str, object] = {
+        entry: _weaker(value, factor) for entry, value in held.items() if isinstance(value, CaseModel)
+    }
+    changed |= {entry: _times(held[entry], factor) for entry in _IN_CHECKS if held.get(entry) is not None}
+    return check.model_copy(update=changed)
 
 
 def _times(value: object, factor: float) -> object:
@@ -280,7 +292,7 @@ class Trials:
 
 def _links(compared: Sequence[CheckOutcome]) -> tuple[str, ...] | None:
     """Return the links whose numbers are compared; None where others may hold those of any link."""
-    if any(one.subject.kind not in ("link", "pin") and not _whole(one) for one in compared):
+    if any(one.subject.kind not in ("link", "pin", "joint") and not _whole(one) for one in compared):
         return None
     return tuple(dict.fromkeys(one.subject.name for one in compared if one.subject.kind == "link"))
 

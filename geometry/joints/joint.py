@@ -94,7 +94,8 @@ class Joint(CaseModel):
     clamped: bool = False
     """True of a joint without a pin, that holds its two links as one: a tube in a clamp or an adapter, a bar built into
     the ground, a lever pressed on a shaft. It bears forces and moments. Its parts are held over ``clamp_length``, or in
-    a bore of ``pin_diameter``. What holds them, such as screws, friction or glue, is not judged."""
+    a bore of ``pin_diameter``. What holds them, such as screws, friction or glue, a check of type ``connection``
+    judges."""
     clamp_length: Annotated[Length, POSITIVE] | None = None
     """Length over which a clamped joint holds the end of a tube or bar, from the joint's point at that end inwards. All
     of it is held, so that the free length begins at its inner edge, the mouth of the clamp. On a plate both faces are

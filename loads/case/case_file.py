@@ -16,11 +16,11 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
 from alula.loads.case.part_points import with_part_points
-from alula.loads.case.revisable import Origin
 from alula.loads.text.entries import alike, names_tables
 from alula.loads.text.explain import printable, sentence
 from alula.loads.text.file_text import LARGEST_FILE, file_text
 from alula.loads.text.nesting import refuse_deep, too_deep
+from alula.loads.text.revisable import Origin
 
 
 class Change(NamedTuple):

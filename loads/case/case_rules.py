@@ -11,6 +11,7 @@ from alula.geometry.materials.material import Material
 from alula.geometry.parts.bar import Bar
 from alula.geometry.parts.part import Body, FilePart
 from alula.geometry.parts.tube import Tube
+from alula.loads.case.connection_rules import check_connection, check_line_contact
 from alula.loads.case.core import CoreCase
 from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
@@ -24,11 +25,13 @@ from alula.loads.records.check_spec import (
     BearingCheck,
     Check,
     ClearanceCheck,
+    ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
     FatigueCheck,
     FrequencyCheck,
     LimitLoadCheck,
+    LineContactCheck,
     MassCheck,
     MotorCheck,
     NotchCheck,
@@ -268,6 +271,10 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
         for link in check.links or case.checked_links:
             _check_thin(case, name, link)
+    elif isinstance(check, ConnectionCheck):
+        check_connection(case, name, check)
+    elif isinstance(check, LineContactCheck):
+        check_line_contact(case, name, check)
     elif isinstance(check, PlasticCollapseCheck):
         for link in check.links:
             require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")

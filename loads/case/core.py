@@ -23,7 +23,6 @@ from alula.loads.acting.springs import Spring, Tendon
 from alula.loads.acting.stop import Stop
 from alula.loads.case.eyes import with_eye
 from alula.loads.case.heights import heights
-from alula.loads.case.revisable import Revisable
 from alula.loads.records.aero import AirForces, air_forces
 from alula.loads.records.carried import Carried
 from alula.loads.records.check_spec import (
@@ -42,6 +41,7 @@ from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseS
 from alula.loads.records.tolerances import TolerancesTable
 from alula.loads.statics.statics import Drive
 from alula.loads.text.places import check_point
+from alula.loads.text.revisable import Revisable
 
 
 class CoreCase(Revisable):
@@ -330,8 +330,12 @@ class CoreCase(Revisable):
     @property
     def bearing_joints(self) -> tuple[str, ...]:
         """The joints whose pin bears on a part: those of ``pinned_joints``, and pins in slots of links with a part."""
-        slotted = [name for name, joint in self.joints.items() if joint.slotted in self.checked_links]
-        return (*self.pinned_joints, *slotted)
+        return (*self.pinned_joints, *self.slotted_joints)
+
+    @property
+    def slotted_joints(self) -> tuple[str, ...]:
+        """The joints whose pin slides in the slot of a link with a part."""
+        return tuple(name for name, joint in self.joints.items() if joint.slotted in self.checked_links)
 
     def part_of(self, link: str) -> PartKind:
         """Return the part of a link.

@@ -9,6 +9,7 @@ from alula.geometry.joints.fits import RUNNING
 from alula.geometry.joints.hole_rules import check_holes
 from alula.geometry.joints.holes import Known, largest_clearance
 from alula.geometry.joints.joint_kinds import Surface
+from alula.loads.case.connection_rules import connected_joints
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
@@ -231,9 +232,10 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
     Caveat
     """
     for kind, clamped in (("bonds", False), ("clamps", True)):
-        held = [name for name, joint in case.linkage.joints.items() if joint.fixed and joint.clamped == clamped]
+        joints, judged = case.linkage.joints.items(), connected_joints(case)
+        held = [name for name, joint in joints if joint.fixed and joint.clamped == clamped and name not in judged]
         if held:
-            yield Caveat(topic=Topic.BONDS, what=reason(kind, joints=held), why=reason("not_judged_what_holds"))
+            yield Caveat(topic=Topic.BONDS, what=reason(kind, joints=held), why=reason("no_connection_check"))
     if short := guides_without_length(case):
         yield Caveat(
             heading=Heading.ASSUMED,

@@ -5,7 +5,18 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, AngularSpeed, Current, Length, Mass, Moment, Voltage
+from alula.geometry.base.units import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    AngularSpeed,
+    Current,
+    Length,
+    Mass,
+    Moment,
+    Stress,
+    Voltage,
+)
+from alula.loads.records.connection import Bond, CrossPin, Flat, Press, Screws, Way
 
 
 class SafetyFactorCheck(CaseModel):
@@ -104,6 +115,79 @@ class WallCheck(CaseModel):
     """The least factor. Imperfections are in its band: for strips as for columns, where 1 is the limit."""
     links: tuple[Name, ...] = ()
     """The links to check; all that have a part when left out."""
+
+
+class LineContactCheck(CaseModel):
+    """Contact of each pin with the flank of its slot along a line must not make either of them yield.
+
+    The factor is that on stress, which grows with the root of the force.
+    """
+
+    type: Literal["line-contact"]
+    minimum: Annotated[float, Field(gt=0)]
+    """The least safety factor: yield strength over the largest von Mises stress below the line, or ``pressure`` over
+    the largest pressure."""
+    pressure: Annotated[Stress, POSITIVE] | None = None
+    """Largest pressure that the softer one may bear, in place of the yield strengths of the cards."""
+    joints: tuple[Name, ...] = ()
+    """The joints to check; all whose pin slides in the slot of a link with a part when left out."""
+
+
+class ConnectionCheck(CaseModel):
+    """What fixes a link to a shaft, a horn or another link must bear what goes through the joint.
+
+    That is the torque of the drive at its joint, or the moment of a bonded or clamped joint, and the joint's force. One
+    of bond, press, flat, cross_pin and screws says what holds it. The shaft has the joint's pin_diameter and
+    pin_material.
+    """
+
+    type: Literal["connection"]
+    joint: Name
+    """The drive's joint, or a bonded or clamped one."""
+    minimum: Annotated[float, Field(gt=0)]
+    """The least safety factor: what the connection bears over what goes through it, in the mode that bears least."""
+    link: Name | None = None
+    """The link that is fixed; the driven link when left out, at another joint its second link."""
+    bond: Bond | None = None
+    """Glue, as a sleeve about the shaft or between flat faces."""
+    press: Press | None = None
+    """A press fit or a clamp about the shaft."""
+    flat: Flat | None = None
+    """A D-shaped shaft."""
+    cross_pin: CrossPin | None = None
+    """A pin across the shaft."""
+    screws: Screws | None = None
+    """Screws or pins on a circle about the axis."""
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "ConnectionCheck":
+        stated = [name for name in _WAYS if getattr(self, name) is not None]
+        if len(stated) != 1:
+            raise refusal(
+                f"a connection states one of {', '.join(_WAYS)}, not {' and '.join(stated) or 'none'}; state what "
+                "holds it, and a second check where two hold it one after the other"
+            )
+        return self
+
+    @property
+    def way(self) -> Way:
+        """What holds it."""
+        found: Way = next(way for name in _WAYS if (way := getattr(self, name)) is not None)
+        return found
+
+    @property
+    def on_shaft(self) -> bool:
+        """True where it grips a shaft: all but screws and a glued face."""
+        way = self.way
+        return not (isinstance(way, Screws) or (isinstance(way, Bond) and way.length is None))
+
+    @property
+    def press_by_excess(self) -> bool:
+        """True of a press whose pressure follows from its interference, hence from the hub's modulus."""
+        return self.press is not None and self.press.interference is not None
+
+
+_WAYS = ("bond", "press", "flat", "cross_pin", "screws")
 
 
 class MotorCheck(CaseModel):
@@ -254,6 +338,8 @@ Check = Annotated[
     | BearingCheck
     | EyeCheck
     | WallCheck
+    | LineContactCheck
+    | ConnectionCheck
     | LimitLoadCheck
     | PlasticCollapseCheck
     | NotchCheck

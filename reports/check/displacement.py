@@ -11,7 +11,7 @@ from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
 from alula.reports.check.modes import eye_parts, eye_record, notch_parts, notch_record, wall_parts, wall_record
-from alula.reports.check.pins import pin_parts, pin_record
+from alula.reports.check.pins import connection_parts, connection_record, contact_record, pin_parts, pin_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.fatigue import fatigue_parts, link_fatigue_record
 from alula.reports.sections.markup import bold
@@ -64,6 +64,7 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from notch_parts(case)
     yield from fatigue_parts(result, case)
     yield from wall_parts(case)
+    yield from connection_parts(case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -188,6 +189,8 @@ def _data(result: CheckResult, case: LoadCaseResult) -> dict[str, Any]:
         **({"notches": notch_record(case)} if case.notches else {}),
         **({"fatigue": link_fatigue_record(result, case)} if case.fatigue else {}),
         **({"walls": wall_record(case)} if case.walls else {}),
+        **({"contacts": contact_record(case)} if case.contacts else {}),
+        **({"connections": connection_record(case)} if case.connections else {}),
     }
 
 

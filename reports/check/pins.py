@@ -1,30 +1,30 @@
-"""Pins between their links: bending, shear, and what their models leave out."""
+"""Pins between their links: bending, shear, contact in slots, what fixes links, and what their models leave out."""
 
 from collections.abc import Iterator
 from typing import Any
 
+from alula.fea.asked.asked import asked_of
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.loads.case.case import Case
+from alula.loads.case.connection_rules import connected_joints
 from alula.loads.case.forks import forked_link
 from alula.loads.case.joint_rules import clearances, guides_without_length, rubbing_joints
+from alula.loads.records.check_spec import LineContactCheck
 from alula.loads.statics.effort import DriveEffort
-from alula.reports.sections.data import entries
+from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import Part, Section, Text
-from alula.reports.sections.table import Column, Table, numbers, words
+from alula.reports.sections.table import Column, Number, Table, numbers, words
 from alula.reports.words.numbers import joined
 
 _TRANSFER = (
-    "How the torque passes between {joints} and the links that turn with them, by a key, a clamp, a screw or glue, is "
-    "not checked: neither what holds there nor the stress beside it."
+    "How the torque passes between {joints} and the links that turn with them, by a press, a flat, a pin, screws or "
+    'glue, is not checked; a check of type "connection" does.'
 )
 _CLAMPS = (
-    "What holds the links at {joints}, by friction, screws or glue, is not checked: neither whether they slip, nor the "
-    "stress that the clamp's grip alone makes. Displacements take what is held for rigid up to the mouth of the clamp."
+    "The stress that the grip of clamps at {joints} alone makes is not checked{slips}. Displacements take what is held "
+    "for rigid up to the mouth of the clamp."
 )
-_LINES = (
-    "Pins in slots at {joints} touch a flank along a line. The pressure of this line contact, indentation and wear are "
-    "not checked."
-)
+_LINES = 'Pins in slots at {joints} touch a flank along a line; a check of type "line-contact" judges its pressure.'
 
 
 def pin_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
@@ -80,6 +80,107 @@ def pin_record(case: LoadCaseResult) -> list[dict[str, Any]]:
     return [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()]
 
 
+def connection_parts(case: LoadCaseResult) -> Iterator[Part]:
+    """Yield contacts in slots and connections under a load case.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Yields
+    ------
+    Part
+    """
+    under = (("load case", case.name),)
+    rows = [
+        (
+            one.check,
+            one.joint,
+            Number(one.line_load),
+            Number(one.pressure),
+            Number(one.half_width),
+            what,
+            Number(factor),
+        )
+        for one in case.contacts
+        for what, factor in one.factors.items()
+    ]
+    if rows:
+        yield Table.of(
+            (
+                *map(words, ("check", "joint")),
+                Column("load", "N/mm"),
+                Column("pressure", "MPa"),
+                Column("half width", "mm"),
+                words("against"),
+                Column("factor"),
+            ),
+            rows,
+            key="contacts",
+            caption="Pins in slots, along their line of contact: force over length, largest pressure by Hertz, half "
+            "the width of contact, and the safety factor against yield of pin and flank, or on a stated pressure",
+            under=under,
+        )
+    held = [
+        (*names, Number(torque), Number(force), str(mode), Number(factor))
+        for one in case.connections
+        for names in [(one.check, one.joint, one.link)]
+        for torque, force in [(float(one.load.torque), float(one.load.force))]
+        for mode, factor in sorted(one.factors.items(), key=lambda of: (not of[1].unknowable, of[1].low))
+    ]
+    if held:
+        yield Table.of(
+            (
+                *map(words, ("check", "joint", "link")),
+                Column("torque", "N·mm"),
+                Column("force", "N"),
+                words("mode"),
+                Column("factor"),
+            ),
+            held,
+            key="connections",
+            caption="Connections: what each mode bears over what goes through the joint, ordered by low ends",
+            under=under,
+        )
+
+
+def contact_record(case: LoadCaseResult) -> list[dict[str, Any]]:
+    """Return contacts in slots as entries of ``result.json``.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    list of dict
+    """
+    return [
+        entries(one, "check joint line_load pressure half_width")
+        | {"against": [{"what": what, "factor": data(factor)} for what, factor in one.factors.items()]}
+        for one in case.contacts
+    ]
+
+
+def connection_record(case: LoadCaseResult) -> list[dict[str, Any]]:
+    """Return connections as entries of ``result.json``.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    list of dict
+    """
+    return [
+        entries(one, "check joint link")
+        | {name: float(size) for name, size in vars(one.load).items()}
+        | {"modes": [{"mode": str(mode), "factor": data(factor)} for mode, factor in one.factors.items()]}
+        for one in case.connections
+    ]
+
+
 def pins_left_out(result: CheckResult) -> Section:
     """Return what the models of pins, shafts, clamps and slots leave out.
 
@@ -100,18 +201,22 @@ def pins_left_out(result: CheckResult) -> Section:
 def _transfer(case: Case) -> Iterator[tuple[str, str]]:
     joints = case.linkage.joints.items()
     held = [name for name, joint in joints if joint.clamped and joint.clamp_length is not None]
+    judged = connected_joints(case)
     turned = [name for name, joint in joints if joint.fixed and name not in held]
     drive = case.pinned_drive
     if drive is not None and drive.effort(case.linkage) is DriveEffort.TORQUE:
         turned = [drive.joint, *turned]
-    if turned:
+    if turned := [name for name in turned if name not in judged]:
         yield "Torque at shafts", _TRANSFER.format(joints=f"the pins of {joined(list(dict.fromkeys(turned)))}")
     if held:
-        yield "Clamps", _CLAMPS.format(joints=joined(held))
+        loose = [name for name in held if name not in judged]
+        slips = f', nor what keeps links from slipping at {joined(loose)}; a check of type "connection" judges that'
+        yield "Clamps", _CLAMPS.format(joints=joined(held), slips=slips if loose else "")
 
 
 def _slots(case: Case) -> Iterator[tuple[str, str]]:
-    slotted = [name for name, joint in case.joints.items() if joint.slotted is not None]
+    judged = asked_of(case, LineContactCheck)
+    slotted = [name for name, joint in case.joints.items() if joint.slotted is not None and name not in judged]
     if slotted:
         yield "Contact in slots", _LINES.format(joints=joined(slotted))
 

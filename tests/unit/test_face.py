@@ -30,7 +30,7 @@ TUBE = "parts.tube.outer_diameter"
     "module",
     [
         "alula",
-        "alula.loads.case.revisable",
+        "alula.loads.text.revisable",
         "alula.reports.notebook.claims_report",
         "alula.reports.notebook.motion_report",
     ],

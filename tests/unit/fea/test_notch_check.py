@@ -18,7 +18,7 @@ from alula.fea.outcomes.notches import NotchFactor
 from alula.fea.refine.refinement import Effort
 from alula.fea.solid.notch_field import NotchStress
 from alula.geometry.base.errors import CaseError
-from alula.reports.check.eyes import notch_parts, notch_record
+from alula.reports.check.modes import notch_parts, notch_record
 from alula.reports.sentences import told
 
 CHECK = 'checks.cracks={ type = "notch", minimum = 1.5, links = ["front"] }'

@@ -26,7 +26,10 @@ PINS = {"type": "pins", "minimum": 0.01}
 STIFF = {"type": "displacement", "maximum": "1 m"}
 NO_PINS = "pins (no check)"
 CREEP = "creep under loads that stay (no conditions.duration)"
-SHAFT = 'drive shaft at O2 (its torque enters by the flat faces; with drive.transfer = "bore-shear" it twists the pin)'
+SHAFT = (
+    'drive shaft at O2 (its torque enters by the flat faces; a check of type "connection" judges it, and with '
+    'drive.transfer = "bore-shear" it twists the pin)'
+)
 COLLISIONS = "collisions of links and couples of their pins (no link states a layer)"
 
 
@@ -203,7 +206,7 @@ def test_what_is_assumed_of_pins_is_told_where_they_are_checked():
 def test_bonds_are_told():
     data = tomllib.loads((files("alula.loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     bonds = {name: data["joints"][name] | {"bonded": True} for name in ("A", "B")}
-    assert told(joints=bonds, motion={}) == {("not checked", "bonds"): "bonds A, B (what holds them is not judged)"}
+    assert told(joints=bonds, motion={}) == {("not checked", "bonds"): 'bonds A, B (no check of type "connection")'}
 
 
 def test_limits_below_one_and_large_play_are_told():
@@ -245,7 +248,7 @@ def test_limits_of_cards_below_one_are_told_where_they_decide():
         (
             {"joint_model": "bonded"},
             ("not checked", "bonds"),
-            "bonds O2, A, B, O4 (what holds them is not judged)",
+            'bonds O2, A, B, O4 (no check of type "connection")',
         ),
         (
             {

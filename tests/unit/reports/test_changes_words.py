@@ -11,7 +11,7 @@ from told import print_result, render, result_record
 from alula.fea.common.change import MaterialChange, SizeRange, VerdictChange
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
-from alula.loads.case.revisable import Origin
+from alula.loads.text.revisable import Origin
 from alula.reports.check.changes import change_sentences, change_title, size_command
 
 STRONGER = MaterialChange(what="yield strength", material="pvc-paredes-2018", stated=41.4, needed=45.2001)
