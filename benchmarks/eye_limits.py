@@ -1,4 +1,4 @@
-"""What a perfectly plastic eye bears, by limit analysis, over the formulas of ``fea/outcomes/eye_modes.py``.
+"""What a perfectly plastic eye bears, by limit analysis, over the formulas of ``fea/modes/eye_modes.py``.
 
     python -m benchmarks.eye_limits [pressures]
 
@@ -29,7 +29,7 @@ import gmsh
 import numpy as np
 import scipy.sparse as sp
 
-from alula.fea.outcomes.eye_modes import EyeMode, RoundEye, asme_bth_1
+from alula.fea.modes.eye_modes import EyeMode, RoundEye, asme_bth_1
 
 KEPT = Path(__file__).with_name("results") / "eyes.json"
 SCATTER = Path(__file__).parents[1] / "fea" / "eye_scatter.toml"

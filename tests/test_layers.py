@@ -20,7 +20,7 @@ LAYERS = {
     "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
     "fea": (
         *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
-        *("standing", "nonlinear", "buckling", "joints"),
+        *("standing", "nonlinear", "buckling", "modes"),
         *("refine", "plastic", "superposition", "vibration", "outcomes", "links", "doubts", "judging", "whole"),
         *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),

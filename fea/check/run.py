@@ -29,8 +29,6 @@ from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, OtherCase, Plates, on_shape, widened
 from alula.fea.doubts.play_doubt import play_answers, play_at_joint, play_doubt, play_warnings, shaken
 from alula.fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
-from alula.fea.joints.connection_modes import ConnectionFactors
-from alula.fea.joints.line_contact import LineContact
 from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, with_sharing
@@ -48,15 +46,17 @@ from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
+from alula.fea.modes.connection_modes import ConnectionFactors
+from alula.fea.modes.eye_modes import EyeFactors
+from alula.fea.modes.line_contact import LineContact
+from alula.fea.modes.wall_modes import WallFactor
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
-from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
-from alula.fea.outcomes.wall_modes import WallFactor
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS

@@ -14,7 +14,8 @@ from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.joints.connection_modes import (
+from alula.fea.judging.bearing import pressing
+from alula.fea.modes.connection_modes import (
     ConnectionFactors,
     ConnectionMode,
     Strength,
@@ -26,7 +27,6 @@ from alula.fea.joints.connection_modes import (
     screws,
     shaft_torsion,
 )
-from alula.fea.judging.bearing import pressing
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import connected_link

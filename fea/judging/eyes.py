@@ -16,8 +16,8 @@ from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.bearing import sharing
-from alula.fea.outcomes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
-from alula.fea.outcomes.eye_scatter import eye_scatter
+from alula.fea.modes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
+from alula.fea.modes.eye_scatter import eye_scatter
 from alula.geometry.bodies.body import Body, extent
 from alula.geometry.bodies.features import Pin
 from alula.geometry.parts.plate import Plate

@@ -13,8 +13,8 @@ from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
 from alula.fea.common.source import COUPLES, distinct, friction_source
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.joints.line_contact import LineContact, hertz_pressure, most_equivalent
 from alula.fea.judging.bearing import pressing
+from alula.fea.modes.line_contact import LineContact, hertz_pressure, most_equivalent
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of

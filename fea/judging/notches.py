@@ -17,7 +17,7 @@ from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
 from alula.fea.links.clamp_edge import CLAMP, edge_stress
 from alula.fea.links.fidelity import DecidedLink
 from alula.fea.links.link_by_hand import LinkByHand
-from alula.fea.outcomes.notches import NotchFactor
+from alula.fea.modes.notches import NotchFactor
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.refine.discretisation import discretisation_source, judged
 from alula.fea.refine.link_series import CHORD

@@ -28,7 +28,7 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.outcomes.wall_modes import WallFactor, WallMode
+from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 

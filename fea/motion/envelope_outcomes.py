@@ -16,7 +16,6 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
-from alula.fea.joints.connection_modes import Transmitted
 from alula.fea.judging.bearing import bearing_outcome, pressing
 from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.judging.eyes import eye_factors, eye_outcome, eyes_of, with_sharing, worst_pose
@@ -28,6 +27,7 @@ from alula.fea.judging.line_contact import contact_of, contact_outcome, line_loa
 from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.judging.walls import wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.modes.connection_modes import Transmitted
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LinkEnvelope
 from alula.fea.motion.layered import forces_at

@@ -14,17 +14,17 @@ from alula.fea.common.band import Band
 from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.joints.connection_modes import ConnectionFactors
-from alula.fea.joints.line_contact import LineContact
+from alula.fea.modes.connection_modes import ConnectionFactors
+from alula.fea.modes.eye_modes import EyeFactors
+from alula.fea.modes.line_contact import LineContact
+from alula.fea.modes.notches import NotchFactor
+from alula.fea.modes.wall_modes import WallFactor
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
-from alula.fea.outcomes.eye_modes import EyeFactors
 from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.fea.outcomes.layer_stress import LayerStress
-from alula.fea.outcomes.notches import NotchFactor
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
-from alula.fea.outcomes.wall_modes import WallFactor
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling

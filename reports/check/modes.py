@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
+from alula.fea.modes.wall_modes import WallMode
 from alula.fea.outcomes.result import LoadCaseResult
-from alula.fea.outcomes.wall_modes import WallMode
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import Part
 from alula.reports.sections.table import Column, Number, Table, words

@@ -17,8 +17,8 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.play_doubt import play_at_joint
-from alula.fea.joints.connection_modes import ConnectionMode
 from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
+from alula.fea.modes.connection_modes import ConnectionMode
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.outcomes.unchecked import caveats
 from alula.fea.sizing.changes import changes

@@ -7,7 +7,7 @@ import pytest
 import skfem
 from skfem.helpers import dot, grad
 
-from alula.fea.joints.connection_modes import (
+from alula.fea.modes.connection_modes import (
     ConnectionMode,
     Strength,
     Transmitted,

@@ -17,10 +17,10 @@ from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.judging.bearing import sharing
 from alula.fea.judging.eyes import eye_factors, strengths, worse_of, worst_pose
+from alula.fea.modes.eye_modes import EyeMode
+from alula.fea.modes.eye_scatter import eye_scatter
 from alula.fea.motion.envelope_outcomes import eye_outcomes
 from alula.fea.motion.link_history import link_histories
-from alula.fea.outcomes.eye_modes import EyeMode
-from alula.fea.outcomes.eye_scatter import eye_scatter
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import EyeCheck
 from alula.loads.states.case_motion import solve_case_motion
@@ -169,8 +169,12 @@ def test_the_worse_of_two_plates_counts_and_the_direction_of_its_force(order):
 def test_of_all_ways_of_sharing_couples_the_one_that_presses_most_counts(order):
     wrenches = np.zeros((3, 6))
     wrenches[:, :2] = (3.0, 0.0), (0.0, 4.0), (2.0, 0.0)
-    assert sharing(eyes(), "B", "level", [wrenches[0], *wrenches[1:][::order]]).high == pytest.approx(4.0 / 3.0)
-    assert sharing(eyes(), "B", "level", [wrenches[1], *wrenches[::2][::order]]) == Scatter()
+    beyond = 0.05 * (4.0 - 2.0)  # what a search may have left
+    found = sharing(eyes(), "B", "level", [wrenches[0], *wrenches[1:][::order]])
+    assert found.high == pytest.approx((4.0 + beyond) / 3.0)
+    stands = sharing(eyes(), "B", "level", [wrenches[1], *wrenches[::2][::order]])
+    assert stands.high == pytest.approx((4.0 + beyond) / 4.0)
+    assert sharing(eyes(), "B", "level", wrenches[:1]) == Scatter()
 
 
 def test_page_and_file_have_every_mode():

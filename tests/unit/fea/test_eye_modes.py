@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from alula.fea.common.band import Band
-from alula.fea.outcomes.eye_modes import EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
+from alula.fea.modes.eye_modes import EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 
 LUG = RoundEye(radius=1.5, hole=0.875, pin=0.75, thickness=0.75, wall=0.75)
 """In inches, of A36 steel with 36 and 58 ksi."""

@@ -16,8 +16,8 @@ from alula.fea.asked.asked import asked
 from alula.fea.check.run import check_case
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
-from alula.fea.joints.line_contact import hertz_pressure, most_equivalent, stress_below
 from alula.fea.judging.line_contact import contact_of, line_load
+from alula.fea.modes.line_contact import hertz_pressure, most_equivalent, stress_below
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate

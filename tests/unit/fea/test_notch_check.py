@@ -14,7 +14,7 @@ from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import notches
 from alula.fea.judging.link_result import by_hand_shares
-from alula.fea.outcomes.notches import NotchFactor
+from alula.fea.modes.notches import NotchFactor
 from alula.fea.refine.refinement import Effort
 from alula.fea.solid.notch_field import NotchStress
 from alula.geometry.base.errors import CaseError

@@ -21,10 +21,10 @@ from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.force_doubt import stress_by_hand
 from alula.fea.judging.walls import EXACT, ROUND, wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.modes.wall_modes import WallMode
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.envelope_outcomes import wall_outcomes
 from alula.fea.motion.link_history import link_histories
-from alula.fea.outcomes.wall_modes import WallMode
 from alula.fea.superposition.link_answers import LinkAnswers, widest
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
@@ -283,6 +283,7 @@ def test_over_a_motion_play_and_the_sharing_of_couples_widen_the_band_and_edges_
     stressed = [stress_by_hand(case, "rocker", way) for way in ways]
     high = max(stressed) / min(stressed)
     assert high > 1.0
+    high += 0.05 * (high - 1.0)  # what a search may have left
     first, second = sorted(ways, key=lambda way: stress_by_hand(case, "rocker", way))
     over.ways[key] = LinkAnswers(stated=first, others=(second,), stress=widest(COUPLES), displacement=widest(COUPLES))
     [shared] = [one for one in over.outcomes({}) if one.quantity is Quantity.WALLS]

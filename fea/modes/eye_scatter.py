@@ -10,7 +10,7 @@ from functools import cache
 from importlib.resources import files
 
 from alula.fea.common.reason import Reason, reason
-from alula.fea.outcomes.eye_modes import EyeMode, RoundEye
+from alula.fea.modes.eye_modes import EyeMode, RoundEye
 
 Interval = tuple[float, float]
 ROUNDING = 1e-6
