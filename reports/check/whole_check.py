@@ -23,7 +23,7 @@ from alula.reports.sections.assembly import assembly_section
 from alula.reports.sections.checks import checks_section, has_all, nearest
 from alula.reports.sections.design import design_section
 from alula.reports.sections.frequencies import frequencies_section
-from alula.reports.sections.markup import code
+from alula.reports.sections.markup import code, headed
 from alula.reports.sections.section import Picture, Section, parts_of
 from alula.reports.sentences.verdicts import besides, checks_of, opening
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
@@ -141,7 +141,7 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
         kind="Structural check of a planar linkage",
         heading=result.case.title,
         verdict=result.verdict.value,
-        lead=tuple(filter(None, (*told_first, change, besides(result.caveats)))),
+        lead=tuple(filter(None, (told_first[0], *map(headed, told_first[1:]), change, besides(result.caveats)))),
         first=(
             Section(key="picture", parts=(picture,)),
             nearest(checks, several=several, all_below=has_all(checks)),

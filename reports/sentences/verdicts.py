@@ -10,6 +10,7 @@ from alula.loads.text.caveat import Caveat, Heading
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import by_heading
 from alula.reports.words.numbers import band, joined, measured, number, plain, sentence
+from alula.reports.words.terminal import KEPT
 
 if TYPE_CHECKING:
     from alula.fea.outcomes.result import CheckResult, SectionComparison
@@ -169,7 +170,7 @@ def _stands(check: CheckOutcome, *, several: bool) -> str:
     sign = {Verdict.PASS: f" {sense.value}", Verdict.FAIL: f" {_MISSED[sense]}"}.get(
         check.verdict, f", limit {sense.value}"
     )
-    return f"{named(check)}{under} {band(check.value)}{sign} {plain(check.limit)} {check.unit}".rstrip()
+    return f"{named(check)}{under} {band(check.value)}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
 
 
 def besides(found: Iterable[Caveat]) -> str:
