@@ -39,8 +39,9 @@ STARTERS = ("finger", "four-bar", "knee", "six-bar", "slider-crank", "step")
 (``tests/verification/test_starters.py``), so that their hand calculation alone is kept here."""
 VOLATILE = ("schema_version", "timings", "timings_s", "seconds", "version", "next_cost", "work", "memory")
 """Entries that differ from run to run or from machine to machine."""
-DERIVED = ("margin", "changes")
-"""Entries that follow from kept ones, by rules that have tests of their own (``tests/unit/fea/test_changes.py``)."""
+DERIVED = ("margin", "changes", "tiers")
+"""Entries that follow from kept ones, by rules that have tests of their own (``tests/unit/fea/test_changes.py``,
+``test_tiers.py``)."""
 WHOLE = ("mass", "size", "frequencies")
 """Entries of a whole result that closed forms are compared with (``tests/unit/fea/test_mass_and_size.py`` and
 ``test_frequency_check.py``)."""

@@ -15,6 +15,7 @@ from alula.fea.outcomes.result import SectionComparison, SolidResult, VariantPea
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
 from alula.loads.case.case_file import read_case
+from alula.loads.records.check_spec import DisplacementCheck, SafetyFactorCheck
 from alula.loads.records.load_case import LoadCase
 from alula.loads.states.actions import acting_loads
 
@@ -127,8 +128,13 @@ def result():
         if title == "weight":
             links[SOLID_LINK] = solid
         load_cases[title] = replace(found, links=links, checks=checks_of(title, links))
+    asked = {
+        "strength": SafetyFactorCheck(type="safety-factor"),
+        "stiffness": DisplacementCheck(type="displacement", maximum="10 mm"),
+    }
     return replace(
         checked,
+        case=case.model_copy(update={"checks": asked}),
         load_cases=load_cases,
         verdict=Verdict.PASS,
         timings={"pose and statics": 0.01, "solid models": 1.5},

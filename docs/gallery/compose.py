@@ -28,6 +28,8 @@ case = case.with_part(
 )
 case = case.with_pose(coordinate="horn", angle="80 deg", near={"rod": "5 deg", "jaw": "80 deg"})
 case = case.with_drive(link="horn", joint="O2")
+case = case.with_check("strength", type="safety-factor")  # does it stay elastic?
+case = case.with_check("eyes", type="eye", minimum=2.4)  # does it break?
 
 # %%
 # A load case for every row of a table, which ``pandas.read_csv`` reads from a file as well.

@@ -92,6 +92,15 @@ class Sense(Enum):
         return (Band.least if self is Sense.AT_LEAST else Band.largest)(bands)
 
 
+class Tier(StrEnum):
+    """What a check asks of strength: that nothing yields, that nothing breaks or gives way, or neither."""
+
+    ELASTIC = "stays elastic"
+    BREAK = "does not break"
+    NEITHER = "neither"
+    """Stiffness, shape, vibration, motor."""
+
+
 class Quantity(StrEnum):
     """What is set against a limit: its name, as text, with its unit ("" for a pure number), its sense and origin."""
 
@@ -153,6 +162,16 @@ class Quantity(StrEnum):
     def unloaded(self) -> bool:
         """True where it does not come from loads; they change frequencies alone, as far as they tighten links."""
         return self.origin in ("shape", "vibration")
+
+    @property
+    def tier(self) -> Tier:
+        """What it asks of strength; a safety factor against ultimate strength is of breaking (``asked.tiers``).
+
+        What loads make of a link breaks it or lets it give way, but for lengths, which are of stiffness.
+        """
+        if self is Quantity.SAFETY_FACTOR:
+            return Tier.ELASTIC
+        return Tier.BREAK if self.origin == "loads" and self.unit != "mm" else Tier.NEITHER
 
     def margins(self, value: float, low: float, high: float, limit: float) -> tuple[float, float, float]:
         """Return by what factor a banded number keeps its limit: 1 at the limit, less where it misses it.

@@ -80,6 +80,7 @@ class StatedCase:
     >>> case = case.with_part("bar", shape="bar", **bar)
     >>> case = case.with_pose(coordinate="lever", angle="0 deg").with_drive(link="lever", joint="O")
     >>> case = case.with_load_case("grip", forces=[{"link": "lever", "at": "P", "force": ("0 N", "-5 N")}])
+    >>> case = case.with_check("strength", type="safety-factor").with_check("eyes", type="eye", minimum=2.4)
     >>> report = alula.check(case, fidelity="beam")
     >>> print(report.verdict, f"{report.safety_factors['lever'].value:.1f}")
     pass 21.2

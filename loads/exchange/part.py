@@ -81,8 +81,12 @@ link = {link}
 at = "{loaded}"
 force = ["0 N", "{force} N"]    # GUESS: along x and y
 
-[checks.strength]
+[checks.strength]    # stays elastic: first yield anywhere
 type = "safety-factor"
+
+[checks.collapse]    # does not break; leave it out of a part that is brittle or printed
+type = "plastic-collapse"
+minimum = 2.0    # GUESS
 
 [checks.pins]
 type = "pins"

@@ -10,7 +10,7 @@ from alula.reports.renderers.console import print_sections, print_table, verdict
 from alula.reports.sections.checks import check_table
 from alula.reports.sections.section import Section
 from alula.reports.sentences import told
-from alula.reports.sentences.verdicts import besides, brief, checks_of, headline
+from alula.reports.sentences.verdicts import besides, checks_of, first_lines, opening
 from alula.reports.words.numbers import joined, sentence
 from alula.reports.words.terminal import height, say, say_command, shortened
 
@@ -23,7 +23,7 @@ MATTER = 5
 """Checks, and warnings, of which a screen tells."""
 _LEAST = 2
 """Checks of which it tells before warnings."""
-_REASON, _CHANGE, _BESIDES, _WARNING = 5, 4, 3, 3
+_REASON, _TIER, _CHANGE, _BESIDES, _WARNING = 4, 2, 3, 2, 3
 """Lines of a screen that a text may take."""
 
 
@@ -39,9 +39,10 @@ def print_result(result: CheckResult, sections: Sequence[Section], console: "Con
         On a narrow one, lines break at spaces.
     """
     verdict_line(result.verdict, result.case.title, console)
-    why = headline(result)
-    say(console, why)
-    print_sections(sections, console, said=[why])
+    lines = first_lines(result)
+    for line in lines:
+        say(console, line)
+    print_sections(sections, console, said=lines)
 
 
 def print_screen(result: CheckResult, sections: Sequence[Section], console: "Console") -> None:
@@ -56,11 +57,12 @@ def print_screen(result: CheckResult, sections: Sequence[Section], console: "Con
         The screen has ``SCREEN`` lines of 80 columns.
     """
     checks, several = checks_of(result), len(result.load_cases) > 1
-    why = shortened(console, brief(result.verdict, checks, several=several), _REASON)
+    told_first = opening(result.case, result.verdict, checks, several=several, short=True)
+    why, tiers = shortened(console, told_first[0], _REASON), [shortened(console, one, _TIER) for one in told_first[1:]]
     besides_it = shortened(console, besides(result.caveats), _BESIDES)
-    change, command = first_change(sections, said=why)
+    change, command = first_change(sections, said=" ".join(told_first))
     change = shortened(console, change, _CHANGE)
-    taken = 1 + sum(height(console, text) for text in (why, change, besides_it) if text) + 2 * bool(command)
+    taken = 1 + sum(height(console, text) for text in (why, *tiers, change, besides_it) if text) + 2 * bool(command)
     left = SCREEN - taken - 1  # the last line counts what is not told
     rows, warnings = worst_of_each(checks)[:MATTER], list[str]()
     least = _table_height(rows[:_LEAST], console, several=several)
@@ -72,7 +74,8 @@ def print_screen(result: CheckResult, sections: Sequence[Section], console: "Con
         rows.pop()
     badge = f" {result.verdict.value}  "
     verdict_line(result.verdict, shortened(console, f"{badge}{result.case.title}", 1)[len(badge) :], console)
-    say(console, why)
+    for line in (why, *tiers):
+        say(console, line)
     if change:
         say(console, change)
     if command:

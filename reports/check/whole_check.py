@@ -23,9 +23,9 @@ from alula.reports.sections.assembly import assembly_section
 from alula.reports.sections.checks import checks_section, has_all, nearest
 from alula.reports.sections.design import design_section
 from alula.reports.sections.frequencies import frequencies_section
-from alula.reports.sections.markup import code
+from alula.reports.sections.markup import code, headed
 from alula.reports.sections.section import Picture, Section, parts_of
-from alula.reports.sentences.verdicts import besides, brief, checks_of
+from alula.reports.sentences.verdicts import besides, checks_of, opening
 from alula.reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from alula.reports.words.numbers import fixed
 
@@ -45,11 +45,10 @@ def check_sections(result: CheckResult, published: str = "") -> tuple[Section, .
     tuple of Section
         What would change it first, as it stands above the contents of the page; what is not covered last.
     """
-    several = len(result.load_cases) > 1
     sections = (
         changes_section(result),
         case_section(result, published),
-        checks_section(checks_of(result), result.verdict, "In this pose", several=several),
+        checks_section(result.case, checks_of(result), result.verdict, "In this pose"),
         _model(result),
         linkage_section(result),
         assembly_section(result),
@@ -131,8 +130,8 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
     Page
     """
     checks, several = checks_of(result), len(result.load_cases) > 1
-    why = brief(result.verdict, checks, several=several)
-    change, command = first_change(sections, said=why)
+    told_first = opening(result.case, result.verdict, checks, several=several, short=True)
+    change, command = first_change(sections, said=" ".join(told_first))
     alone = len(sections[0].data["changes"]) <= 1 and not command  # then the first lines say all of it
     picture = linkage_picture(result, governing_load_cases(result)[0])
     case = f" Case {code(result.name)}." if result.name else ""
@@ -142,7 +141,7 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
         kind="Structural check of a planar linkage",
         heading=result.case.title,
         verdict=result.verdict.value,
-        lead=tuple(filter(None, (why, change, besides(result.caveats)))),
+        lead=tuple(filter(None, (told_first[0], *map(headed, told_first[1:]), change, besides(result.caveats)))),
         first=(
             Section(key="picture", parts=(picture,)),
             nearest(checks, several=several, all_below=has_all(checks)),

@@ -41,7 +41,8 @@ def tell_envelope(result: EnvelopeResult, output: Path | None = None, *, json: b
 
     def show(sections: Sequence[Section], console: Console) -> None:
         verdict_line(result.verdict, result.case.title, console)
-        say(console, envelope_headline(result))
+        for line in envelope_headline(result):
+            say(console, line)
         print_sections(sections, console)
 
     def fill(folder: Path) -> None:

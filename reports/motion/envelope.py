@@ -37,7 +37,7 @@ from alula.reports.sections.section import (
 )
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import by_heading, not_checked
-from alula.reports.sentences.verdicts import besides, decision
+from alula.reports.sentences.verdicts import besides, opening
 from alula.reports.turnable.moving import ENVELOPE_CAPTION
 from alula.reports.words.numbers import fixed, sentence
 
@@ -55,11 +55,10 @@ def envelope_sections(result: EnvelopeResult) -> tuple[Section, ...]:
     -------
     tuple of Section
     """
-    several = len(result.moved.forces) > 1
     return (
         _motion(result),
         model_section(result.case, ENVELOPE_CAPTION),
-        checks_section(result.checks, result.verdict, "Over the motion", several=several),
+        checks_section(result.case, result.checks, result.verdict, "Over the motion"),
         _links(result),
         _fatigue(result),
         _linkage(result),
@@ -67,8 +66,8 @@ def envelope_sections(result: EnvelopeResult) -> tuple[Section, ...]:
     )
 
 
-def envelope_headline(result: EnvelopeResult) -> str:
-    """Return the verdict of an envelope, what decides it and what it stands on besides.
+def envelope_headline(result: EnvelopeResult) -> tuple[str, ...]:
+    """Return the verdict of an envelope, what decides it, its tiers and what it stands on besides.
 
     Parameters
     ----------
@@ -76,10 +75,11 @@ def envelope_headline(result: EnvelopeResult) -> str:
 
     Returns
     -------
-    str
+    tuple of str
+        Paragraphs.
     """
-    decided = decision(result.verdict, by_nearness(result.checks), several=len(result.moved.forces) > 1)
-    return " ".join(filter(None, (decided, besides(caveats(result.case, over_motion=True)))))
+    told = opening(result.case, result.verdict, by_nearness(result.checks), several=len(result.moved.forces) > 1)
+    return tuple(filter(None, (*told, besides(caveats(result.case, over_motion=True)))))
 
 
 def envelope_record(result: EnvelopeResult, sections: tuple[Section, ...]) -> dict[str, Any]:
@@ -118,7 +118,7 @@ def envelope_page(result: EnvelopeResult, sections: tuple[Section, ...]) -> Page
         kind="Stress of a planar linkage over its motion",
         heading=result.case.title,
         verdict=result.verdict.value,
-        lead=(envelope_headline(result),),
+        lead=envelope_headline(result),
         sections=sections,
         footer=page_footer(result.name, "envelope.csv"),
     )

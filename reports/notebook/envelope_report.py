@@ -43,7 +43,7 @@ class EnvelopeReport(Tabled):
     @property
     def headline(self) -> str:
         """The verdict, what decides it, and what it stands on besides."""
-        return envelope_headline(self.result)
+        return " ".join(envelope_headline(self.result))
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from alula.fea.asked.tiers import tiers_of
 from alula.fea.common.verdict import (
     UNLOADED_QUANTITIES,
     CheckOutcome,
@@ -12,6 +13,7 @@ from alula.fea.common.verdict import (
     reason_for,
     worst_of_each,
 )
+from alula.loads.case.case import Case
 from alula.reports.sections.data import entries
 from alula.reports.sections.markup import bold, link
 from alula.reports.sections.section import Folded, Items, Part, Section, Text, say
@@ -59,6 +61,27 @@ def check_records(checks: Iterable[CheckOutcome]) -> list[dict[str, object]]:
     """
     names = "name link load_case quantity value limit margin verdict applies reason"
     return [entries(check, names) | {"unit": check.unit or "1"} for check in checks]
+
+
+def tier_records(case: Case, checks: Sequence[CheckOutcome]) -> list[dict[str, object]]:
+    """Return the verdicts of the tiers as entries of ``result.json``.
+
+    Parameters
+    ----------
+    case : Case
+    checks : sequence of CheckOutcome
+        All of them.
+
+    Returns
+    -------
+    list of dict
+    """
+    return [
+        entries(one, "tier verdict asks")
+        | {"decides": None if one.decides is None else entries(one.decides, "name link load_case quantity")}
+        | {"not_asked_of": list(one.unasked)}
+        for one in tiers_of(case, checks)
+    ]
 
 
 def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "") -> Table:
@@ -152,25 +175,24 @@ def nearest(checks: Sequence[CheckOutcome], *, several: bool, all_below: bool) -
     )
 
 
-def checks_section(checks: Sequence[CheckOutcome], verdict: Verdict, where: str, *, several: bool) -> Section:
+def checks_section(case: Case, checks: Sequence[CheckOutcome], verdict: Verdict, where: str) -> Section:
     """Return all checks and how they are decided.
 
     Parameters
     ----------
+    case : Case
     checks : sequence of CheckOutcome
     verdict : Verdict
         Of all of them.
     where : str
         Where it was looked at, such as ``In this pose``.
-    several : bool
-        Whether there are several load cases.
 
     Returns
     -------
     Section
         Its table ``checks`` has every check, each check with its worst load case above where there are several.
     """
-    ordered, worst = by_nearness(checks), worst_of_each(checks)
+    ordered, worst, several = by_nearness(checks), worst_of_each(checks), len(case.load_cases) > 1
     meaning = _MEANING[verdict].format(where=where)
     if verdict is Verdict.PASS:
         meaning += " The last section lists what the model does not cover."
@@ -193,7 +215,7 @@ def checks_section(checks: Sequence[CheckOutcome], verdict: Verdict, where: str,
         title="All checks" if has_all(checks) else "How checks are decided",
         short="Checks",
         parts=tuple(parts),
-        data={"checks": check_records(checks)},
+        data={"checks": check_records(checks), "tiers": tier_records(case, checks)},
     )
 
 

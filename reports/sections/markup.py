@@ -23,6 +23,21 @@ def bold(text: object) -> str:
     return _within("b", text)
 
 
+def headed(text: str) -> str:
+    """Return a text with what stands before its first colon in bold letters.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
+    head, colon, rest = text.partition(":")
+    return bold(head) + colon + rest
+
+
 def code(text: object) -> str:
     """Return a text in letters of equal width: a command, an entry of a file.
 

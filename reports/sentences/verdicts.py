@@ -4,14 +4,17 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict, deciding
+from alula.fea.asked.tiers import TierVerdict, tiers_of
+from alula.fea.common.verdict import CheckOutcome, Quantity, Sense, Verdict, deciding
 from alula.loads.text.caveat import Caveat, Heading
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import by_heading
-from alula.reports.words.numbers import joined, measured, number, plain, sentence
+from alula.reports.words.numbers import band, joined, measured, number, plain, sentence
+from alula.reports.words.terminal import KEPT
 
 if TYPE_CHECKING:
     from alula.fea.outcomes.result import CheckResult, SectionComparison
+    from alula.loads.case.case import Case
     from alula.loads.states.case_motion import CaseMotion
 
 HAND_AGREEMENT = 0.03
@@ -80,8 +83,94 @@ def headline(result: "CheckResult") -> str:
     str
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
-    told = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
-    return " ".join(filter(None, (told, besides(result.caveats))))
+    return " ".join(first_lines(result))
+
+
+def first_lines(result: "CheckResult") -> tuple[str, ...]:
+    """Return the paragraphs of a headline: the verdict and what decides it, its tiers, what no check looks at.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of str
+    """
+    told = opening(result.case, result.verdict, checks_of(result), several=len(result.load_cases) > 1)
+    return tuple(filter(None, (*told, besides(result.caveats))))
+
+
+def opening(
+    case: "Case", verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool, short: bool = False
+) -> tuple[str, ...]:
+    """Return a verdict and what decides it, then a line for each of its tiers.
+
+    Parameters
+    ----------
+    case : Case
+    verdict : Verdict
+    checks : sequence of CheckOutcome
+        All of them.
+    several : bool
+        Whether there are several load cases, which are then named.
+    short : bool, optional
+        True for counts in place of many names.
+
+    Returns
+    -------
+    tuple of str
+    """
+    tiers = tiers_of(case, checks)
+    return (brief if short else decision)(verdict, checks, several=several, tiers=tiers), *tier_lines(
+        tiers, several=several
+    )
+
+
+MOST_NAMED = 3
+"""Links that the line of a tier names; of more it tells how many there are."""
+_MISSED = {Sense.AT_LEAST: "<", Sense.AT_MOST: ">"}
+
+
+def tier_lines(tiers: Iterable[TierVerdict], *, several: bool) -> tuple[str, ...]:
+    """Return a line for each tier of a verdict: its verdict and what decides it, or what asks for it.
+
+    Parameters
+    ----------
+    tiers : iterable of TierVerdict
+    several : bool
+        Whether there are several load cases, which are then named.
+
+    Returns
+    -------
+    tuple of str
+        Such as ``Stays elastic: FAIL, safety factor of crank 0.812 (0.704 to 0.922) < 1.5.``
+    """
+    return tuple(f"{sentence(one.tier)[:-1]}: {_of_tier(one, several=several)}" for one in tiers)
+
+
+def _of_tier(one: TierVerdict, *, several: bool) -> str:
+    check = one.decides
+    if check is None and not one.links:
+        return "not asked of brittle links, which break before they yield."
+    if check is None:
+        return f"not asked; a check of type {one.asks} asks for it."
+    some = f"{len(one.unasked)} of {len(one.links)} links" if len(one.unasked) > MOST_NAMED else joined(one.unasked)
+    besides_them = f"; not asked of {some}" if some and check.verdict is not Verdict.FAIL else ""
+    return f"{check.verdict.upper()}, {_stands(check, several=several)}{besides_them}."
+
+
+def _stands(check: CheckOutcome, *, several: bool) -> str:
+    """Return how a check stands to its limit, such as ``safety factor of AE (dive) 2.5 (2.1 to 2.9) ≥ 2``."""
+    if not check.applies:
+        return f"{named(check)} is not applicable"
+    if check.quantity is Quantity.LOAD_SHARE and check.verdict is Verdict.FAIL:
+        return "the linkage gives way"
+    sense, under = check.quantity.sense, f" ({check.load_case})" if several and not check.shared else ""
+    sign = {Verdict.PASS: f" {sense.value}", Verdict.FAIL: f" {_MISSED[sense]}"}.get(
+        check.verdict, f", limit {sense.value}"
+    )
+    return f"{named(check)}{under} {band(check.value)}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
 
 
 def besides(found: Iterable[Caveat]) -> str:
@@ -101,7 +190,14 @@ def besides(found: Iterable[Caveat]) -> str:
     return " ".join(f"{heading}: {told}" for heading, told in by_heading(by_order, short=True))
 
 
-def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool, names: bool = True) -> str:
+def decision(
+    verdict: Verdict,
+    checks: Sequence[CheckOutcome],
+    *,
+    several: bool,
+    names: bool = True,
+    tiers: Sequence[TierVerdict] = (),
+) -> str:
     """Return a verdict and what decides it.
 
     Parameters
@@ -113,6 +209,8 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool,
         Whether there are several load cases, which are then named.
     names : bool
         Whether the checks that decide are named.
+    tiers : sequence of TierVerdict
+        That are told beside it: what decides one of them is not told twice.
 
     Returns
     -------
@@ -122,13 +220,13 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool,
     """
     if not checks:
         return "Undecided: the case contains no check."
-    count = len(checks)
+    count, found = len(checks), deciding(checks)
+    chosen, first = {id(check) for check in found}, found[0]
+    besides_them = not any(first is one.decides for one in tiers)
     if verdict is Verdict.PASS:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
-        closest = _with_limit(deciding(checks)[0], several=several)
-        return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
-    found = deciding(checks)
-    chosen, first = {id(check) for check in found}, found[0]
+        closest = f" Closest to its limit: {_with_limit(first, several=several)}." if besides_them else ""
+        return f"Pass: {kept} over the whole error band.{closest}"
     named_all = f": {_all_named(check for check in checks if id(check) in chosen)}" if names else ""
     share = f"{len(found)} of {count} checks"
     if verdict is Verdict.UNDECIDED:
@@ -137,25 +235,26 @@ def decision(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool,
     missed = f"{share} {'misses its limit' if len(found) == 1 else 'miss their limits'} over the whole error band"
     if first.quantity is Quantity.LOAD_SHARE:
         return f"Fail: {_under(first, several=several)}{gives_way(first)}. {missed}{named_all}."
-    return f"Fail: {missed}{named_all}. Worst: {_with_limit(first, several=several)}."
+    worst = f" Worst: {_with_limit(first, several=several)}." if besides_them else ""
+    return f"Fail: {missed}{named_all}.{worst}"
 
 
-def brief(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool) -> str:
+def brief(verdict: Verdict, checks: Sequence[CheckOutcome], *, several: bool, tiers: Sequence[TierVerdict] = ()) -> str:
     """Return a verdict and what decides it, without the names of all checks that do where they are many.
 
     Parameters
     ----------
     verdict : Verdict
     checks : sequence of CheckOutcome
-    several : bool
+    several, tiers
         As for ``decision``.
 
     Returns
     -------
     str
     """
-    told = decision(verdict, checks, several=several)
-    return told if len(told) <= BRIEF else decision(verdict, checks, several=several, names=False)
+    told = decision(verdict, checks, several=several, tiers=tiers)
+    return told if len(told) <= BRIEF else decision(verdict, checks, several=several, tiers=tiers, names=False)
 
 
 def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:

@@ -47,7 +47,7 @@ def test_it_stands_without_pictures(result):
     "words",
     [
         "Pass: all 20 checks keep their limits",
-        "safety factor of link AE under load case weight, 3.65",
+        "PASS, safety factor of AE (weight) 3.65",
         "AG → AE 0.5011 0.8095 0.9520",
         "Drive torque on AE about A: −130.6 N·mm (clockwise",
         "condition number",

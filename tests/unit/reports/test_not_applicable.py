@@ -18,6 +18,7 @@ from alula.fea.outcomes.unloaded import undecided
 from alula.fea.sizing.changes import changes
 from alula.fea.study.margin import least_margin, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.loads.case.case_file import read_case
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.renderers.console import print_sections
 from alula.reports.sections.checks import check_records, checks_section
@@ -25,6 +26,7 @@ from alula.reports.sections.section import Folded, Text
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.verdicts import checks_of, decision, inapplicable
 
+CASE = read_case("owl-wing-static")
 ENTRIES = (
     PLANAR,
     'load_cases.light={forces=[{link="CH", at="H", force=["0 N", "-0.02 N"]}]}',
@@ -124,7 +126,7 @@ def test_the_console_tells_them_below_the_table(wing):
 def test_the_console_tells_them_once_and_lists_them_last():
     console = Console(width=100, record=True, file=io.StringIO())
     checks = [outcome("AE", Verdict.FAIL), outcome("CF").not_applicable("gone")]
-    print_sections([checks_section(checks, Verdict.FAIL, "In this pose", several=False)], console)
+    print_sections([checks_section(CASE, checks, Verdict.FAIL, "In this pose")], console)
     above, group, below = console.export_text().partition("Not applicable, 1 check: gone.")
     assert group
     assert "CF" not in above
@@ -150,7 +152,7 @@ def test_the_page_has_one_group_at_the_end_and_none_of_it_among_the_nearest(wing
 
 def test_a_section_of_checks_has_one_line_and_then_all_in_order():
     checks = by_nearness([outcome("AE").not_applicable("gone"), outcome("CF"), outcome("CH").not_applicable("gone")])
-    parts = checks_section(checks, Verdict.UNDECIDED, "In this pose", several=False).parts
+    parts = checks_section(CASE, checks, Verdict.UNDECIDED, "In this pose").parts
     assert Text("Not applicable, 2 checks: gone. Safety factor of AE and CH.", "small") in parts
     [every] = [part.parts[0] for part in parts if isinstance(part, Folded) and part.told]
     assert [(row[2], str(row[-1])) for row in every.rows] == [

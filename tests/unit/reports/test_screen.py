@@ -31,6 +31,10 @@ def test_it_has_one_screen_whatever_the_case(name, terminal):
     assert lines[0].startswith(f" {result.verdict.upper()} ")
     why = decision(result.verdict, checks_of(result), several=len(result.load_cases) > 1)
     assert why.split(".")[0].split(":")[0] in " ".join(lines)
+    assert [line.split(":")[0] for line in lines if line.startswith(("Stays ", "Does not "))] == [
+        "Stays elastic",
+        "Does not break",
+    ]
     first = deciding(checks_of(result))[0]
     rule = next(i for i, line in enumerate(lines) if line.startswith("──"))
     assert first.quantity.split()[0] in lines[rule + 1]
@@ -46,7 +50,7 @@ def test_a_check_under_several_load_cases_stands_once_with_the_worst():
     """Of either order of the load cases."""
     result = by_hand("owl-wing-braking")
     for cases in (result.load_cases, dict(reversed(result.load_cases.items()))):
-        shown = replace(result, load_cases=cases)
+        shown = replace(result, load_cases=cases, warnings=())
         every = [check for check in checks_of(shown) if check.applies]
         worst = min(
             (check for check in every if (check.quantity, check.link) == ("safety factor", "AE")),

@@ -1,0 +1,154 @@
+"""What stays elastic and what does not break: which checks are of which, and what decides each of the two."""
+
+import itertools
+
+import pytest
+from edited_cases import edited
+
+from alula.fea.asked.tiers import tier_of, tiers_of
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Tier, Verdict
+from alula.loads.case.case_file import read_case
+from alula.reports.sections.checks import tier_records
+from alula.reports.sentences.verdicts import decision, tier_lines
+from alula.reports.words.terminal import KEPT
+
+CHECKS = ('checks.bearing={type="bearing"}', 'checks.eyes={type="eye", minimum=2.4, links=["pedal"]}')
+BRITTLE = (
+    *CHECKS,
+    'parts.rod.material="resin-405nm"',
+    'joints.R.pin_material="resin-405nm"',
+)
+PEDAL, ROD = Subject.link("pedal"), Subject.link("rod")
+
+
+@pytest.fixture(scope="module")
+def ductile():
+    """A pedal and a rod of aluminium: strength of both, eyes of the pedal, pins and bearing."""
+    return edited("spring-pedal", CHECKS)
+
+
+@pytest.fixture(scope="module")
+def mixed():
+    """The same with a rod, and a pin at R, of resin."""
+    return edited("spring-pedal", BRITTLE)
+
+
+def outcome(subject, low, high=None, *, name="strength", quantity=Quantity.SAFETY_FACTOR, limit=2.0):
+    band = Band(value=low, low=low, high=low if high is None else high)
+    return CheckOutcome.of(name, subject, "push", quantity, band, limit)
+
+
+def eyes(low, high=None):
+    return outcome(PEDAL, low, high, name="eyes", quantity=Quantity.EYES, limit=2.4)
+
+
+def buckling(low):
+    return outcome(LINKAGE, low, name="buckling", quantity=Quantity.BUCKLING_FACTOR, limit=1.0)
+
+
+def test_each_quantity_is_of_one_tier():
+    """What loads make of a link is about breaking, but for first yield and for lengths; the rest is of neither."""
+    assert [one for one in Quantity if one.tier is Tier.ELASTIC] == [Quantity.SAFETY_FACTOR]
+    lengths = {Quantity.DEFLECTION, Quantity.DISPLACEMENT, Quantity.LAYER_GAP}
+    neither = {one for one in Quantity if one.tier is Tier.NEITHER}
+    assert {one for one in neither if one.origin == "loads"} == lengths
+    assert {one for one in Quantity if one.origin != "loads"} < neither
+    for one in (Quantity.PLASTIC_COLLAPSE, Quantity.EYES, Quantity.SUSTAINED_STRESS, Quantity.FATIGUE_LIFE):
+        assert one.tier is Tier.BREAK
+
+
+@pytest.mark.parametrize(
+    ("subject", "name", "of_ductile", "of_brittle"),
+    [
+        (PEDAL, "strength", Tier.ELASTIC, Tier.ELASTIC),
+        (ROD, "strength", Tier.ELASTIC, Tier.BREAK),
+        (Subject.pin("O"), "pins", Tier.ELASTIC, Tier.ELASTIC),
+        (Subject.pin("R"), "pins", Tier.ELASTIC, Tier.BREAK),
+        (Subject.pin("O"), "bearing", Tier.BREAK, Tier.BREAK),
+    ],
+)
+def test_a_safety_factor_is_of_the_tier_of_the_strength_that_it_is_against(
+    ductile, mixed, subject, name, of_ductile, of_brittle
+):
+    assert [tier_of(case, outcome(subject, 3.0, name=name)) for case in (ductile, mixed)] == [of_ductile, of_brittle]
+
+
+def test_the_worst_outcome_of_a_tier_decides_it_in_any_order(ductile):
+    near, far, open_yet = outcome(PEDAL, 2.5), outcome(ROD, 9.0), outcome(ROD, 1.0, 3.0)
+    failing, weak, strong = outcome(PEDAL, 1.9), eyes(2.5), eyes(9.0)
+    for elastic, decides in (((near, far), near), ((near, open_yet), open_yet), ((open_yet, failing), failing)):
+        for order in itertools.permutations((*elastic, weak, strong)):
+            found = tiers_of(ductile, order)
+            assert [one.decides for one in found] == [decides, weak]
+            assert [one.verdict for one in found] == [decides.verdict, Verdict.PASS]
+            assert [one.unasked for one in found] == [(() if far in order or open_yet in order else ("rod",)), ("rod",)]
+
+
+def test_what_nobody_asked_for_does_not_say_that_nothing_breaks_but_tells_where_something_does(ductile):
+    elastic, broken = tiers_of(ductile, [outcome(PEDAL, 2.5), outcome(ROD, 2.5), buckling(5.0)])
+    assert (elastic.verdict, broken.verdict, broken.asks) == (Verdict.PASS, None, "plastic-collapse")
+    assert broken.unasked == ("pedal", "rod")
+    lost = buckling(0.5)
+    assert tiers_of(ductile, [outcome(PEDAL, 2.5), lost])[1].decides is lost
+    assert tiers_of(ductile, [eyes(9.0), lost, eyes(2.5)])[1].decides is lost
+    assert tiers_of(ductile, [eyes(9.0), buckling(1.5)])[1].decides == buckling(1.5)
+    deflected = outcome(PEDAL, 9.0, name="bend", quantity=Quantity.DEFLECTION, limit=1.0)
+    assert deflected.verdict is Verdict.FAIL
+    assert [one.decides for one in tiers_of(ductile, [deflected])] == [None, None]
+
+
+def test_brittle_links_have_no_elastic_tier(mixed):
+    elastic, broken = tiers_of(mixed, [outcome(PEDAL, 2.5), outcome(ROD, 2.2)])
+    assert (elastic.links, elastic.decides.subject) == (("pedal",), PEDAL)
+    assert (broken.links, broken.decides.subject, broken.unasked) == (("pedal", "rod"), ROD, ("pedal",))
+    starter = read_case("four-bar")
+    checks = [outcome(Subject.link(name), 7.0, limit=6.0) for name in starter.checked_links]
+    elastic, broken = tiers_of(starter, checks)
+    assert (elastic.links, elastic.verdict, broken.verdict, broken.unasked) == ((), None, Verdict.PASS, ())
+    assert tiers_of(starter, [])[1].asks == "safety-factor"
+
+
+def test_the_lines_name_what_decides_and_what_asks(ductile, mixed):
+    def lines(case, *checks, several=False):
+        return [line.replace(KEPT, " ") for line in tier_lines(tiers_of(case, checks), several=several)]
+
+    assert lines(ductile, outcome(ROD, 1.5, 1.9), outcome(PEDAL, 3.0), eyes(2.5, 3.0)) == [
+        "Stays elastic: FAIL, safety factor of rod 1.50 (1.50 to 1.90) < 2.",
+        "Does not break: PASS, safety factor of the eyes of pedal 2.50 (2.50 to 3.00) ≥ 2.4; not asked of rod.",
+    ]
+    assert lines(ductile, outcome(ROD, 1.5, 2.5), outcome(PEDAL, 3.0), several=True) == [
+        "Stays elastic: UNDECIDED, safety factor of rod (push) 1.50 (1.50 to 2.50), limit ≥ 2.",
+        "Does not break: not asked; a check of type plastic-collapse asks for it.",
+    ]
+    lost = outcome(LINKAGE, 0.2, name="held", quantity=Quantity.LOAD_SHARE, limit=1.0)
+    assert lines(
+        ductile, outcome(ROD, 9.0).not_applicable("gone"), outcome(PEDAL, 9.0).not_applicable("gone"), lost
+    ) == [
+        "Stays elastic: UNDECIDED, safety factor of rod is not applicable.",
+        "Does not break: FAIL, the linkage gives way.",
+    ]
+    stays = outcome(ROD, 12.0, name="long", quantity=Quantity.SUSTAINED_STRESS, limit=11.0)
+    assert lines(ductile, stays)[1] == "Does not break: FAIL, sustained stress of rod 12.0 > 11 MPa."
+    assert lines(read_case("four-bar"), outcome(Subject.link("crank"), 7.0)) == [
+        "Stays elastic: not asked of brittle links, which break before they yield.",
+        "Does not break: PASS, safety factor of crank 7.00 ≥ 2; not asked of coupler and rocker.",
+    ]
+    six = read_case("six-bar")
+    assert lines(six, outcome(Subject.link("crank"), 7.0))[0].endswith("; not asked of 4 of 5 links.")
+
+
+def test_what_decides_a_tier_is_not_told_twice(ductile):
+    near, bend = outcome(PEDAL, 2.5), outcome(PEDAL, 0.9, name="bend", quantity=Quantity.DEFLECTION, limit=1.0)
+    for checks, tail in (((near, eyes(9.0)), False), ((near, eyes(9.0), bend), True)):
+        told = decision(Verdict.PASS, checks, several=False, tiers=tiers_of(ductile, checks))
+        assert ("Closest to its limit" in told) == tail
+
+
+def test_data_of_the_tiers(ductile):
+    elastic, broken = tier_records(ductile, [outcome(PEDAL, 1.5), outcome(ROD, 3.0)])
+    decides = {"name": "strength", "link": "pedal", "load_case": "push", "quantity": "safety factor"}
+    assert elastic == {
+        "tier": "stays elastic", "verdict": "fail", "asks": "safety-factor", "decides": decides, "not_asked_of": []
+    }  # fmt: skip
+    assert (broken["verdict"], broken["decides"], broken["not_asked_of"]) == (None, None, ["pedal", "rod"])
