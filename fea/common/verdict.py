@@ -167,9 +167,11 @@ class Quantity(StrEnum):
     def tier(self) -> Tier:
         """What it asks of strength; a safety factor against ultimate strength is of breaking (``asked.tiers``).
 
+        Line contact is judged by first yield below the line.
+
         What loads make of a link breaks it or lets it give way, but for lengths, which are of stiffness.
         """
-        if self is Quantity.SAFETY_FACTOR:
+        if self in (Quantity.SAFETY_FACTOR, Quantity.LINE_CONTACT):
             return Tier.ELASTIC
         return Tier.BREAK if self.origin == "loads" and self.unit != "mm" else Tier.NEITHER
 
