@@ -11,6 +11,7 @@ from tilting_pins import PLA, loaded
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.solid_frame import with_solids
+from alula.fea.common.sought import LEFT
 from alula.fea.doubts.force_doubt import measures, outermost, sharing_answers, sharing_doubt
 from alula.fea.links.solid_result import link_task
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
@@ -71,7 +72,7 @@ def test_a_way_of_sharing_is_solved_on_the_solid():
     (stress, moved), (plain, still) = largest(alone), largest(refined.solution)
     assert stress > 2.0 * plain
     least, most = sorted((moved / still, 1.0))
-    beyond = 0.05 * (most - least)  # what the search may have left
+    beyond = LEFT * (most - least)  # what the search may have left
     assert (found["displacement"].low, found["displacement"].high) == pytest.approx(
         (least - beyond, most + beyond), rel=1e-3
     )

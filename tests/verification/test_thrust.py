@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
 
+from alula.fea.common.sought import LEFT
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import JointForces
 from alula.fea.standing.thrust import thrusts
@@ -76,7 +77,7 @@ def test_pins_on_either_side_of_a_bar_are_pushed_by_its_couple_over_its_length()
         alone = abs(float(forces.reactions.joints[name].wrench[2]))
         assert told[name].value == pytest.approx(alone)
         every = [float(one.joints[name].wrench[2]) for one in (forces.reactions, *forces.sharings)]
-        beyond = 0.05 * (max(every) - min(every))  # what the search may have left
+        beyond = LEFT * (max(every) - min(every))  # what the search may have left
         assert told[name].high == pytest.approx(max(*every, *(-x for x in every)) + beyond, rel=1e-12)
     [sentence] = thrust_texts(forces)
     assert sentence.text.startswith("Thrust along the pins [N], which heads, washers or rings must hold: ")

@@ -13,6 +13,7 @@ from alula.fea.asked.asked import asked
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
+from alula.fea.common.sought import LEFT
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.judging.bearing import sharing
@@ -169,7 +170,7 @@ def test_the_worse_of_two_plates_counts_and_the_direction_of_its_force(order):
 def test_of_all_ways_of_sharing_couples_the_one_that_presses_most_counts(order):
     wrenches = np.zeros((3, 6))
     wrenches[:, :2] = (3.0, 0.0), (0.0, 4.0), (2.0, 0.0)
-    beyond = 0.05 * (4.0 - 2.0)  # what a search may have left
+    beyond = LEFT * (4.0 - 2.0)  # what a search may have left
     found = sharing(eyes(), "B", "level", [wrenches[0], *wrenches[1:][::order]])
     assert found.high == pytest.approx((4.0 + beyond) / 3.0)
     stands = sharing(eyes(), "B", "level", [wrenches[1], *wrenches[::2][::order]])

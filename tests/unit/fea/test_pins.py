@@ -11,6 +11,7 @@ from materials import SOURCED
 
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
+from alula.fea.common.sought import LEFT
 from alula.fea.common.verdict import Verdict
 from alula.fea.outcomes.pins import PinStress, pin_stress, shared_stress, stress_at
 from alula.geometry.base.errors import CaseError
@@ -267,7 +268,7 @@ def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_sh
     case = SimpleNamespace(linkage=SimpleNamespace(rise=lambda joint: 2.0))
     forces = SimpleNamespace(reactions=ways(2.0), sharings=[ways(2.0 * size) for size in sizes])
     found = shared_stress(case, "B", 4.0, forces)
-    beyond = 0.05 * (3.0 - min(sizes))
+    beyond = LEFT * (3.0 - min(sizes))
     assert found.shear == pytest.approx(4.0 * (3.0 + beyond))
     for name in ("moment", "bending", "equivalent"):
         band = getattr(found, name)

@@ -16,6 +16,7 @@ from alula.fea.buckling.lateral import ABOUT_Y, ABOUT_Z, lateral_factor
 from alula.fea.buckling.wall import BENDING, COMPRESSION, flattening_moment, knock_down, perfect_stress
 from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter, compliance_scatter
+from alula.fea.common.sought import LEFT
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.force_doubt import stress_by_hand
@@ -283,7 +284,7 @@ def test_over_a_motion_play_and_the_sharing_of_couples_widen_the_band_and_edges_
     stressed = [stress_by_hand(case, "rocker", way) for way in ways]
     high = max(stressed) / min(stressed)
     assert high > 1.0
-    high += 0.05 * (high - 1.0)  # what a search may have left
+    high += LEFT * (high - 1.0)  # what a search may have left
     first, second = sorted(ways, key=lambda way: stress_by_hand(case, "rocker", way))
     over.ways[key] = LinkAnswers(stated=first, others=(second,), stress=widest(COUPLES), displacement=widest(COUPLES))
     [shared] = [one for one in over.outcomes({}) if one.quantity is Quantity.WALLS]
