@@ -1,7 +1,7 @@
 """How pins may stand between layers: the state of the stated clearances, and those in which links bear most and least.
 
 What each hole may be between is open. A joint force is a function of the radii that is neither convex nor monotonic,
-so that its ends are sought: each couple that a pin carries into a link and the stress of each link are followed upwards
+so that its ends are sought: thrusts and the stress of each pin and each link are followed upwards
 and downwards (``alula.fea.pins.aims``, ``alula.fea.pins.ascent``), on the path of the interior point method first,
 where rims do not quite touch. All states that are met on the way tell of all of them.
 """
@@ -192,7 +192,7 @@ class PinStates:
         return tuple(self.rims.frame.reactions(one.joint_wrenches, one.residual) for one in self.answers[1:])
 
     def extremes(self) -> Real:
-        """Return the shares at which couples are largest and least, after that of the values and those of ``LEVELS``.
+        """Return the shares at which what is sought is largest, after that of the values and those of ``LEVELS``.
 
         Returns
         -------
