@@ -31,7 +31,7 @@ Index = NDArray[np.int64]
 LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
 """Shares of all that is open at which the search starts, beside the values. These states are kept whether or not some
 couple is largest in them."""
-DRAWS = 400
+DRAWS = 1200
 """Further states at which the search starts, drawn at random, most clearances at an end or near the lower one."""
 STAGES = ((1e-3, 4, 1e-3), (1e-4, 2, 1e-4))
 """Of the search, one after the other: the residual at which its states end, from how many of the largest ones each

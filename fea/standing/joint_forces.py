@@ -96,7 +96,7 @@ class JointForces:
 
     @cached_property
     def sharings(self) -> tuple[Reactions, ...]:
-        """Joint forces with pins that stand otherwise in their holes, those in which links and pins bear most and least.
+        """Joint forces with pins that stand otherwise in their holes, in which links and pins bear most and least.
 
         Empty without layers, and where nothing is open. Solved where they are asked for, since they are dozens.
         """
