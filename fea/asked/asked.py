@@ -17,6 +17,7 @@ from alula.geometry.base.model import CaseModel
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import cards_of_connection
+from alula.loads.case.eye_rules import eye_links
 from alula.loads.records.check_spec import (
     BearingCheck,
     ClearanceCheck,
@@ -292,11 +293,12 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
         case DisplacementCheck(at=str()):
             link, point = case.displaced_point(name, check)
             return (Subject.point(point, link),)
+        case EyeCheck():
+            return tuple(map(Subject.link, eye_links(case, check)))
         case (
             SafetyFactorCheck()
             | SustainedCheck()
             | DisplacementCheck()
-            | EyeCheck()
             | PlasticCollapseCheck()
             | NotchCheck()
             | FatigueCheck()

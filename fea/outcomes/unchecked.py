@@ -14,6 +14,7 @@ from alula.fea.outcomes.limits import layer_caveats, limit_caveats
 from alula.fea.outcomes.pins import shaft_caveats
 from alula.geometry.materials.plausible import untold, unusual
 from alula.loads.case.case import Case
+from alula.loads.case.eye_rules import eye_caveats
 from alula.loads.case.joint_rules import joint_caveats
 from alula.loads.case.load_rules import load_caveats
 from alula.loads.case.toleranced import tolerance_caveats
@@ -55,6 +56,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: Reason | None = 
         *collision_caveats(case),
         *_pins(case),
         *wall_caveats(case),
+        *eye_caveats(case),
         *limit_caveats(case),
         *tolerance_caveats(case),
         *layer_caveats(case),

@@ -3,6 +3,9 @@
 A refusal names the check that judges the link instead.
 """
 
+from collections.abc import Iterator
+from contextlib import suppress
+
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed
@@ -11,7 +14,9 @@ from alula.geometry.parts.plate import Plate
 from alula.geometry.parts.straight import Straight
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import BTH_1, EyeCheck
+from alula.loads.text.caveat import Caveat, Topic
 from alula.loads.text.explain import require
+from alula.loads.text.reason import reason
 
 
 def check_eye_check(case: CoreCase, name: str, check: EyeCheck) -> None:
@@ -34,12 +39,54 @@ def check_eye_check(case: CoreCase, name: str, check: EyeCheck) -> None:
         require(f"{entry}.links", link, case.checked_links, "is no link with a part")
     if not case.checked_links:
         raise CaseError(f"{entry}: no link has a part, so there are no eyes; give a link a part")
-    for link in check.links or case.checked_links:
-        _check_material(case, entry, check, link)
+    for link in eye_links(case, check) or case.checked_links:
+        _check_kind(case, entry, link)
         _check_shape(case, entry, link)
+        _check_strength(case, entry, check, link)
 
 
-def _check_material(case: CoreCase, entry: str, check: EyeCheck, link: str) -> None:
+def eye_links(case: CoreCase, check: EyeCheck) -> tuple[str, ...]:
+    """Return the links whose eyes a check judges: those that it names, else all for which the formulas are.
+
+    Parameters
+    ----------
+    case : CoreCase
+    check : EyeCheck
+
+    Returns
+    -------
+    tuple of str
+    """
+    if check.links:
+        return check.links
+    found = []
+    for link in case.checked_links:
+        with suppress(CaseError):
+            _check_kind(case, "", link)
+            _check_shape(case, "", link)
+            found.append(link)
+    return tuple(found)
+
+
+def eye_caveats(case: CoreCase) -> Iterator[Caveat]:
+    """Yield the links that a check of all eyes leaves out, since its formulas are not for them.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Yields
+    ------
+    Caveat
+    """
+    checks = [check for check in case.checks.values() if isinstance(check, EyeCheck)]
+    judged = {link for check in checks for link in eye_links(case, check)}
+    left = [link for link in case.checked_links if link not in judged]
+    if left and any(not check.links for check in checks):
+        yield Caveat(topic=Topic.STRESS, what=reason("eyes_of", links=left), why=reason("no_formula_for_eyes"))
+
+
+def _check_kind(case: CoreCase, entry: str, link: str) -> None:
     part = case.part_of(link)
     card, material = part.material, case.all_materials[part.material]
     printed = part.build_direction is not None or is_printed(material)
@@ -57,6 +104,11 @@ def _check_material(case: CoreCase, entry: str, check: EyeCheck, link: str) -> N
             f"{entry}.links: the formulas for eyes are those of ductile metals, but link '{link}' is of '{card}', "
             f"which is {what}; name the other links alone, and judge its eyes by {how}"
         )
+
+
+def _check_strength(case: CoreCase, entry: str, check: EyeCheck, link: str) -> None:
+    card = case.part_of(link).material
+    material = case.all_materials[card]
     if check.standard == BTH_1 and material.ultimate_strength is None:
         raise CaseError(
             f"materials.{card}.ultimate_strength: it is missing, and '{entry}' sets the eyes of link '{link}' against "

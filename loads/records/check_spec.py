@@ -100,7 +100,7 @@ class EyeCheck(CaseModel):
     standard: Literal["ASME BTH-1", "EN 1993-1-8"] = "ASME BTH-1"
     """Whose formulas: those of ASME BTH-1 are against ultimate strength, those of EN 1993-1-8 against yield."""
     links: tuple[Name, ...] = ()
-    """The links to check; all that have a part when left out."""
+    """The links to check; all of a ductile metal and with round eyes when left out."""
 
 
 class WallCheck(CaseModel):

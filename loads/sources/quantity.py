@@ -12,7 +12,7 @@ from alula.loads.text.explain import printable
 
 Dimensions = tuple[tuple[str, Fraction], ...]
 ANGLE: Dimensions = (("radian", Fraction(1)),)
-_UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?![\w.(])(?:(?:\^|\*\*)-?[1-4](?![\d.]))?"
+_UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?![\w.(])(?:(?:\^|\*\*)(?:-?[1-4](?![\d.])|0\.5(?!\d)))?"
 _USUAL: dict[str, tuple[float, Dimensions]] = {
     unit: (root, tuple((name, Fraction(power)) for name, power in ROOTS[dimension].items()))
     for dimension, units in USUAL.items()

@@ -9,6 +9,7 @@ from bars_in_layers import parallel_bars
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.link_loads import LinkLoads, PinLoad
+from alula.fea.common.sought import LEFT
 from alula.fea.doubts.force_doubt import measures
 from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.links.second_order import on_tilting_pins, second_order_loads
@@ -66,7 +67,8 @@ def test_the_check_of_a_strut_whose_frame_is_far_from_buckling_knows_it() -> Non
     result = check_case(case, fidelity="beam").load_cases["lift"]
     moved, link = result.large_displacement, result.links["coupler"]
     assert moved.state == "small", moved.buckling
-    assert link.decisive.high == pytest.approx(secant(share, load), rel=5e-3)  # scales the largest principal stress
+    most = secant(share, load)  # scales the largest principal stress; the search may have left some beyond
+    assert most * (1.0 - 5e-3) <= link.decisive.high <= most * (1.0 + LEFT)
     [buckling] = [one for one in result.checks if one.name == "buckling" and one.link == "coupler"]
     assert buckling.value.value == pytest.approx(1.0 / share, rel=1e-3)  # pinned, in the weaker plane
     assert buckling.value.low <= 1.0 / share / 3.0 * (1.0 + 1e-3)

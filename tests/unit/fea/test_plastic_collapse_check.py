@@ -23,7 +23,8 @@ CHECK = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5 }'
 FRONT = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
 OWN = (
     'materials.own={{ title = "Aluminium", density = "2800 kg/m^3", youngs_modulus = "70 GPa", poissons_ratio = 0.33, '
-    'yield_strength = "400 MPa", strength = "yield", minimum_safety_factor = 2.0{}, sources = {{}}, status = {{}} }}'
+    'yield_strength = "400 MPa", ultimate_strength = "480 MPa", strength = "yield", '
+    "minimum_safety_factor = 2.0{}, sources = {{}}, status = {{}} }}"
 )
 FOUND = LinkCollapse(
     factor=2.0,

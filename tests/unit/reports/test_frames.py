@@ -174,5 +174,10 @@ def test_conditions_stand_in_the_record():
     result = checked(
         'parts.tube.material="pvc-u"', 'conditions={duration="1 day",temperature="30 degC"}', 'large_displacement="off"'
     )
-    assert result_record(result)["conditions"] == {"duration": 86400.0, "temperature": pytest.approx(30.0)}
+    assert result_record(result)["conditions"] == {
+        "duration": 86400.0,
+        "temperature": pytest.approx(30.0),
+        "cycles": None,
+        "reverses": False,
+    }
     assert "was not checked" in section(result)
