@@ -9,7 +9,7 @@ import pytest
 from edited_cases import edited
 from eye_case import checked, eyes
 
-from alula.fea.asked.asked import asked
+from alula.fea.asked.asked import asked, asked_of
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
@@ -22,6 +22,7 @@ from alula.fea.modes.eye_modes import EyeMode
 from alula.fea.modes.eye_scatter import eye_scatter
 from alula.fea.motion.envelope_outcomes import eye_outcomes
 from alula.fea.motion.link_history import link_histories
+from alula.fea.outcomes.unchecked import caveats
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import EyeCheck
 from alula.loads.states.case_motion import solve_case_motion
@@ -251,6 +252,15 @@ def test_plastics_and_prints_are_for_others_to_judge(change, what, instead):
     """The check that is named judges them: with it in the place of this one the case is a case."""
     assert re.search(rf"links: .* link 'level' .* is {what}; .* type \"{instead}\"", refused(change))
     eyes(change, lambda tables: tables["checks"].update(eye={"type": instead, "minimum": 2.0}))
+
+
+@pytest.mark.parametrize("parts", [["front"], ["rear"]])
+def test_a_check_of_all_eyes_leaves_out_those_it_has_no_formulas_for_and_says_so(parts):
+    case = edited("knee", [f'parts.{part}.material="pvc-u"' for part in parts])
+    assert set(asked_of(case, EyeCheck)) == set(case.checked_links) - set(parts)
+    left = [caveat.what for caveat in caveats(case) if "eyes of" in told(caveat.what)]
+    assert [told(what) for what in left] == [f"eyes of {' and '.join(parts)}"]
+    assert not [caveat for caveat in caveats(edited("knee", [])) if "eyes of" in told(caveat.what)]
 
 
 def disc(tables):
