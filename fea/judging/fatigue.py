@@ -1,9 +1,11 @@
 """Fatigue of links: under the load of a pose that comes and goes, and the outcome of either that or of a motion.
 
 In a pose all stress goes with the load, so that one cycle at every place stands for all: from nothing to its stress and
-back, or to its opposite. Of a solid it is that of its worst node, pulled or pressed. By hand the place is not known, so
-that the largest stress counts as if it pulled; the band goes down to what bending and axial force leave of it in
-tension, and to the least share of a hole's peak that may count.
+back, or to its opposite. Of a solid it is that of its worst node, pulled or pressed. Where it has pins, the stress
+under the opposite load is not the opposite one, since they press on the other side of their holes: the band goes down
+to the cycle from nothing, which is there in any case, and none passes. By hand the place is not known, so that the
+largest stress counts as if it pulled; the band goes down to what bending and axial force leave of it in tension, and to
+the least share of a hole's peak that may count.
 """
 
 import math
@@ -29,8 +31,8 @@ from alula.fea.outcomes.fatigue import (
     notch_factors,
     signed_stress,
 )
-from alula.fea.outcomes.limits import layers_of
 from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.solid.stress import stress_field
 from alula.geometry.materials.material import Fatigue
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import FatigueCheck
@@ -38,6 +40,8 @@ from alula.loads.records.check_spec import FatigueCheck
 BEYOND_CARD = reason("repetitions_beyond_card")
 Ends = tuple[float, float, float]
 """Value, low and high end of a stress [MPa]."""
+Extremes = tuple[list[Ends], list[np.ndarray], list[float], bool]
+"""The ends of the largest stresses, by places, the share of each that counts for a notch, and whether that is open."""
 
 
 def asked_fatigue(case: Case, link: str) -> list[Asked]:
@@ -119,12 +123,9 @@ def link_fatigue_outcomes(case: Case, link: str, load_case: str, found: LinkFati
     """
     material = case.material_of(link)
     assert material.fatigue is not None
-    largest = max(found.life.largest, -found.life.smallest)
-    if found.life.stress > 0.0:
-        largest *= found.stress.high / found.life.stress
     for outcome in fatigue_outcomes(asked_fatigue(case, link), load_case, found, material.fatigue):
-        if outcome.verdict is Verdict.PASS and largest > material.allowable:
-            outcome = outcome.left_open(reason("yields_in_cycle", stress=largest, strength=material.allowable))
+        if outcome.verdict is Verdict.PASS and found.largest > material.allowable:
+            outcome = outcome.left_open(reason("yields_in_cycle", stress=found.largest, strength=material.allowable))
         yield outcome
 
 
@@ -147,11 +148,16 @@ def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason
     data, lacking = material.fatigue, missing_data(material)
     if lacking or data is None:
         return lacking or reason("no_fatigue_data")
-    if result.decisive.unknowable:
+    if result.decisive.unknowable or result.von_mises_max.unknowable:
         return reason("peak_not_known")
-    extremes, location, notched = (_of_solid if isinstance(result, SolidResult) else _by_hand)(case, result, data)
+    found = _of_solid(case, result, data) if isinstance(result, SolidResult) else _by_hand(case, result, data)
+    extremes, location, shares, notched = found
     back = 1.0 if case.conditions.reverses else 0.0
-    lives = [[fatigue_life(np.array([0.0 - back * end, end]), material) for end in ends] for ends in extremes]
+    backs = (back, 0.0 if _presses_elsewhere(case, result) else back, back)
+    lives = [
+        [fatigue_life(np.array([0.0 - turn * end, end]), material) for end, turn in zip(ends, backs, strict=True)]
+        for ends in extremes
+    ]
     worst = max(range(len(lives)), key=lambda i: lives[i][0].stress)
     ends = [max(own, key=lambda life: life.stress) for own in zip(*lives, strict=True)]
     return LinkFatigue.of(
@@ -163,27 +169,52 @@ def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason
         material=material,
         repetitions=case.conditions.cycles,
         without=result.decisive.without,
+        notch=shares[worst],
     )
 
 
-def _of_solid(case: Case, result: LinkResult, data: Fatigue) -> tuple[list[Ends], list[np.ndarray], bool]:
-    """Return the largest pull and push of all nodes, each with its ends and its place, and whether a notch counts."""
-    assert isinstance(result, SolidResult)
-    band, nodes = result.decisive, result.solution.space.nodes
+def _presses_elsewhere(case: Case, result: LinkResult) -> bool:
+    """Return True where the opposite load does not make the opposite stress: pins press on the other side of holes."""
+    return case.conditions.reverses and isinstance(result, SolidResult) and bool(case.body(result.link).pins)
+
+
+def _of_solid(case: Case, result: SolidResult, data: Fatigue) -> Extremes:
+    """Return the largest pull and push of all nodes under any variant.
+
+    Of a brittle material the band of its largest tension says nothing of what is pressed; that of the von Mises stress
+    stands in where it is wider.
+    """
+    solution, nodes = result.solution, result.solution.space.nodes
     least, most = notch_factors(case.body(result.link), nodes, data)
-    signed = most * signed_stress(result.stress.nodal, brittle=result.brittle)
-    low, high = (end / band.value if band.value > 0.0 else 1.0 for end in (band.low, band.high))
-    found, places, notched = list[Ends](), [], False
-    for node in {int(np.argmax(signed)), int(np.argmin(signed))}:
-        stress, share = float(signed[node]), float(least[node] / most[node])
-        found.append((stress, low * share * stress, high * stress))
+    variants = [one for one in solution.cases if one.load == result.governing_case.load]
+    fields = [stress_field(solution.space, one.displacement, E=solution.E, nu=solution.nu) for one in variants]
+    every = [most * signed_stress(field.nodal, brittle=result.brittle) for field in fields]
+    pulled = _beyond(result.decisive, [x.principal if result.brittle else x.von_mises for x in result.variants])
+    other = _beyond(result.von_mises_max, [x.von_mises for x in result.variants])
+    pressed = min(pulled[0], other[0]), max(pulled[1], other[1])
+    found, places, shares, notched = list[Ends](), [], [], False
+    for worst, (low, high) in ((np.argmax, pulled), (np.argmin, pressed)):
+        picked = [int(worst(signed)) for signed in every]
+        stress = [float(signed[node]) for signed, node in zip(every, picked, strict=True)]
+        lows = [low * float(least[node] / most[node]) * x for node, x in zip(picked, stress, strict=True)]
+        own = [i for i, one in enumerate(variants) if one.transfer in (None, case.torque_transfer)]
+        most_stressed = max(own, key=lambda i: abs(stress[i]))
+        node = picked[most_stressed]
+        found.append((stress[most_stressed], min(lows, key=abs), high * max(stress, key=abs)))
         places.append(nodes[node].copy())
-        notched = notched or share < 1.0
-    return found, places, notched
+        shares.append(float(most[node]))
+        notched = notched or any(least[node] < most[node] for node in picked)
+    return found, places, shares, notched
 
 
-def _by_hand(case: Case, result: LinkResult, data: Fatigue) -> tuple[list[Ends], list[np.ndarray], bool]:
-    """Return the largest pull and push that may be, as ``_of_solid``."""
+def _beyond(band: Band, peaks: Sequence[float]) -> tuple[float, float]:
+    """Return by what factors the ends of a band lie beyond the peaks of the variants."""
+    least, most = min(peaks), max(peaks)
+    return (band.low / least if least > 0.0 else 1.0, band.high / most if most > 0.0 else 1.0)
+
+
+def _by_hand(case: Case, result: LinkResult, data: Fatigue) -> Extremes:
+    """Return the largest pull and push that may be."""
     pins, beam = case.body(result.link).pins, result.beam
     walls = np.array([(pin.x + pin.diameter / 2.0, pin.y, 0.0) for pin in pins]).reshape(-1, 3)
     least = float(notch_factors(case.body(result.link), walls, data)[0].min(initial=1.0))
@@ -194,7 +225,7 @@ def _by_hand(case: Case, result: LinkResult, data: Fatigue) -> tuple[list[Ends],
         (pull.value, pulled * least * pull.low, pull.high),
         (-push.value, -least * push.low, -push.high),
     ]
-    return ends, [result.location, result.location], least < 1.0
+    return ends, [result.location, result.location], [1.0, 1.0], least < 1.0
 
 
 def pose_outcomes(
@@ -238,8 +269,10 @@ def pose_outcomes(
             for outcome in link_fatigue_outcomes(case, link, load_case, fatigue):
                 if not links[link].decided_by and outcome.verdict is not Verdict.UNDECIDED:
                     outcome = outcome.left_open(links[link].why)
-                elif outcome.verdict is Verdict.PASS and layers_of(case, link) is not None:
+                elif outcome.verdict is Verdict.PASS and case.material_of(link).strength_across_layers is not None:
                     outcome = outcome.left_open(reason("layers_fatigue_over_motion"))
+                elif outcome.verdict is Verdict.PASS and _presses_elsewhere(case, links[link]):
+                    outcome = outcome.left_open(reason("pins_press_elsewhere"))
                 pressed = _pressed(case, link, forces, fatigue.strength or math.inf)
                 yield outcome.because(together(outcome.reason, pressed)) if pressed else outcome
 

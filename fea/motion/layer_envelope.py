@@ -149,13 +149,14 @@ def _fatigue(
     sources = distinct(pin_sources(driven=curve.transfer is not None), (ESTIMATED,), load.sources)
     wanted = data.cycles if repetitions is None else repetitions
     share = 0.0 if layers.between is None else layers.between / layers.across
+    strength = strength_at(data, wanted if repetitions is None else wanted * max(cycle.count, 1.0))
     return LayerFatigue(
         location=at,
         tension=cycle.tension,
         shear=(share * cycle.shear[0], share * cycle.shear[1]),
         stress=Band.around(stress, tuple(stresses), *sources),
         wanted=wanted,
-        strength=strength_at(data, wanted),
+        strength=None if strength is None else min(strength, layers.across),
         repetitions=None if life is None else life_scatter(data).on(Band.around(life, tuple(lives), *sources)),
     )
 

@@ -283,11 +283,13 @@ class LinkMotion:
             ends = (factors[0] * load.low * notch, factors[1] * load.high)
             every += [life, *(fatigue_life(factor * closed, self.material) for factor in ends)]
             if variant.transfer in (None, self.stated):
-                found.append((life, node, history))
-        life, node, history = max(found, key=lambda f: f[0].stress)
+                found.append((life, node, history, float(most[number])))
+        life, node, history, share = max(found, key=lambda f: f[0].stress)
         sources = distinct(_sources(load_case.governing), tuple(meshes), load.sources)
         place, material = solved.space.nodes[node].copy(), self.material
-        return LinkFatigue.of(every, life, history, place, sources, material=material, repetitions=repetitions)
+        return LinkFatigue.of(
+            every, life, history, place, sources, material=material, repetitions=repetitions, notch=share
+        )
 
     def _fatigue_factors(self, variant: VariantCurve, node: int, history: Real) -> tuple[float, float]:
         """Factors for a node that no mesh was refined for, by the estimate beside it in its worst pose."""

@@ -255,7 +255,7 @@ def cycles_to_failure(stress: Real, fatigue: Fatigue) -> Real:
     endless = fatigue.endurance_cycles
     if endless is not None and np.max(stress, initial=0.0) <= (strength_at(fatigue, endless) or 0.0):
         return np.full(np.shape(stress), np.inf)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         own = fatigue.surface_factor * fatigue.stress
         return np.asarray(fatigue.cycles * (stress / own) ** -fatigue.exponent)
 
@@ -483,15 +483,24 @@ class LinkFatigue(Lasting):
         Its signed stress over one repetition, as far as a notch counts [MPa].
     life : FatigueLife
         Of the variant that governs.
+    notch : float
+        By which the stress was multiplied for the notch at its place.
     """
 
     history: Real
     life: FatigueLife
+    notch: float = 1.0
+
+    @property
+    def largest(self) -> float:
+        """Upper end of the largest size of the stress there, with all of the concentration of a notch [MPa]."""
+        share = self.stress.high / self.life.stress if self.life.stress > 0.0 else 1.0
+        return share * max(self.life.largest, -self.life.smallest) / self.notch
 
     @classmethod
     def of(
         cls, lives: list[FatigueLife], life: FatigueLife, history: Real, location: Real, sources: tuple[Source, ...],
-        *, material: Material, repetitions: float | None, without: Reason | str = "",
+        *, material: Material, repetitions: float | None, without: Reason | str = "", notch: float = 1.0,
     ) -> "LinkFatigue":  # fmt: skip
         """Return the fatigue at a place.
 
@@ -510,6 +519,8 @@ class LinkFatigue(Lasting):
             Asked for; the card's cycles, each repetition one of them, where it is None.
         without : Reason or str, optional
             Why the band covers no error of the model.
+        notch : float, optional
+            As the attribute.
 
         Returns
         -------
@@ -522,6 +533,7 @@ class LinkFatigue(Lasting):
             location=location,
             history=history,
             life=life,
+            notch=notch,
             stress=replace(Band.around(life.stress, tuple(one.stress for one in lives), *sources), without=without),
             wanted=wanted,
             strength=borne(material, wanted if repetitions is None else wanted * life.count),

@@ -54,8 +54,8 @@ class Fatigue(CaseModel):
     """Peak stress that the material bears for ``cycles``."""
     cycles: Annotated[float, Field(gt=0)]
     """Cycles that it bears at that stress."""
-    exponent: Annotated[float, Field(gt=0)] | None = None
-    """Exponent of the power law; none where a single point is known."""
+    exponent: float | None = None
+    """Exponent of the power law, from 1 to 100; none where a single point is known."""
     endurance_cycles: Annotated[float, Field(gt=0)] | None = None
     """Cycles from which on strength falls no further (endurance limit); left out, the line has no end."""
     strength_range: Range | None = None
@@ -76,6 +76,11 @@ class Fatigue(CaseModel):
     def _consistent(self) -> "Fatigue":
         if self.strength_range and not self.strength_range[0] <= self.stress <= self.strength_range[1]:
             raise refusal("strength_range of fatigue leaves out its stress; correct one of them")
+        if self.exponent is not None and not 1.0 <= self.exponent <= 100.0:  # beyond, powers overflow
+            raise refusal(
+                f"exponent of fatigue is {self.exponent:g}, but must be from 1 to 100; for Basquin's slope b "
+                "of the stress state 1/b, for example 11.8 for 0.085"
+            )
         return self
 
 

@@ -2,10 +2,10 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.model import CaseModel
+from alula.geometry.base.model import CaseModel, refusal
 from alula.geometry.base.units import POSITIVE, Temperature, Time
 from alula.geometry.materials.material import Fatigue, Material
 from alula.geometry.materials.temperature import covered, factor_at
@@ -31,6 +31,12 @@ class Conditions(CaseModel):
     temperature: Temperature | None = None
     """Where stated, strengths and moduli are multiplied by the factors of the material's card; what needs a strength or
     a modulus that the card does not tell at this temperature is undecided."""
+
+    @model_validator(mode="after")
+    def _reversing_cycles(self) -> "Conditions":
+        if self.reverses and self.cycles is None:
+            raise refusal("reverses = true says how cycles go, but none are stated; add cycles or leave reverses out")
+        return self
 
 
 def strength_unknown(material: Material, conditions: Conditions) -> str:

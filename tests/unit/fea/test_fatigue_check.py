@@ -11,12 +11,14 @@ from rocker_case import TOML as ROCKER
 
 from alula.fea.asked.lasting import fatigue_caveats
 from alula.fea.check.run import check_case
+from alula.fea.common.band import Band
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.judging.fatigue import link_fatigue_outcomes, pose_outcomes, pulsating
 from alula.fea.links.link_by_hand import cut_link
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.link_envelope import LinkMotion
-from alula.fea.outcomes.fatigue import borne_pulsating, notch_factors
+from alula.fea.outcomes.fatigue import borne_pulsating, notch_factors, signed_stress
 from alula.fea.outcomes.limits import stress_limits
 from alula.fea.refine.refinement import Effort
 from alula.geometry.base.errors import CaseError
@@ -190,8 +192,7 @@ def test_neither_beams_beyond_their_calibration_nor_layers_pass():
     assert "is not calibrated for this link" in told(outcome.reason)
 
     def printed(tables):
-        tables["parts"]["bar"] |= {"material": "pla-fdm-xy", "build_direction": [0.0, 0.0, 1.0]}
-        tables["checks"]["strength"] = {"type": "safety-factor", "minimum": 1.0}
+        tables["parts"]["bar"]["material"] = "pla-fdm-xy"
         tables["load_cases"]["pull"]["forces"][0]["force"] = ["5 N", "0 N"]
 
     outcome = found(check_case(repeated(change=printed), fidelity="beam"), "pull", "level")
@@ -221,8 +222,18 @@ def test_the_caveat_is_of_what_no_check_names():
     def one(tables):
         tables["checks"]["fatigue"]["links"] = ["level"]
 
-    assert [told(x.what) for x in fatigue_caveats(repeated({}, change=one), over_motion=False)] == ["fatigue of rising"]
-    assert not [*fatigue_caveats(repeated({}), over_motion=False)]
+    def alone(tables):
+        del tables["load_cases"]["lift"]
+
+    several = "fatigue under load cases that alternate or add up"
+    for change, over_motion, names in (
+        (one, False, [several, "fatigue of rising"]),
+        (None, False, [several]),
+        (None, True, [several]),
+        (alone, False, []),
+    ):
+        case = repeated({}, **({"change": change} if change else {}))
+        assert [told(x.what) for x in fatigue_caveats(case, over_motion=over_motion)] == names
 
 
 def test_notch_sensitivity_of_holes_after_peterson():
@@ -293,6 +304,58 @@ def test_the_solid_counts_the_hole_by_its_radius(solved):
     assert found(solved, "pull", "level").value.value == pytest.approx(factor(life.life.largest))
     assert SourceKind.NOTCH in {source.kind for source in life.stress.sources}
     assert life.stress.low < 0.98 * q / (q + 0.6 * (1.0 - q)) * life.stress.value
+
+
+def test_a_solid_whose_peak_yields_does_not_pass_for_its_notch(solved):
+    life = replace(solved.load_cases["pull"].fatigue["level"], strength=1e4)
+    raw = float(solved.load_cases["pull"].links["level"].stress.von_mises.max())
+    assert life.largest == pytest.approx(raw * life.stress.high / life.life.stress)
+    for share, verdict in ((0.97, Verdict.UNDECIDED), (1.01, Verdict.PASS)):
+        card = solved.case.material_of("level").model_copy(update={"yield_strength": share * life.largest})
+        case = solved.case.model_copy(update={"materials": {"aluminium-6061-t6": card}})
+        [outcome] = link_fatigue_outcomes(case, "level", "pull", life)
+        assert outcome.verdict is verdict
+
+
+def test_what_reverses_on_a_solid_with_pins_does_not_pass(solved):
+    """Its pins press on the other side then; no less than the cycle from nothing is there."""
+    once = solved.load_cases["pull"].fatigue["level"]
+
+    def lax(tables):
+        tables["checks"]["fatigue"]["minimum"] = 0.1
+
+    case = repeated({"notch_length": "0.51 mm"}, reverses=True, change=lax)
+    links = {"level": solved.load_cases["pull"].links["level"]}
+    life = pulsating(case, "level", links["level"])
+    assert life.stress.low == pytest.approx(once.stress.low)
+    assert life.stress.value > 1.5 * once.stress.value
+    forces = dict.fromkeys(case.joints, 0.0)
+    [outcome] = pose_outcomes(case, "pull", links, {"level": life}, lambda link: True, forces)
+    assert outcome.verdict is Verdict.UNDECIDED
+    assert "on the other side of their holes" in told(outcome.reason)
+    case = repeated({"notch_length": "0.51 mm"}, change=lax)
+    [outcome] = pose_outcomes(case, "pull", links, {"level": once}, lambda link: True, forces)
+    assert outcome.verdict is Verdict.PASS
+
+
+def test_a_pressed_brittle_solid_counts_every_variant_and_the_wider_band(solved):
+    """Two variants, 1.3 apart; the von Mises stress is open from 0.9 to 1.2 beyond them, tension by nothing."""
+    of, case = solved.load_cases["pull"].links["level"], repeated({}, reverses=True)
+    cases = [replace(of.governing_case, displacement=-x * of.governing_case.displacement) for x in (1.0, 1.3)]
+    result = replace(
+        of,
+        brittle=True,
+        solution=replace(of.solution, cases=cases),
+        governing_case=cases[0],
+        variants=[replace(of.governing, principal=x, von_mises=x) for x in (1.0, 1.3)],
+        principal_max=Band(value=1.3, low=1.0, high=1.3),
+        von_mises_max=Band(value=1.3, low=0.9, high=1.2 * 1.3),
+    )
+    push = float(signed_stress(of.stress.nodal, brittle=True).max())
+    found = pulsating(case, "level", result)
+    assert found.stress.value == pytest.approx(1.3 * push)
+    assert found.stress.high == pytest.approx(1.2 * 1.3 * push)
+    assert found.stress.low == pytest.approx(0.9 * push / 2.0)
 
 
 def test_report_and_record_tell_it(by_hand):

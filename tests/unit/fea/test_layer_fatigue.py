@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from alula.fea.common.band import Band
+from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import Verdict
+from alula.fea.motion import layer_envelope
 from alula.fea.motion.envelope_outcomes import layer_fatigue_outcomes
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue
 from alula.fea.motion.layer_envelope import _lacking
@@ -138,6 +140,23 @@ def test_the_band_over_the_strength_decides(ends, verdict):
     bare = card.model_copy(update={"shear_strength_between_layers": None})
     [found] = outcome(fatigued(*ends), bare)
     assert found.verdict is (Verdict.FAIL if verdict is Verdict.FAIL else Verdict.UNDECIDED)
+
+
+@pytest.mark.parametrize(
+    ("changed", "repetitions", "strength"),
+    [({}, 1e6, 6.0 * 2.0 ** (-1 / 8)), ({}, None, 6.0), ({}, 1.0, STRENGTH), ({"exponent": None}, 1e6, None)],
+)
+def test_the_strength_is_that_at_all_cycles_and_at_most_the_static_one(monkeypatch, changed, repetitions, strength):
+    cycle = LayerCycle.of(np.array([4.0 * np.cos(2.0 * TURN + 0.1), STILL, STILL]))
+    assert cycle.count == 2
+    monkeypatch.setattr(layer_envelope, "_critical", lambda *_: (cycle, np.zeros(3), (1.0, 1.0)))
+    motion = SimpleNamespace(
+        material=CARD.model_copy(update={"fatigue_across_layers": data(**changed)}),
+        measure=SimpleNamespace(sides=[(Layers(normal=(0.0, 0.0, 1.0), across=STRENGTH, between=None), 1.0)]),
+        stated=None,
+    )
+    found = layer_envelope._fatigue(motion, [SimpleNamespace(transfer=None)], Scatter(), repetitions)
+    assert found.strength == (None if strength is None else pytest.approx(strength))
 
 
 def test_without_data_it_is_undecided_where_it_is_asked_for():

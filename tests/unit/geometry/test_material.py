@@ -95,6 +95,12 @@ def test_fatigue() -> None:
             Fatigue.model_validate({"stress": "10.9 MPa", "cycles": 1e6, "source": "x"} | change)
 
 
+@pytest.mark.parametrize("exponent", [-0.085, 0.085, 2000.0])
+def test_basquins_slope_in_place_of_the_exponent_is_refused(exponent: float) -> None:
+    with pytest.raises(ValidationError, match="state 1/b"):
+        Fatigue.model_validate({"stress": "10.9 MPa", "cycles": 1e6, "source": "x", "exponent": exponent})
+
+
 def test_the_pvc_of_the_owl_wing() -> None:
     """Paredes (2018), table 1: 1450 kg/m³, 2.4 GPa, 52 MPa, 4.14e7 Pa; ν is assumed."""
     card = library()["pvc-paredes-2018"]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR, edited
 from materials import SOURCED, with_material
+from pydantic import ValidationError
 
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
@@ -65,6 +66,12 @@ def test_warm_and_long():
     assert both.youngs_modulus == pytest.approx(1200.0 * (1.0 - 0.12 * 7.0 / 14.8))
     assert under(PVC, Conditions()) is PVC
     assert (PVC.yield_strength, PVC.fatigue.stress) == (41.4, 10.9)
+
+
+def test_what_reverses_needs_cycles():
+    with pytest.raises(ValidationError, match="add cycles or leave reverses out"):
+        Conditions(reverses=True)
+    assert Conditions(reverses=True, cycles=1e5).reverses
 
 
 def test_what_a_card_does_not_tell_stays_as_it_is_and_is_said():
