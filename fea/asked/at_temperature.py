@@ -10,8 +10,9 @@ from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.temperature import ROOM
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import PinCheck
+from alula.loads.records.check_spec import ConnectionCheck, PinCheck
 from alula.loads.records.conditions import modulus_unknown, strength_unknown
+from alula.loads.records.connection import Bond, Press
 from alula.loads.text.caveat import Caveat, Topic
 
 STRENGTH = (
@@ -123,7 +124,7 @@ def as_if_cold(case: Case) -> Iterator[Reason]:
 
 
 def temperature_caveats(case: Case) -> Iterator[Caveat]:
-    """Yield thermal expansion, and the checked pins whose material tells nothing of the stated temperature.
+    """Yield thermal expansion, and what checks judge that nothing tells of the stated temperature: pins, glue, grips.
 
     Parameters
     ----------
@@ -149,4 +150,12 @@ def temperature_caveats(case: Case) -> Iterator[Caveat]:
             topic=Topic.TEMPERATURE,
             what=reason("pins_at_temperature", temperature=case.conditions.temperature),
             why=reason("no_temperature_factors", materials=left),
+        )
+    checks = {name: check for name, check in case.checks.items() if isinstance(check, ConnectionCheck)}
+    held = [name for name, check in checks.items() if isinstance(check.way, Bond | Press)]
+    if stated is not None and held:
+        yield Caveat(
+            topic=Topic.TEMPERATURE,
+            what=reason("connections_at_temperature", temperature=stated),
+            why=reason("as_connection_states", checks=held),
         )

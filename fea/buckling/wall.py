@@ -89,8 +89,30 @@ def flattening_moment(radius: float, thickness: float, modulus: float, poisson: 
     return 2.0 * math.sqrt(2.0) / 9.0 * math.pi * modulus * radius * thickness**2 / math.sqrt(1.0 - poisson**2)
 
 
+def elastic_stress(radius: float, thickness: float, modulus: float) -> float:
+    """Return the stress at which a real wall buckles elastically.
+
+    Parameters
+    ----------
+    radius, thickness : float
+        [mm]
+    modulus : float
+        Young's modulus [MPa].
+
+    Returns
+    -------
+    float
+        [MPa]
+
+    References
+    ----------
+    ISO 19902:2020, section 13.2: f_xe.
+    """
+    return REPRESENTATIVE * modulus * thickness / radius
+
+
 def yielding_stress(radius: float, thickness: float, modulus: float, strength: float) -> float:
-    """Return the stress at which a ductile wall buckles where yielding lowers it; infinite where it does not.
+    """Return the stress at which a ductile wall buckles by ISO; infinite where it turns plastically without buckling.
 
     Parameters
     ----------
@@ -108,10 +130,34 @@ def yielding_stress(radius: float, thickness: float, modulus: float, strength: f
     ----------
     ISO 19902:2020, equations 13.2-8 and 13.2-9 and section 11.4.
     """
-    share = strength * radius / (REPRESENTATIVE * modulus * thickness)
-    if share <= DUCTILE or share >= ELASTIC:
+    elastic = elastic_stress(radius, thickness, modulus)
+    share = strength / elastic
+    if share <= DUCTILE:
         return math.inf
-    return strength * min(1.0, 1.047 - 0.274 * share)
+    return elastic if share >= ELASTIC else min(elastic, strength * min(1.0, 1.047 - 0.274 * share))
+
+
+def least_yielding_stress(radius: float, thickness: float, modulus: float, ends: tuple[float, float]) -> float:
+    """Return the least stress of ``yielding_stress`` for a strength between two ends, one of which may be ductile.
+
+    Beyond ductile walls it rises with strength and modulus: the least is at the least of both.
+
+    Parameters
+    ----------
+    radius, thickness : float
+        [mm]
+    modulus : float
+        The least Young's modulus [MPa].
+    ends : tuple of 2 float
+        Least and largest yield strength [MPa].
+
+    Returns
+    -------
+    float
+        [MPa]
+    """
+    least = max(ends[0], DUCTILE * (1.0 + 1e-9) * elastic_stress(radius, thickness, modulus))
+    return yielding_stress(radius, thickness, modulus, least) if least <= ends[1] else math.inf
 
 
 def wall_of(case: Case, link: str) -> tuple[float, float] | None:

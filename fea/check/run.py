@@ -471,9 +471,7 @@ class _LoadCase:
                 return 1.0 / float(least_factor(other.case, check, load))
 
             driven = turned_by_drive(self.case, joint)
-            growth = self.grown.joints.get(joint, Scatter()).times(
-                play_at_joint(self.forces.play, joint, driven=driven)
-            )
+            growth = self.grown.through(joint).times(play_at_joint(self.forces.play, joint, driven=driven))
             for doubt in self.doubts:
                 growth = growth.times(doubt.cause.scatter(doubt.stated, demand))
             found.append((one, connection_factors(self.case, self.load_case, one, through, growth)))

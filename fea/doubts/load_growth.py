@@ -47,6 +47,8 @@ class Growths:
         Link -> growth of its stress, and of its displacement.
     joints : mapping of str to Scatter
         Joint -> growth of its force.
+    torques : mapping of str to Scatter
+        Joint -> growth of the torque that goes through it (``alula.fea.judging.connections``).
     columns : mapping of str to Scatter
         Link -> growth of the inverse of its buckling factor, where that is known beside the forces of its joints.
     """
@@ -54,7 +56,21 @@ class Growths:
     stress: Mapping[str, Scatter] = field(default_factory=dict)
     displacement: Mapping[str, Scatter] = field(default_factory=dict)
     joints: Mapping[str, Scatter] = field(default_factory=dict)
+    torques: Mapping[str, Scatter] = field(default_factory=dict)
     columns: Mapping[str, Scatter] = field(default_factory=dict)
+
+    def through(self, joint: str) -> Scatter:
+        """Return the growth of all that goes through a joint: its force, its torque, or both.
+
+        Parameters
+        ----------
+        joint : str
+
+        Returns
+        -------
+        Scatter
+        """
+        return self.joints.get(joint, Scatter()).either(self.torques.get(joint, Scatter()))
 
     def times(self, other: "Growths") -> "Growths":
         """Return what both make together.
@@ -68,7 +84,7 @@ class Growths:
         Growths
         """
         found = {}
-        for kind in ("stress", "displacement", "joints", "columns"):
+        for kind in ("stress", "displacement", "joints", "torques", "columns"):
             one, two = getattr(self, kind), getattr(other, kind)
             found[kind] = {name: one.get(name, Scatter()).times(two.get(name, Scatter())) for name in {**one, **two}}
         return Growths(**found)
@@ -88,8 +104,8 @@ def telling(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
     return {name: one for name, one in found.items() if one.high - one.low > LEAST}
 
 
-Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
-"""Stress and displacement of links, forces of joints."""
+Numbers = tuple[dict[str, float], dict[str, float], dict[str, float], dict[str, float]]
+"""Stress and displacement of links, forces and torques of joints."""
 
 
 def growths(
@@ -210,7 +226,7 @@ def _slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, flo
 
 
 def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:
-    stress, displacement, joints = (
+    stress, displacement, joints, torques = (
         {
             name: Scatter(low=low, high=high, sources=SOURCES)
             for name, (low, high) in kind.items()
@@ -218,7 +234,7 @@ def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:
         }
         for kind in ends
     )
-    return Growths(stress=stress, displacement=displacement, joints=joints)
+    return Growths(stress=stress, displacement=displacement, joints=joints, torques=torques)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -276,12 +292,18 @@ def by_hand_numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> Nu
 
     Returns
     -------
-    tuple of 3 dict of str to float
+    tuple of 4 dict of str to float
         Link -> stress [MPa], of a link without beam its largest joint force [N]; link -> displacement [mm];
-        joint -> force [N].
+        joint -> force [N]; joint that passes a torque on -> that torque [N mm].
     """
     forces = {name: float(np.linalg.norm(joint.wrench[:3])) for name, joint in reactions.joints.items()}
-    joints = reactions.pose.linkage.joints_of
+    linkage, drive = reactions.pose.linkage, reactions.drive
+    joints = linkage.joints_of
+    torques = {
+        name: abs(float(joint.wrench[5])) for name, joint in reactions.joints.items() if linkage.joints[name].fixed
+    }
+    if drive is not None and drive.joint not in torques:
+        torques[drive.joint] = abs(float(reactions.driving[0]))
     return (
         {
             link: max((forces[name] for name in joints(link)), default=0.0)
@@ -291,6 +313,7 @@ def by_hand_numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> Nu
         },
         {link: hand.displacement for link, hand in hands.items()},
         forces,
+        torques,
     )
 
 

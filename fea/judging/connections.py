@@ -12,6 +12,7 @@ from alula.fea.asked.asked import Asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.bearing import pressing
@@ -57,7 +58,7 @@ def transmitted(case: Case, check: ConnectionCheck, wrench: Real, drive_torque: 
     Transmitted
     """
     joint, link, rise = case.linkage.joints[check.joint], connected_link(case, check), case.linkage.rise(check.joint)
-    plates = 1 if apart(case, link) is None else 2
+    plates = _plates(case, check)
     torque = wrench[..., 5] if joint.fixed else np.broadcast_to(drive_torque, wrench.shape[:-1])
     levels = (rise, 0.0) if not check.on_shaft else (rise,) if link == joint.links[0] else (0.0,)
     across = np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1)
@@ -68,6 +69,10 @@ def transmitted(case: Case, check: ConnectionCheck, wrench: Real, drive_torque: 
         thrust=np.abs(wrench[..., 2]) / plates,
         couple=np.max(couples, axis=0) * (plates == 1),  # forces on the plates of a pair have it
     )
+
+
+def _plates(case: Case, check: ConnectionCheck) -> int:
+    return 1 if apart(case, connected_link(case, check)) is None else 2
 
 
 def _factors(case: Case, check: ConnectionCheck, load: Transmitted, end: int) -> dict[ConnectionMode, Any]:
@@ -88,7 +93,10 @@ def _factors(case: Case, check: ConnectionCheck, load: Transmitted, end: int) ->
             found = cross_pin(way, shaft, cards["pin"], soft["link"], soft["shaft"], load)
         case Screws():
             return screws(way, cards["pin"], soft["link"], load)
-    return found | (shaft_torsion(way, shaft, cards["shaft"], load) if check.on_shaft else {})
+    if not check.on_shaft:
+        return found
+    whole = replace(load, torque=_plates(case, check) * load.torque)  # both plates of a pair are on one shaft
+    return found | shaft_torsion(way, shaft, cards["shaft"], whole)
 
 
 def _ends(stated: Ends) -> tuple[float, float, float]:
@@ -180,16 +188,23 @@ def connection_factors(
     sources, bands = _sources(case, check), {}
     for mode in every[0][VALUE]:
         values = [[float(end[mode]) for end in way] for way in every]
-        value, (low, high) = values[0][VALUE], (min(of[LOW] for of in values), max(of[HIGH] for of in values))
+        shared = any(of != values[0] for of in values)
+        value, (low, high) = values[0][VALUE], _sought(values) if shared else values[0][LOW:]
         if any(math.isnan(end) for of in values for end in of):
             bands[mode] = Band.unknown(_not_held(one.name, check))
         elif low < math.inf:
-            shared = COUPLES if (low, high) != (values[0][LOW], values[0][HIGH]) else ()
-            band = Band(value=value, low=low, high=high, sources=distinct(sources, shared), without=WITHOUT)
+            told = distinct(sources, COUPLES if shared else ())
+            band = Band(value=value, low=low, high=high, sources=told, without=WITHOUT)
             bands[mode] = spread.on(band)
     return ConnectionFactors(
         check=one.name, joint=check.joint, link=connected_link(case, check), load=ways[0], factors=bands
     )
+
+
+def _sought(values: Sequence[Sequence[float]]) -> tuple[float, float]:
+    """Return the ends of a factor in all ways; loads are in proportion to its inverse, of which ends were sought."""
+    most, least = sought([1.0 / of[LOW] for of in values])[1], sought([1.0 / of[HIGH] for of in values])[0]
+    return (1.0 / most if most > 0.0 else math.inf), (1.0 / least if least > 0.0 else math.inf)
 
 
 def _not_held(name: str, check: ConnectionCheck) -> Any:

@@ -11,6 +11,7 @@ from alula.fea.asked.asked import Asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, distinct, friction_source
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.bearing import pressing
@@ -77,11 +78,13 @@ def contact_of(
     assert record.slotted is not None
     assert record.pin_diameter is not None
     radius = record.pin_diameter / 2.0
-    cards = {"pin": case.pin_material(name), "flank": case.material_of(record.slotted)}
+    # A load presses most as it comes, before the flank creeps.
+    cards = {"pin": case.pin_material(name), "flank": case.fresh_material(record.slotted)}
     loads = [float(line_load(case, name, wrench)) for wrench in wrenches]
     spread = load_scatter(case, load_case).times(growth or Scatter())
     shared = COUPLES if max(loads) > min(loads) else ()
-    ends = loads[0], spread.low * min(loads), spread.high * max(loads)
+    least, most = sought(loads)
+    ends = loads[0], spread.low * max(least, 0.0), spread.high * most
     moduli = [compliance_scatter(card).inverse for card in cards.values()]
 
     def pressure(end: int) -> float:

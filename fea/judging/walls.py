@@ -17,8 +17,10 @@ from alula.fea.buckling.lateral import ABOUT_Y, ABOUT_Z, lateral_factor
 from alula.fea.buckling.wall import (
     BENDING,
     COMPRESSION,
+    elastic_stress,
     flattening_moment,
     knock_down,
+    least_yielding_stress,
     perfect_stress,
     wall_of,
     yielding_stress,
@@ -115,19 +117,18 @@ def _of_tube(
         return
     strength, scatter = material.allowable, strength_scatter(material)
 
-    def yields(modulus: float, strength: float) -> float:
-        return math.inf if material.brittle else yielding_stress(*wall, modulus, strength)
-
-    value, plain = min(1.0 / most, yields(young, strength) / largest), 1.0 / most / own.high
-    soft = (yields(young / own.high, share * strength) / largest for share in (1.0, scatter.low))
-    low = min(value, plain, *soft)
+    yields = math.inf if material.brittle else yielding_stress(*wall, young, strength)
+    value, plain = min(1.0 / most, yields / largest), 1.0 / most / own.high
+    ends = scatter.low * strength, scatter.high * strength
+    soft = math.inf if material.brittle else least_yielding_stress(*wall, young / own.high, ends)
+    low, elastic = min(value, plain, soft / largest), elastic_stress(*wall, young / own.high) / largest
     found = Band(
         value=value,
         low=low,
         high=perfect / largest / own.low,
-        sources=(*own.sources, IMPERFECT, *((*scatter.sources, YIELDS) if low < plain else ())),
+        sources=(*own.sources, IMPERFECT, *((*scatter.sources, YIELDS) if low < min(plain, elastic) else ())),
     )
-    bears = min(bent_bears, yields(young, strength)) * section.i_z / radius
+    bears = min(bent_bears, yields) * section.i_z / radius
     why = _told(radius / thickness, min(pressed_bears, bent_bears), strength)
     yield told(WallMode.WALL, x, side, bears, found, why)
     x, side, moment = beam.forces.largest(lambda forces: np.hypot(forces[:, 4], forces[:, 5]))

@@ -282,10 +282,27 @@ def screws(way: Screws, screw: Strength, in_hole: float, load: Transmitted) -> d
     return found | {ConnectionMode.SCREWS: screw.over(across / area, along / area)}
 
 
+def beside_hole(hole: float) -> float:
+    """Return what a hole across a round shaft leaves of the polar moment of its section.
+
+    Parameters
+    ----------
+    hole : float
+        Its diameter over the shaft's.
+
+    Returns
+    -------
+    float
+        Share of the full section's, which a strip as wide as the hole is cut from; integrated here.
+    """
+    angle = math.asin(hole)
+    return 1.0 - 2.0 / math.pi * (angle + math.sin(2.0 * angle) / 3.0 - math.sin(4.0 * angle) / 12.0)
+
+
 def shaft_torsion(
     way: Bond | Press | Flat | CrossPin, shaft: float, strength: Strength, load: Transmitted
 ) -> dict[ConnectionMode, Any]:
-    """Return by what the shaft bears more in torsion; without the notch of a hole or a flat's end.
+    """Return by what the shaft bears more in torsion: beside a cross pin's hole, without its notch or that of a flat.
 
     Parameters
     ----------
@@ -310,5 +327,6 @@ def shaft_torsion(
         shape = BESIDE_ROARK * np.polynomial.Polynomial([0.6366, 1.7598, -5.4897, 14.062, -14.510, 6.434])(cut)
     else:
         bore = way.shaft_bore / shaft if isinstance(way, Press) else 0.0
-        shape = 2.0 / math.pi / (1.0 - bore**4)
+        left = 1.0 - bore**4 if not isinstance(way, CrossPin) else beside_hole(way.diameter / shaft)
+        shape = 2.0 / math.pi / left
     return {ConnectionMode.SHAFT: strength.over(shape * load.torque / radius**3)}

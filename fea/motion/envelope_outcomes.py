@@ -203,9 +203,10 @@ def _growth(
         growth = connection_growth(moved, load_case, joint, evaluated, demand)
     else:
         growth = joint_growth(moved, load_case, joint, evaluated)
-    if load_case in grown and joint in grown[load_case].joints:
-        growth = growth.times(grown[load_case].joints[joint])
-    return growth
+    if load_case not in grown:
+        return growth
+    own = grown[load_case]
+    return growth.times(own.through(joint) if isinstance(check, ConnectionCheck) else own.joints.get(joint, Scatter()))
 
 
 def eye_outcomes(

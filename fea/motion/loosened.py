@@ -299,6 +299,7 @@ class _GrownPose:
     stress: Mapping[str, float] = field(default_factory=dict)
     inverse: Mapping[str, float] = field(default_factory=dict)
     forces: Mapping[str, float] = field(default_factory=dict)
+    torques: Mapping[str, float] = field(default_factory=dict)
     growths: Growths = field(default_factory=Growths)
 
 
@@ -332,6 +333,7 @@ def motion_growth(
                 [(one.inverse, {x: _worst(one.growths.joints, joints(x)) for x in one.inverse}) for one in poses]
             ),
             joints=_largest_grown([(one.forces, one.growths.joints) for one in poses]),
+            torques=_largest_grown([(one.torques, one.growths.torques) for one in poses]),
         )
     return found
 
@@ -368,9 +370,9 @@ def _grown_at(moved: CaseMotion, load_case: str, i: int, histories: Mapping[str,
         shape = with_growth(case, load_case, shape_at(moved, load_case, i), loads)
     except (CaseError, CannotRunError):
         return _GrownPose()
-    stress, _, forces = by_hand_numbers(hands, reactions)
+    stress, _, forces, torques = by_hand_numbers(hands, reactions)
     found = beyond_undeformed(case, load_case, pose, loads, shape, reactions, hands)
-    return _GrownPose(stress=stress, inverse=inverse, forces=forces, growths=found)
+    return _GrownPose(stress=stress, inverse=inverse, forces=forces, torques=torques, growths=found)
 
 
 def _worst(found: Mapping[str, Scatter], names: Iterable[str]) -> Scatter:

@@ -126,19 +126,26 @@ def _check_shaft(case: CoreCase, entry: str, check: ConnectionCheck, link: str) 
 
 
 def _check_hub(case: CoreCase, entry: str, press: Press, joint: str, link: str) -> None:
-    """Check that the hub stays elastic under the largest interference, which the formula of its pressure needs."""
-    shaft, hub, material = case.joints[joint].pin_diameter, press.hub_diameter, case.material_of(link)
+    """Check that hub and shaft stay elastic under the largest interference, which the formula of its pressure needs."""
+    shaft, hub, material = case.joints[joint].pin_diameter, press.hub_diameter, case.fresh_material(link)
     assert shaft is not None
     assert hub is not None
-    _, pressure = press.pressures(shaft, material, case.pin_material(joint))
-    share = (shaft / hub) ** 2
-    stress = pressure * ((1.0 + share) if material.brittle else 2.0) / (1.0 - share)
-    if stress > material.allowable:
-        raise CaseError(
-            f"{entry}.press.interference: it makes a pressure of {pressure:.4g} MPa and {stress:.4g} MPa in the hub, "
-            f"link '{link}', above its strength of {material.allowable:g} MPa, so that its pressure is not known; "
-            "state less interference, a larger hub_diameter, or a measured pressure"
-        )
+    pin = case.pin_material(joint)
+    _, pressure = press.pressures(shaft, material, pin)
+    share, bored = (shaft / hub) ** 2, (press.shaft_bore / shaft) ** 2
+    stressed = [
+        (f"hub, link '{link}'", material, ((1.0 + share) if material.brittle else 2.0) / (1.0 - share)),
+        # Nothing pulls in the shaft, so that a brittle one stays whole.
+        (f"shaft of joint '{joint}'", pin, 0.0 if pin.brittle else 2.0 / (1.0 - bored) if bored > 0.0 else 1.0),
+    ]
+    for what, card, times in stressed:
+        strength = min((card.allowable, *(card.strength_range or ())))
+        if times * pressure > strength:
+            raise CaseError(
+                f"{entry}.press.interference: it makes a pressure of {pressure:.4g} MPa and {times * pressure:.4g} MPa "
+                f"in the {what}, above its strength of {strength:g} MPa, so that its pressure is not known; state less "
+                "interference, a larger hub_diameter or less of a shaft_bore, or a measured pressure"
+            )
 
 
 def check_line_contact(case: CoreCase, name: str, check: LineContactCheck) -> None:

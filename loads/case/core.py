@@ -237,11 +237,29 @@ class CoreCase(Revisable):
         CaseError
             Where the card lacks what a load that lasts needs.
         """
+        return under(self._as_drawn(link), self.conditions)
+
+    def fresh_material(self, link: str) -> Material:
+        """Return the material of a link that has a part at the stated temperature, as loads begin: before it creeps.
+
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        Material
+            Its card, with strength and modulus warm.
+        """
+        return at_temperature(self._as_drawn(link), self.conditions)
+
+    def _as_drawn(self, link: str) -> Material:
         part = self.part_of(link)
         material = self.all_materials[part.material]
-        if part.section.round:
-            material = material.drawn(f"parts.{self.links[link].part}.outer_diameter", part.section.width)
-        return under(material, self.conditions)
+        if not part.section.round:
+            return material
+        return material.drawn(f"parts.{self.links[link].part}.outer_diameter", part.section.width)
 
     @property
     def all_checks(self) -> dict[str, Check]:

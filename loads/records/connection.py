@@ -22,7 +22,8 @@ def _rising(value: Ends) -> Ends:
 Size = Annotated[Length, POSITIVE]
 LengthRange = Annotated[tuple[Size, Size], AfterValidator(_rising)]
 ForceRange = Annotated[tuple[Annotated[Force, POSITIVE], Annotated[Force, POSITIVE]], AfterValidator(_rising)]
-FrictionRange = Annotated[tuple[Coefficient, Coefficient], AfterValidator(_rising)]
+Grip = Annotated[Coefficient, Field(gt=0.0)]
+FrictionRange = Annotated[tuple[Grip, Grip], AfterValidator(_rising)]
 
 
 class Bond(CaseModel):
@@ -44,6 +45,9 @@ class Bond(CaseModel):
 
     @model_validator(mode="after")
     def _one_shape(self) -> "Bond":
+        ends = self.shear_strength_range
+        if ends and not ends[0] <= self.shear_strength <= ends[1]:
+            raise refusal("shear_strength_range leaves out shear_strength; correct one of them")
         if (self.length is None) == (self.outer_diameter is None):
             raise refusal("a bond is a sleeve with a length or a face with an outer_diameter; state one of the two")
         if self.outer_diameter is not None and self.inner_diameter >= self.outer_diameter:

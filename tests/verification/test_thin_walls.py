@@ -10,7 +10,15 @@ from scipy.optimize import minimize
 
 from alula.fea.beam.piecewise import Piecewise
 from alula.fea.buckling.lateral import ABOUT_Y, ABOUT_Z, lateral_factor
-from alula.fea.buckling.wall import BENDING, COMPRESSION, flattening_moment, knock_down, perfect_stress, yielding_stress
+from alula.fea.buckling.wall import (
+    BENDING,
+    COMPRESSION,
+    flattening_moment,
+    knock_down,
+    least_yielding_stress,
+    perfect_stress,
+    yielding_stress,
+)
 from alula.fea.judging.walls import EXACT, ROUND
 
 
@@ -34,12 +42,28 @@ def test_a_perfect_cylinder():
         (900.0, 20.0, 400.0),
         (1300.0, 50.0, math.inf),
         (3000.0, 10.0, 400.0 * (1.047 - 0.274 * 400.0 / 410.0)),
-        (4e4, 10.0, math.inf),
+        (4e4, 10.0, 0.3 * 2.05e5 * 10.0 / 2e4),
     ],
 )
 def test_a_wall_that_yields_by_iso_19902(diameter, wall, bears):
     """The first two of S420 as a published calculation has them: one yields first, and one bears all rotations."""
     assert yielding_stress(diameter / 2.0, wall, 2.05e5, 400.0) == pytest.approx(bears)
+
+
+def test_a_wall_bears_no_more_as_it_gets_thinner_softer_or_weaker():
+    """Beyond ductile walls: without a jump from yielding to elastic buckling, and the least of a range by a grid."""
+    strengths = np.geomspace(10.0, 900.0, 2000)
+    found = np.array([yielding_stress(100.0, 1.0, 7e4, strength) for strength in strengths])
+    known = found[np.isfinite(found)]
+    assert 0 < len(known) < len(found)
+    assert np.all(np.diff(known) >= 0.0)
+    assert np.max(known[1:] / known[:-1]) < 1.003
+    assert known[-1] == pytest.approx(0.3 * 7e4 / 100.0)
+    thinner = [yielding_stress(100.0, thickness, 7e4, 300.0) for thickness in np.geomspace(0.1, 10.0, 2000)]
+    assert np.all(np.diff([one for one in thinner if one < math.inf]) >= 0.0)
+    for first, last in ((10, 1900), (400, 1900), (10, 20), (1200, 1900)):
+        least = least_yielding_stress(100.0, 1.0, 7e4, (strengths[first], strengths[last]))
+        assert least == pytest.approx(found[first : last + 1].min(), rel=3e-3)
 
 
 def bent_section(curvature, start):

@@ -208,6 +208,17 @@ def test_torsion_of_round_and_hollow_shafts():
         assert found == pytest.approx(240.0 / math.sqrt(3.0) / stress)
 
 
+@pytest.mark.parametrize("hole", [1.2, 3.0, 5.0])
+def test_torsion_beside_a_cross_pin_is_on_what_its_hole_leaves(hole):
+    """Polar moment of the section without the strip of the hole, added up on a grid."""
+    x, y = np.meshgrid(*[middle(-3.0, 3.0, 1200)[0]] * 2)
+    squared = x**2 + y**2
+    polar = np.sum(squared * (squared < 9.0) * (np.abs(x) > hole / 2.0)) * 0.005**2
+    way = of(CrossPin, diameter=f"{hole} mm", material="steel-wire", hub_diameter="16 mm")
+    found = shaft_torsion(way, 6.0, DUCTILE, through(1000.0))[ConnectionMode.SHAFT]
+    assert found == pytest.approx(240.0 / math.sqrt(3.0) / (1000.0 * 3.0 / polar), rel=5e-3)
+
+
 def test_a_brittle_material_breaks_by_its_largest_principal_stress():
     tension, shear = 70.0, 40.0
     largest = np.linalg.eigvalsh([[tension, shear], [shear, 0.0]]).max()

@@ -239,7 +239,7 @@ def test_what_grows_is_asked_at_the_outer_ends_of_the_load_and_of_the_moduli_of_
     cards = {x: SimpleNamespace(youngs_modulus=1000.0, youngs_modulus_range=ends) for x, ends in ranges.items()}
     case = SimpleNamespace(material_of=cards.get, load_cases={"push": SimpleNamespace(scatter=(0.9, 1.2))})
     asked = []
-    monkeypatch.setattr(load_growth, "by_hand_numbers", lambda hands, reactions: ({}, {}, {}))
+    monkeypatch.setattr(load_growth, "by_hand_numbers", lambda hands, reactions: ({}, {}, {}, {}))
     monkeypatch.setattr(load_growth._Stated, "at", lambda self, pose, factor: asked.append(factor))
     moved = SimpleNamespace(state="deformed", reactions=None)
     load_growth.growths(case, "push", None, (), moved, None, dict.fromkeys(order))
