@@ -127,6 +127,8 @@ def test_a_link_counts_as_asked_as_a_whole_alone(ductile, mixed):
     assert broken(ductile, collapse(ROD, 2.0), collapse(PEDAL, 2.0))[:2] == (Verdict.PASS, ())
     assert broken(mixed) == (None, ("pedal",), "plastic-collapse")
     assert broken(mixed, collapse(PEDAL, 2.0))[:2] == (Verdict.PASS, ())
+    brittle_left = tiers_of(mixed, [collapse(PEDAL, 2.0)])[1]
+    assert (brittle_left.unasked, brittle_left.asks) == (("rod",), "safety-factor")
     for one, verdict in ((parts[0], Verdict.FAIL), (bearing[1], Verdict.UNDECIDED)):
         band = Band(value=0.5, low=0.5, high=0.6 if verdict is Verdict.FAIL else 9.0)
         worse = CheckOutcome.of(one.name, one.subject, "push", one.quantity, band, 1.0)
