@@ -15,7 +15,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Subject
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
-from alula.reports.words.numbers import band, number
+from alula.reports.words.numbers import band
 
 CASES = ("spring-pedal", "knee", "finger", "slider-crank", "six-bar")
 """Some minutes of a processor; others by name."""
@@ -41,9 +41,7 @@ def rows(name: str) -> list[str]:
         own = [[c.value for c in checks if (c.subject, c.quantity) == (Subject.link(link), what)] for what in COLUMNS]
         least = [min(bands, key=lambda of: of.low) if bands else Band.unknown() for bands in own]
         ratio = least[1].value / least[0].value
-        found.append(
-            f"| {name} | {link} | {band(least[0])} | {band(least[1])} | {number(least[2].value, 3)} | {ratio:.2g} |"
-        )
+        found.append(f"| {name} | {link} | {band(least[0])} | {band(least[1])} | {band(least[2])} | {ratio:.2g} |")
     return found
 
 

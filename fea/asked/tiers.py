@@ -1,6 +1,7 @@
 """The two tiers of a verdict: whether all stays elastic, and whether anything breaks or gives way.
 
-A link of a brittle material has no elastic tier to lose: it breaks where its stress first reaches its strength.
+A link of a brittle material has no elastic tier to lose: it breaks where its stress first reaches its strength. A tier
+is passed by whole links alone: that an eye, a wall or a connection bears does not say that its link does not collapse.
 """
 
 from collections.abc import Sequence
@@ -9,6 +10,9 @@ from dataclasses import dataclass
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Tier, Verdict, deciding
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import BearingCheck
+
+WHOLE = (Quantity.SAFETY_FACTOR, Quantity.PLASTIC_COLLAPSE, Quantity.NOTCHES)
+"""What is asked of a link as a whole; other quantities can fail its tier or leave it open."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,12 +25,11 @@ class TierVerdict:
     links : tuple of str
         Those with a part that have such a tier: of what stays elastic the ductile ones, else all.
     unasked : tuple of str
-        Those of them of which no check of the case asks for it.
+        Those of them that no check of the case asks as a whole for it.
     decides : CheckOutcome or None
-        The worst of its outcomes, whose verdict is that of the tier; None where no check asks for it, unless what is
-        looked at unasked, such as buckling, fails.
+        The worst of its outcomes, asked or looked at unasked, such as buckling; None where there is none.
     asks : str
-        Type of a check that asks for it.
+        Type of a check that asks whole links for it, first those that are not asked.
     """
 
     tier: Tier
@@ -37,12 +40,16 @@ class TierVerdict:
 
     @property
     def verdict(self) -> Verdict | None:
-        """Fail, undecided or pass; None where it is not asked."""
-        return None if self.decides is None else self.decides.verdict
+        """Fail or undecided as what decides; pass where besides all links are asked; else None."""
+        if self.decides is None or (self.unasked and self.decides.verdict is Verdict.PASS):
+            return None
+        return self.decides.verdict
 
 
 def tier_of(case: Case, outcome: CheckOutcome) -> Tier:
-    """Return the tier of an outcome: that of its quantity, of a safety factor that of the strength that it is against.
+    """Return the tier of an outcome: that of its quantity, or of the strength that it is against.
+
+    A safety factor against ultimate strength, and line contact of which a side is brittle, are of breaking.
 
     Parameters
     ----------
@@ -53,11 +60,13 @@ def tier_of(case: Case, outcome: CheckOutcome) -> Tier:
     -------
     Tier
     """
-    if outcome.quantity is not Quantity.SAFETY_FACTOR:
+    if outcome.quantity.tier is not Tier.ELASTIC:
         return outcome.quantity.tier
     subject, check = outcome.subject, case.all_checks.get(outcome.name)
-    material = (case.material_of if subject.kind == "link" else case.pin_material)(subject.name)
-    return Tier.BREAK if isinstance(check, BearingCheck) or material.brittle else outcome.quantity.tier
+    cards = [(case.material_of if subject.kind == "link" else case.pin_material)(subject.name)]
+    if outcome.quantity is Quantity.LINE_CONTACT and (slotted := case.joints[subject.name].slotted) is not None:
+        cards.append(case.material_of(slotted))
+    return Tier.BREAK if isinstance(check, BearingCheck) or any(card.brittle for card in cards) else Tier.ELASTIC
 
 
 def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, ...]:
@@ -76,20 +85,21 @@ def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, .
     """
     if not case.checked_links:
         return ()
-    stated, found = case.all_checks, []
+    found = []
     ductile = tuple(link for link in case.checked_links if not case.material_of(link).brittle)
     for tier in (Tier.ELASTIC, Tier.BREAK):
         own = [check for check in checks if tier_of(case, check) is tier]
         links = ductile if tier is Tier.ELASTIC else case.checked_links
-        asked = {check.subject for check in own if check.name in stated}
-        worst = deciding(own)[0] if own else None
+        asked = {check.subject for check in own if check.quantity in WHOLE}
+        unasked = tuple(link for link in links if Subject.link(link) not in asked)
+        collapses = tier is Tier.BREAK and not set(ductile).isdisjoint(unasked or links)
         found.append(
             TierVerdict(
                 tier=tier,
                 links=links,
-                unasked=tuple(link for link in links if Subject.link(link) not in asked),
-                decides=worst if asked or (worst is not None and worst.verdict is Verdict.FAIL) else None,
-                asks="plastic-collapse" if links == ductile and tier is Tier.BREAK else "safety-factor",
+                unasked=unasked,
+                decides=deciding(own)[0] if own else None,
+                asks="plastic-collapse" if collapses else "safety-factor",
             )
         )
     return tuple(found)

@@ -128,7 +128,7 @@ def opening(
 
 
 MOST_NAMED = 3
-"""Links that the line of a tier names; of more it tells how many there are."""
+"""Unasked links that the line of a tier names, at its end; how many are asked stands first, where no screen cuts it."""
 _MISSED = {Sense.AT_LEAST: "<", Sense.AT_MOST: ">"}
 
 
@@ -155,9 +155,14 @@ def _of_tier(one: TierVerdict, *, several: bool) -> str:
         return "not asked of brittle links, which break before they yield."
     if check is None:
         return f"not asked; a check of type {one.asks} asks for it."
-    some = f"{len(one.unasked)} of {len(one.links)} links" if len(one.unasked) > MOST_NAMED else joined(one.unasked)
-    besides_them = f"; not asked of {some}" if some and check.verdict is not Verdict.FAIL else ""
-    return f"{check.verdict.upper()}, {_stands(check, several=several)}{besides_them}."
+    stands, asked = _stands(check, several=several), len(one.links) - len(one.unasked)
+    if not one.unasked or check.verdict is Verdict.FAIL:
+        return f"{check.verdict.upper()}, {stands}."
+    if not asked and check.verdict is Verdict.PASS:
+        return f"not asked of whole links (add a {one.asks} check); all else passes, {stands}."
+    extent = " for" if check.verdict is Verdict.PASS else ", asked of"
+    names = f"; not asked of {joined(one.unasked)}" if len(one.unasked) <= MOST_NAMED else ""
+    return f"{check.verdict.upper()}{extent} {asked or 'none'} of {len(one.links)} links: {stands}{names}."
 
 
 def _stands(check: CheckOutcome, *, several: bool) -> str:

@@ -4,11 +4,13 @@ import itertools
 
 import pytest
 from edited_cases import edited
+from slotted_lever import slotted_lever
 
 from alula.fea.asked.tiers import tier_of, tiers_of
 from alula.fea.common.band import Band
-from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Tier, Verdict
+from alula.fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Tier, Verdict
 from alula.loads.case.case_file import read_case
+from alula.loads.records.check_spec import MassCheck
 from alula.reports.sections.checks import tier_records
 from alula.reports.sentences.verdicts import decision, tier_lines
 from alula.reports.words.terminal import KEPT
@@ -43,13 +45,17 @@ def eyes(low, high=None):
     return outcome(PEDAL, low, high, name="eyes", quantity=Quantity.EYES, limit=2.4)
 
 
-def buckling(low):
-    return outcome(LINKAGE, low, name="buckling", quantity=Quantity.BUCKLING_FACTOR, limit=1.0)
+def collapse(subject, low, high=None):
+    return outcome(subject, low, high, name="collapse", quantity=Quantity.PLASTIC_COLLAPSE, limit=1.0)
+
+
+def buckling(low, high=None):
+    return outcome(LINKAGE, low, high, name="buckling", quantity=Quantity.BUCKLING_FACTOR, limit=1.0)
 
 
 def test_each_quantity_is_of_one_tier():
     """What loads make of a link is about breaking, but for first yield and for lengths; the rest is of neither."""
-    assert [one for one in Quantity if one.tier is Tier.ELASTIC] == [Quantity.SAFETY_FACTOR]
+    assert {one for one in Quantity if one.tier is Tier.ELASTIC} == {Quantity.SAFETY_FACTOR, Quantity.LINE_CONTACT}
     lengths = {Quantity.DEFLECTION, Quantity.DISPLACEMENT, Quantity.LAYER_GAP}
     neither = {one for one in Quantity if one.tier is Tier.NEITHER}
     assert {one for one in neither if one.origin == "loads"} == lengths
@@ -74,6 +80,18 @@ def test_a_safety_factor_is_of_the_tier_of_the_strength_that_it_is_against(
     assert [tier_of(case, outcome(subject, 3.0, name=name)) for case in (ductile, mixed)] == [of_ductile, of_brittle]
 
 
+def test_line_contact_is_of_breaking_where_pin_or_flank_is_brittle():
+    case = slotted_lever(force=-40.0)
+    one = outcome(Subject.pin("P"), 3.0, name="slot", quantity=Quantity.LINE_CONTACT)
+    assert tier_of(case, one) is Tier.ELASTIC
+    part, card = case.links["lever"].part, "resin-405nm"
+    flank = case.model_copy(
+        update={"parts": {**case.parts, part: case.parts[part].model_copy(update={"material": card})}}
+    )
+    joints = {**case.joints, "P": case.joints["P"].model_copy(update={"pin_material": card})}
+    assert [tier_of(own, one) for own in (flank, case.model_copy(update={"joints": joints}))] == [Tier.BREAK] * 2
+
+
 def test_the_worst_outcome_of_a_tier_decides_it_in_any_order(ductile):
     near, far, open_yet = outcome(PEDAL, 2.5), outcome(ROD, 9.0), outcome(ROD, 1.0, 3.0)
     failing, weak, strong = outcome(PEDAL, 1.9), eyes(2.5), eyes(9.0)
@@ -81,18 +99,60 @@ def test_the_worst_outcome_of_a_tier_decides_it_in_any_order(ductile):
         for order in itertools.permutations((*elastic, weak, strong)):
             found = tiers_of(ductile, order)
             assert [one.decides for one in found] == [decides, weak]
-            assert [one.verdict for one in found] == [decides.verdict, Verdict.PASS]
-            assert [one.unasked for one in found] == [(() if far in order or open_yet in order else ("rod",)), ("rod",)]
+            assert [one.verdict for one in found] == [decides.verdict, None]
+            assert [one.unasked for one in found] == [
+                (() if far in order or open_yet in order else ("rod",)),
+                ("pedal", "rod"),
+            ]
+
+
+def test_a_link_counts_as_asked_as_a_whole_alone(ductile, mixed):
+    """A link may collapse whose eyes, walls and connections bear; so no other quantity makes its tier a pass."""
+    parts = [
+        outcome(subject, 9.0, name=quantity, quantity=quantity)
+        for quantity in Quantity
+        if quantity.tier is Tier.BREAK and quantity.sense is Sense.AT_LEAST
+        if quantity not in (Quantity.PLASTIC_COLLAPSE, Quantity.NOTCHES)
+        for subject in (PEDAL, ROD)
+    ]
+    bearing = [outcome(Subject.pin(joint), 9.0, name="bearing") for joint in ("O", "R")]
+    assert {one.quantity for one in parts} > {Quantity.EYES, Quantity.WALLS, Quantity.FATIGUE_STRESS}
+
+    def broken(case, *more):
+        found = tiers_of(case, [outcome(PEDAL, 9.0), outcome(ROD, 9.0), *parts, *bearing, *more])[1]
+        return found.verdict, found.unasked, found.asks
+
+    assert broken(ductile) == (None, ("pedal", "rod"), "plastic-collapse")
+    assert broken(ductile, collapse(ROD, 2.0)) == (None, ("pedal",), "plastic-collapse")
+    assert broken(ductile, collapse(ROD, 2.0), collapse(PEDAL, 2.0))[:2] == (Verdict.PASS, ())
+    assert broken(mixed) == (None, ("pedal",), "plastic-collapse")
+    assert broken(mixed, collapse(PEDAL, 2.0))[:2] == (Verdict.PASS, ())
+    brittle_left = tiers_of(mixed, [collapse(PEDAL, 2.0)])[1]
+    assert (brittle_left.unasked, brittle_left.asks) == (("rod",), "safety-factor")
+    for one, verdict in ((parts[0], Verdict.FAIL), (bearing[1], Verdict.UNDECIDED)):
+        band = Band(value=0.5, low=0.5, high=0.6 if verdict is Verdict.FAIL else 9.0)
+        worse = CheckOutcome.of(one.name, one.subject, "push", one.quantity, band, 1.0)
+        assert broken(ductile, worse)[0] is verdict
+    brittle = [
+        outcome(Subject.link(name), 9.0, name="sharp", quantity=Quantity.NOTCHES) for name in ("crank", "rocker")
+    ]
+    assert tiers_of(read_case("four-bar"), brittle)[1].unasked == ("coupler",)
+    pins = [outcome(Subject.pin(joint), 9.0, name="pins") for joint in ("O", "R")]
+    elastic = tiers_of(ductile, pins)[0]
+    assert (elastic.verdict, elastic.unasked, elastic.asks) == (None, ("pedal", "rod"), "safety-factor")
 
 
 def test_what_nobody_asked_for_does_not_say_that_nothing_breaks_but_tells_where_something_does(ductile):
-    elastic, broken = tiers_of(ductile, [outcome(PEDAL, 2.5), outcome(ROD, 2.5), buckling(5.0)])
-    assert (elastic.verdict, broken.verdict, broken.asks) == (Verdict.PASS, None, "plastic-collapse")
-    assert broken.unasked == ("pedal", "rod")
-    lost = buckling(0.5)
-    assert tiers_of(ductile, [outcome(PEDAL, 2.5), lost])[1].decides is lost
-    assert tiers_of(ductile, [eyes(9.0), lost, eyes(2.5)])[1].decides is lost
-    assert tiers_of(ductile, [eyes(9.0), buckling(1.5)])[1].decides == buckling(1.5)
+    named_alike = MassCheck(type="mass", maximum="25 g")
+    for case in (ductile, ductile.model_copy(update={"checks": {**ductile.checks, "buckling": named_alike}})):
+        elastic, broken = tiers_of(case, [outcome(PEDAL, 2.5), outcome(ROD, 2.5), buckling(5.0)])
+        assert (elastic.verdict, broken.verdict, broken.asks) == (Verdict.PASS, None, "plastic-collapse")
+        assert broken.unasked == ("pedal", "rod")
+    lost, open_yet = buckling(0.5), buckling(0.9, 1.2)
+    for more in ([outcome(PEDAL, 2.5)], [eyes(9.0), eyes(2.5)], [collapse(PEDAL, 2.0), collapse(ROD, 2.0)]):
+        for worst in (lost, open_yet):
+            broken = tiers_of(ductile, [*more[:1], worst, *more[1:]])[1]
+            assert (broken.decides, broken.verdict) == (worst, worst.verdict)
     deflected = outcome(PEDAL, 9.0, name="bend", quantity=Quantity.DEFLECTION, limit=1.0)
     assert deflected.verdict is Verdict.FAIL
     assert [one.decides for one in tiers_of(ductile, [deflected])] == [None, None]
@@ -115,7 +175,18 @@ def test_the_lines_name_what_decides_and_what_asks(ductile, mixed):
 
     assert lines(ductile, outcome(ROD, 1.5, 1.9), outcome(PEDAL, 3.0), eyes(2.5, 3.0)) == [
         "Stays elastic: FAIL, safety factor of rod 1.50 (1.50 to 1.90) < 2.",
-        "Does not break: PASS, safety factor of the eyes of pedal 2.50 (2.50 to 3.00) ≥ 2.4; not asked of rod.",
+        "Does not break: not asked of whole links (add a plastic-collapse check); all else passes, "
+        "safety factor of the eyes of pedal 2.50 (2.50 to 3.00) ≥ 2.4.",
+    ]
+    assert lines(ductile, outcome(ROD, 3.0), outcome(PEDAL, 4.0), eyes(2.5), collapse(PEDAL, 8.0)) == [
+        "Stays elastic: PASS, safety factor of rod 3.00 ≥ 2.",
+        "Does not break: PASS for 1 of 2 links: safety factor of the eyes of pedal 2.50 ≥ 2.4; not asked of rod.",
+    ]
+    assert lines(ductile, outcome(ROD, 1.0, 3.0), eyes(2.0, 3.0)) == [
+        "Stays elastic: UNDECIDED, asked of 1 of 2 links: safety factor of rod 1.00 (1.00 to 3.00), limit ≥ 2; "
+        "not asked of pedal.",
+        "Does not break: UNDECIDED, asked of none of 2 links: "
+        "safety factor of the eyes of pedal 2.00 (2.00 to 3.00), limit ≥ 2.4; not asked of pedal and rod.",
     ]
     assert lines(ductile, outcome(ROD, 1.5, 2.5), outcome(PEDAL, 3.0), several=True) == [
         "Stays elastic: UNDECIDED, safety factor of rod (push) 1.50 (1.50 to 2.50), limit ≥ 2.",
@@ -132,10 +203,12 @@ def test_the_lines_name_what_decides_and_what_asks(ductile, mixed):
     assert lines(ductile, stays)[1] == "Does not break: FAIL, sustained stress of rod 12.0 > 11 MPa."
     assert lines(read_case("four-bar"), outcome(Subject.link("crank"), 7.0)) == [
         "Stays elastic: not asked of brittle links, which break before they yield.",
-        "Does not break: PASS, safety factor of crank 7.00 ≥ 2; not asked of coupler and rocker.",
+        "Does not break: PASS for 1 of 3 links: safety factor of crank 7.00 ≥ 2; not asked of coupler and rocker.",
     ]
     six = read_case("six-bar")
-    assert lines(six, outcome(Subject.link("crank"), 7.0))[0].endswith("; not asked of 4 of 5 links.")
+    assert lines(six, outcome(Subject.link("crank"), 7.0))[0] == (
+        "Stays elastic: PASS for 1 of 5 links: safety factor of crank 7.00 ≥ 2."
+    )
 
 
 def test_what_decides_a_tier_is_not_told_twice(ductile):
