@@ -213,11 +213,11 @@ class NotchField:
         length = 2.0 * strength.distance
         depths, weights = line_depths(strength.distance)
         depths = np.concatenate([[strength.distance / 2.0], depths, [length]])
-        best: list[NotchStress] = []
+        best, weaker = list[NotchStress](), min(strength.inherent, strength.ultimate)
         places = self._places(SPACING * strength.distance)
         for first in range(0, len(places), _BATCH):
             nodes = places[first : first + _BATCH]
-            if best and self.surface[nodes[0]] / strength.ultimate <= min(one.use for one in best):
+            if best and self.surface[nodes[0]] / weaker <= min(one.use for one in best):
                 break
             falls = np.array([self.fall(int(node)) for node in nodes])
             steep = np.linalg.norm(falls, axis=1)
