@@ -15,6 +15,7 @@ from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import notches
 from alula.fea.judging.link_result import by_hand_shares
 from alula.fea.modes.notches import NotchFactor
+from alula.fea.outcomes.limits import layer_limit, layers_of
 from alula.fea.refine.refinement import Effort
 from alula.fea.solid.notch_field import NotchStress
 from alula.geometry.base.errors import CaseError
@@ -45,12 +46,17 @@ FOUND = NotchFactor(
 )
 
 
+def knee(entries):
+    """Return the knee without its checks of metal, which its links of a brittle material do not take."""
+    return edited("knee", ['checks={ strength = { type = "safety-factor" } }', *entries])
+
+
 def own(more):
     return [CHECK, OWN.format(more), 'parts.front.material="own"']
 
 
 def place(ahead, use, *, counts=True):
-    return NotchStress(node=0, surface=30.0, ahead=ahead, beyond=5.0, use=use, elements=np.array([0]), counts=counts)
+    return NotchStress(node=0, surface=30.0, ahead=ahead, plain=5.0, use=use, elements=np.array([0]), counts=counts)
 
 
 class Solved:
@@ -96,7 +102,7 @@ def same(point, line):
 
 
 def test_the_band_holds_both_methods_and_the_mesh(monkeypatch):
-    case = edited("knee", own(TOUGH))
+    case = knee(own(TOUGH))
     found = Solved(monkeypatch, [same(0.40, 0.50)], spans=(180,)).factor(case)
     assert found.factor.value == pytest.approx(1.0 / 0.40)
     assert found.factor.low == pytest.approx(1.0 / (0.50 + 1.0 / 40.0))
@@ -105,7 +111,7 @@ def test_the_band_holds_both_methods_and_the_mesh(monkeypatch):
 
 
 def test_the_worse_variant_counts_and_contact_adds_to_the_narrow_pressure(monkeypatch):
-    case = edited("knee", own(TOUGH))
+    case = knee(own(TOUGH))
     for uses, spans in (
         ((same(0.40, 0.40), same(0.60, 0.60)), (180, 90)),
         ((same(0.60, 0.60), same(0.40, 0.40)), (90, 180)),
@@ -117,7 +123,7 @@ def test_the_worse_variant_counts_and_contact_adds_to_the_narrow_pressure(monkey
 
 
 def test_another_transfer_of_a_torque_widens_the_band_alone(monkeypatch):
-    case = edited("knee", own(TOUGH))
+    case = knee(own(TOUGH))
     other = "bore-shear" if case.torque_transfer == "eye-faces" else "eye-faces"
     for uses, transfers in (((0.4, 0.6), (case.torque_transfer, other)), ((0.6, 0.4), (other, case.torque_transfer))):
         every = [same(use, use) for use in uses]
@@ -133,7 +139,7 @@ def test_ranges_of_the_card_widen_the_band(monkeypatch):
         use = {0.1: 0.8, 0.2: 0.5, 0.3: 0.25}[strength.distance]
         return place(20.0, use), place(20.0, use)
 
-    found = Solved(monkeypatch, [by_distance], spans=(180,)).factor(edited("knee", own(more)))
+    found = Solved(monkeypatch, [by_distance], spans=(180,)).factor(knee(own(more)))
     ends = found.factor.low, found.factor.value, found.factor.high
     assert ends == pytest.approx((1.0 / 0.825, 2.0, 1.0 / 0.225))
     assert "stated ranges at notches" in " ".join(map(told, found.factor.texts))
@@ -141,33 +147,43 @@ def test_ranges_of_the_card_widen_the_band(monkeypatch):
 
 @pytest.mark.parametrize(("volume", "share"), [(1000.0, 30.0 / 40.0), (1.0, 30.0 / 40.0 * 0.001**0.1)])
 def test_strength_by_volume(monkeypatch, volume, share):
-    """Of as much volume as the specimens have it is theirs; a thousandth bears 1000^(1/m) as much."""
-    case = edited("knee", own(BY_VOLUME))
-    found = Solved(monkeypatch, [same(0.0, 0.0)], volume=volume, spans=(180,)).factor(case)
+    """Of as much volume as the specimens have it is theirs; a thousandth bears 1000^(1/m) as much.
+
+    The link is a pair: that of both plates counts.
+    """
+    case = knee(own(BY_VOLUME))
+    assert case.links["front"].count == 2
+    found = Solved(monkeypatch, [same(0.0, 0.0)], volume=volume / 2.0, spans=(180,)).factor(case)
     ends = found.factor.low, found.factor.value, found.factor.high
     assert ends == pytest.approx((1.0 / (1.1 * share), 1.0 / share, 1.0 / (0.9 * share)))
     assert found.distance is None
     assert found.effective_volume == volume
 
 
+def test_the_range_of_the_tensile_strength_is_none_of_notches(monkeypatch):
+    case = knee(own(TOUGH + ', strength_range = ["30 MPa", "60 MPa"]'))
+    found = Solved(monkeypatch, [same(0.4, 0.4)], spans=(180,)).factor(case)
+    assert "stated ranges at notches" not in " ".join(map(told, found.factor.texts))
+
+
 @pytest.mark.parametrize(("use", "decides"), [(0.5, 30.0 / 40.0), (0.9, 0.9)])
 def test_the_lower_of_distance_and_volume_counts(monkeypatch, use, decides):
-    found = Solved(monkeypatch, [same(use, use)], volume=1000.0, spans=(180,)).factor(
-        edited("knee", own(TOUGH + BY_VOLUME))
+    found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(
+        knee(own(TOUGH + BY_VOLUME))
     )
     assert found.factor.value == pytest.approx(1.0 / decides)
     assert (found.by_point, found.by_volume) == (pytest.approx(1.0 / use), pytest.approx(40.0 / 30.0))
 
 
 def test_without_tension_the_mesh_alone_leaves_it_open(monkeypatch):
-    found = Solved(monkeypatch, [lambda strength: None], spans=(180,)).factor(edited("knee", own(TOUGH)))
+    found = Solved(monkeypatch, [lambda strength: None], spans=(180,)).factor(knee(own(TOUGH)))
     assert (found.factor.low, found.factor.high) == (pytest.approx(40.0), np.inf)
     assert "nowhere in tension" in told(notches.notch_said(found))
 
 
 def judged(monkeypatch, found, case=None, growth=None):
     """Return the outcome where each plate has what was found."""
-    case = case or edited("knee", own(TOUGH))
+    case = case or knee(own(TOUGH))
     factors = iter(found)
     monkeypatch.setattr(notches, "notch_factor", lambda *of: next(factors))
     monkeypatch.setattr(notches, "solid_buckling", lambda result: None)
@@ -194,7 +210,7 @@ def test_the_whole_band_is_judged(monkeypatch, low, high, verdict):
 
 def test_the_worse_plate_and_scatter_of_loads_count(monkeypatch):
     weak = replace(FOUND, factor=Band(value=1.8, low=1.2, high=2.0))
-    case = edited("knee", [*own(TOUGH), "load_cases.heel-strike.scatter=[0.5, 2.0]"])
+    case = knee([*own(TOUGH), "load_cases.heel-strike.scatter=[0.5, 2.0]"])
     for plates in ([FOUND, weak], [weak, FOUND]):
         outcome, found = judged(monkeypatch, plates, case)
         assert (outcome.value.low, outcome.value.high) == (pytest.approx(0.6), pytest.approx(4.0))
@@ -211,7 +227,7 @@ def test_a_plate_that_is_not_known_leaves_it_open(monkeypatch):
 def test_a_peak_without_limit_is_not_judged(monkeypatch):
     solved = Solved(monkeypatch, [same(0.4, 0.4)], spans=(180,), known=False)
     monkeypatch.setattr(notches, "judged", lambda *of: SimpleNamespace(reason=reason("idle_link")))
-    assert solved.factor(edited("knee", own(TOUGH))) == reason("idle_link")
+    assert solved.factor(knee(own(TOUGH))) == reason("idle_link")
 
 
 def test_where_nothing_is_taken_off_it_says_so():
@@ -221,17 +237,28 @@ def test_where_nothing_is_taken_off_it_says_so():
 
 
 def test_by_hand_it_is_open_and_names_the_remedy():
-    result = check_case(edited("knee", [CHECK, RESIN]), fidelity="beam")
+    result = check_case(knee([CHECK, RESIN]), fidelity="beam")
     checks = [one for case in result.load_cases.values() for one in case.checks if one.quantity is Quantity.NOTCHES]
     assert len(checks) == 2
     assert {one.verdict for one in checks} == {Verdict.UNDECIDED}
     assert all("--fidelity solid" in told(one.reason) for one in checks)
 
 
+def test_layers_are_judged_with_notches_alone():
+    """Notches are judged along the layers, so that a link of weak layers must not pass by them."""
+    pla = 'parts.front.material="pla-fdm-xy"', "parts.front.build_direction=[1,0,0]"
+    case = knee(['checks={ cracks={ type = "notch", minimum = 1.5, links = ["front"] } }', *pla])
+    assert layer_limit(case, "front") == 1.5
+    assert layers_of(case, "front").across == 12.0
+    result = check_case(case, fidelity="beam")
+    every = [one for found in result.load_cases.values() for one in found.checks]
+    assert len([one for one in every if one.quantity is Quantity.LAYERS]) == len(result.load_cases)
+
+
 def test_from_the_case_to_the_page():
     """The link is solved although its safety factor is clear by hand; its notches are not weaker than its surface."""
     entries = CHECK, RESIN, "checks.strength.minimum=0.1", "solid.mesh_size=1.6"
-    result = check_case(edited("knee", entries), effort=Effort(max_meshes=1))
+    result = check_case(knee(entries), effort=Effort(max_meshes=1))
     for case in result.load_cases.values():
         [found] = case.notches
         assert found.relieved
@@ -256,4 +283,4 @@ def test_from_the_case_to_the_page():
 )
 def test_links_that_it_cannot_judge_are_refused(entries, says):
     with pytest.raises(CaseError, match=says):
-        edited("knee", [CHECK, *entries])
+        knee([CHECK, *entries])
