@@ -168,9 +168,7 @@ def test_the_range_of_the_tensile_strength_is_none_of_notches(monkeypatch):
 
 @pytest.mark.parametrize(("use", "decides"), [(0.5, 30.0 / 40.0), (0.9, 0.9)])
 def test_the_lower_of_distance_and_volume_counts(monkeypatch, use, decides):
-    found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(
-        knee(own(TOUGH + BY_VOLUME))
-    )
+    found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(knee(own(TOUGH + BY_VOLUME)))
     assert found.factor.value == pytest.approx(1.0 / decides)
     assert (found.by_point, found.by_volume) == (pytest.approx(1.0 / use), pytest.approx(40.0 / 30.0))
 
