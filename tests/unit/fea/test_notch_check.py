@@ -46,11 +46,6 @@ FOUND = NotchFactor(
 )
 
 
-def knee(entries):
-    """Return the knee without its checks of metal, which its links of a brittle material do not take."""
-    return edited("knee", ['checks={ strength = { type = "safety-factor" } }', *entries])
-
-
 def own(more):
     return [CHECK, OWN.format(more), 'parts.front.material="own"']
 
@@ -102,7 +97,7 @@ def same(point, line):
 
 
 def test_the_band_holds_both_methods_and_the_mesh(monkeypatch):
-    case = knee(own(TOUGH))
+    case = edited("knee", own(TOUGH))
     found = Solved(monkeypatch, [same(0.40, 0.50)], spans=(180,)).factor(case)
     assert found.factor.value == pytest.approx(1.0 / 0.40)
     assert found.factor.low == pytest.approx(1.0 / (0.50 + 1.0 / 40.0))
@@ -111,7 +106,7 @@ def test_the_band_holds_both_methods_and_the_mesh(monkeypatch):
 
 
 def test_the_worse_variant_counts_and_contact_adds_to_the_narrow_pressure(monkeypatch):
-    case = knee(own(TOUGH))
+    case = edited("knee", own(TOUGH))
     for uses, spans in (
         ((same(0.40, 0.40), same(0.60, 0.60)), (180, 90)),
         ((same(0.60, 0.60), same(0.40, 0.40)), (90, 180)),
@@ -123,7 +118,7 @@ def test_the_worse_variant_counts_and_contact_adds_to_the_narrow_pressure(monkey
 
 
 def test_another_transfer_of_a_torque_widens_the_band_alone(monkeypatch):
-    case = knee(own(TOUGH))
+    case = edited("knee", own(TOUGH))
     other = "bore-shear" if case.torque_transfer == "eye-faces" else "eye-faces"
     for uses, transfers in (((0.4, 0.6), (case.torque_transfer, other)), ((0.6, 0.4), (other, case.torque_transfer))):
         every = [same(use, use) for use in uses]
@@ -139,7 +134,7 @@ def test_ranges_of_the_card_widen_the_band(monkeypatch):
         use = {0.1: 0.8, 0.2: 0.5, 0.3: 0.25}[strength.distance]
         return place(20.0, use), place(20.0, use)
 
-    found = Solved(monkeypatch, [by_distance], spans=(180,)).factor(knee(own(more)))
+    found = Solved(monkeypatch, [by_distance], spans=(180,)).factor(edited("knee", own(more)))
     ends = found.factor.low, found.factor.value, found.factor.high
     assert ends == pytest.approx((1.0 / 0.825, 2.0, 1.0 / 0.225))
     assert "stated ranges at notches" in " ".join(map(told, found.factor.texts))
@@ -151,7 +146,7 @@ def test_strength_by_volume(monkeypatch, volume, share):
 
     The link is a pair: that of both plates counts.
     """
-    case = knee(own(BY_VOLUME))
+    case = edited("knee", own(BY_VOLUME))
     assert case.links["front"].count == 2
     found = Solved(monkeypatch, [same(0.0, 0.0)], volume=volume / 2.0, spans=(180,)).factor(case)
     ends = found.factor.low, found.factor.value, found.factor.high
@@ -161,27 +156,29 @@ def test_strength_by_volume(monkeypatch, volume, share):
 
 
 def test_the_range_of_the_tensile_strength_is_none_of_notches(monkeypatch):
-    case = knee(own(TOUGH + ', strength_range = ["30 MPa", "60 MPa"]'))
+    case = edited("knee", own(TOUGH + ', strength_range = ["30 MPa", "60 MPa"]'))
     found = Solved(monkeypatch, [same(0.4, 0.4)], spans=(180,)).factor(case)
     assert "stated ranges at notches" not in " ".join(map(told, found.factor.texts))
 
 
 @pytest.mark.parametrize(("use", "decides"), [(0.5, 30.0 / 40.0), (0.9, 0.9)])
 def test_the_lower_of_distance_and_volume_counts(monkeypatch, use, decides):
-    found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(knee(own(TOUGH + BY_VOLUME)))
+    found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(
+        edited("knee", own(TOUGH + BY_VOLUME))
+    )
     assert found.factor.value == pytest.approx(1.0 / decides)
     assert (found.by_point, found.by_volume) == (pytest.approx(1.0 / use), pytest.approx(40.0 / 30.0))
 
 
 def test_without_tension_the_mesh_alone_leaves_it_open(monkeypatch):
-    found = Solved(monkeypatch, [lambda strength: None], spans=(180,)).factor(knee(own(TOUGH)))
+    found = Solved(monkeypatch, [lambda strength: None], spans=(180,)).factor(edited("knee", own(TOUGH)))
     assert (found.factor.low, found.factor.high) == (pytest.approx(40.0), np.inf)
     assert "nowhere in tension" in told(notches.notch_said(found))
 
 
 def judged(monkeypatch, found, case=None, growth=None):
     """Return the outcome where each plate has what was found."""
-    case = case or knee(own(TOUGH))
+    case = case or edited("knee", own(TOUGH))
     factors = iter(found)
     monkeypatch.setattr(notches, "notch_factor", lambda *of: next(factors))
     monkeypatch.setattr(notches, "solid_buckling", lambda result: None)
@@ -208,7 +205,7 @@ def test_the_whole_band_is_judged(monkeypatch, low, high, verdict):
 
 def test_the_worse_plate_and_scatter_of_loads_count(monkeypatch):
     weak = replace(FOUND, factor=Band(value=1.8, low=1.2, high=2.0))
-    case = knee([*own(TOUGH), "load_cases.heel-strike.scatter=[0.5, 2.0]"])
+    case = edited("knee", [*own(TOUGH), "load_cases.heel-strike.scatter=[0.5, 2.0]"])
     for plates in ([FOUND, weak], [weak, FOUND]):
         outcome, found = judged(monkeypatch, plates, case)
         assert (outcome.value.low, outcome.value.high) == (pytest.approx(0.6), pytest.approx(4.0))
@@ -225,7 +222,7 @@ def test_a_plate_that_is_not_known_leaves_it_open(monkeypatch):
 def test_a_peak_without_limit_is_not_judged(monkeypatch):
     solved = Solved(monkeypatch, [same(0.4, 0.4)], spans=(180,), known=False)
     monkeypatch.setattr(notches, "judged", lambda *of: SimpleNamespace(reason=reason("idle_link")))
-    assert solved.factor(knee(own(TOUGH))) == reason("idle_link")
+    assert solved.factor(edited("knee", own(TOUGH))) == reason("idle_link")
 
 
 def test_where_nothing_is_taken_off_it_says_so():
@@ -235,7 +232,7 @@ def test_where_nothing_is_taken_off_it_says_so():
 
 
 def test_by_hand_it_is_open_and_names_the_remedy():
-    result = check_case(knee([CHECK, RESIN]), fidelity="beam")
+    result = check_case(edited("knee", [CHECK, RESIN]), fidelity="beam")
     checks = [one for case in result.load_cases.values() for one in case.checks if one.quantity is Quantity.NOTCHES]
     assert len(checks) == 2
     assert {one.verdict for one in checks} == {Verdict.UNDECIDED}
@@ -245,7 +242,7 @@ def test_by_hand_it_is_open_and_names_the_remedy():
 def test_layers_are_judged_with_notches_alone():
     """Notches are judged along the layers, so that a link of weak layers must not pass by them."""
     pla = 'parts.front.material="pla-fdm-xy"', "parts.front.build_direction=[1,0,0]"
-    case = knee(['checks={ cracks={ type = "notch", minimum = 1.5, links = ["front"] } }', *pla])
+    case = edited("knee", ['checks={ cracks={ type = "notch", minimum = 1.5, links = ["front"] } }', *pla])
     assert layer_limit(case, "front") == 1.5
     assert layers_of(case, "front").across == 12.0
     result = check_case(case, fidelity="beam")
@@ -256,7 +253,7 @@ def test_layers_are_judged_with_notches_alone():
 def test_from_the_case_to_the_page():
     """The link is solved although its safety factor is clear by hand; its notches are not weaker than its surface."""
     entries = CHECK, RESIN, "checks.strength.minimum=0.1", "solid.mesh_size=1.6"
-    result = check_case(knee(entries), effort=Effort(max_meshes=1))
+    result = check_case(edited("knee", entries), effort=Effort(max_meshes=1))
     for case in result.load_cases.values():
         [found] = case.notches
         assert found.relieved
@@ -281,4 +278,4 @@ def test_from_the_case_to_the_page():
 )
 def test_links_that_it_cannot_judge_are_refused(entries, says):
     with pytest.raises(CaseError, match=says):
-        knee([CHECK, *entries])
+        edited("knee", [CHECK, *entries])
