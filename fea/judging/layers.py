@@ -24,7 +24,7 @@ CHECK = "layers"
 
 
 def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) -> Iterator[CheckOutcome]:
-    """Yield the outcome of the layers of every link whose safety factor is checked and that states how it was built.
+    """Yield the outcome of the layers of every link whose safety factor or notches are checked, where it is printed.
 
     Parameters
     ----------

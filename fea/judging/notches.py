@@ -133,7 +133,8 @@ def notch_factor(case: Case, one: Asked, loads: str, hand: LinkByHand, refined: 
     for number in solved:
         if not refined.precision[number].known("principal"):
             return judged(refined, number, "principal").reason
-    uses = {number: _use(one, refined, number, material) for number in solved}
+    plates = case.links[one.subject.name].count
+    uses = {number: _use(one, refined, number, material, plates) for number in solved}
     own = [number for number in solved if solid.cases[number].transfer in (None, case.torque_transfer)]
     governing = max(own, key=lambda number: uses[number].value)
     value, told = uses[governing].value, uses[governing].told
@@ -151,22 +152,24 @@ def notch_factor(case: Case, one: Asked, loads: str, hand: LinkByHand, refined: 
 
 
 def _ranges(material: Material) -> tuple[Source, ...]:
-    found = notch_strengths(material)
-    if found is None or len({(one.distance, one.inherent) for one in found}) == 1:
+    own = material.inherent_strength_range, material.critical_distance_range, material.fracture_toughness_range
+    if own == (None, None, None):
         return strength_scatter(material).told
     return (*strength_scatter(material).told, Source(kind=SourceKind.STRENGTH, detail=reason("ranges_of_notches")))
 
 
-def _use(one: Asked, refined: RefinedSolid, number: int, material: Material) -> _Use:
-    """Return what a link uses up of its strength in one case of its solid."""
+def _use(one: Asked, refined: RefinedSolid, number: int, material: Material, plates: int) -> _Use:
+    """Return what a link uses up of its strength in one case of its solid, which is that of one of its plates."""
     solid = refined.solution
     variant = solid.cases[number]
     field = NotchField(field=stress_field(solid.space, variant.displacement, E=solid.E, nu=solid.nu))
     peak = int(field.surface.argmax())
     facts: dict[str, Any] = {"location": solid.space.nodes[peak], "surface": float(field.surface[peak])}
     found = []
-    for by in (_by_distance, _by_volume):
-        ends, more = by(field, refined, number, material)
+    for ends, more in (
+        _by_distance(field, refined, number, material),
+        _by_volume(field, refined, number, material, plates),
+    ):
         found.append(ends)
         facts |= more
     contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
@@ -207,12 +210,12 @@ def _by_distance(field: NotchField, refined: RefinedSolid, number: int, material
     return (point.use, min(low for low, _ in every), max(high for _, high in every)), facts
 
 
-def _by_volume(field: NotchField, refined: RefinedSolid, number: int, material: Material) -> _Found:
-    """By the volume under tension; its mesh may miss what the largest stress misses."""
+def _by_volume(field: NotchField, refined: RefinedSolid, number: int, material: Material, plates: int) -> _Found:
+    """By the volume under tension, of a pair that of both plates; its mesh may miss what the largest stress misses."""
     modulus, volume, peak = material.weibull_modulus, material.weibull_volume, float(field.surface.max())
     if modulus is None or volume is None or peak <= 0.0:
         return _NOTHING
-    loaded = field.effective_volume(modulus)
+    loaded = plates * field.effective_volume(modulus)
     use = peak / material.allowable * (loaded / volume) ** (1.0 / modulus)
     reach, scatter = refined.precision[number].principal.index, strength_scatter(material)
     ends = use, use * max(1.0 - reach, 0.0) / scatter.high, use * (1.0 + reach) / scatter.low

@@ -28,8 +28,8 @@ class NotchFactor:
     point, line : float or None
         Stress at L/2, and mean over 2 L where that is nearest to breaking [MPa].
     relieved : bool
-        False where stress is even over 2 L, or such a line leaves the link: then the surface stress stands against the
-        tensile strength.
+        False where stress is even over 2 L or falls straight through the wall, or a line of 4 L leaves the link: then
+        the surface stress stands against the tensile strength.
     by_point, by_line, by_volume : float or None
         The factor by each method, as stated; None where the card does not tell.
     effective_volume : float or None

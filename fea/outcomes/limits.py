@@ -111,7 +111,7 @@ def layer_limit(case: Case, link: str) -> float | None:
     -------
     float or None
         None where the part states no direction of building, or its material has no layers, or no check asks for the
-        link's safety factor.
+        link's safety factor or notches.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def layer_limit(case: Case, link: str) -> float | None:
         Where a check has no limit.
     """
     stated = case.part_of(link).build_direction is not None and not is_solid_stock(case.material_of(link))
-    limits = [one.limit for one in asked(case, SafetyFactorCheck, subject=Subject.link(link))]
+    limits = [one.limit for one in asked(case, SafetyFactorCheck, NotchCheck, subject=Subject.link(link))]
     return max(limits) if limits and stated else None
 
 
@@ -214,7 +214,7 @@ def layer_caveats(case: Case) -> Iterator[Caveat]:
     ------
     Caveat
     """
-    asked_for = asked_of(case, SafetyFactorCheck)
+    asked_for = asked_of(case, SafetyFactorCheck, NotchCheck)
     unknown = [link for link in asked_for if case.material_of(link).strength_across_layers is None]
     bare = [link for link in unknown if case.part_of(link).build_direction is None and _may_be_printed(case, link)]
     if bare:

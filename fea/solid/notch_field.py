@@ -2,8 +2,8 @@
 
 From a place of the surface the line runs where the largest principal stress falls most, in the plane that this stress
 opens: at a smooth place inwards along the normal, at the rim of a hole along its face. Where it would leave the solid
-beside a rim it takes the steepest of some directions that stay in it. Where stress is even, or no line stays in the
-solid, the surface stress stands.
+beside a rim it takes the steepest of some directions that stay in it. Where stress is even or falls straight, as in
+bending, or no line stays in the solid, the surface stress stands.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,9 @@ Real = NDArray[np.float64]
 Nodes = NDArray[np.int64]
 
 EVEN = 0.01
-"""Change over a line, relative to the stress where it begins, below which stress is even."""
+"""Change over a line, relative to the stress where it begins, below which stress is even, or falls straight."""
+WALL = np.array([2.0, 3.0, 4.0, 6.0, 8.0])
+"""Depths over the length of a line at which the rest of the wall is looked at: the first must lie in the solid."""
 OUTSIDE = 0.02
 """Share of an element by which a point may lie beyond it: chords of curved sides, and lines along a face."""
 FITTED = 40
@@ -35,7 +37,7 @@ SPACING = 0.25
 """Edge of cubes, over the critical distance, in each of which the most stressed place alone is looked at."""
 _BATCH = 64
 _AROUND = np.arange(12) * np.pi / 6.0
-"""Directions that are tried where the steepest one leaves the solid [rad]."""
+"""Directions that are tried where the steepest one leaves the solid, the first along the face it leaves [rad]."""
 _STEPS = 3
 """Of Newton's method to the point of a curved element; the first one is exact in a straight one."""
 _U, _W = (lambda points: ((points[0] + 1.0) / 2.0, points[1] / 2.0))(np.polynomial.legendre.leggauss(8))
@@ -71,20 +73,21 @@ class NotchStress:
         There [MPa].
     ahead : float
         At L/2, or the mean over 2 L [MPa]; the surface stress where the line does not count.
-    beyond : float
-        At the end of the line, 2 L [MPa].
+    plain : float
+        What the surface would have without a notch: stress at the end of the line and in the wall behind it, in a
+        straight line back to the surface [MPa].
     use : float
         Share of the strength that is used up.
     elements : ndarray of int
         In which the stress was taken.
     counts : bool
-        False where stress is even, or no line stays in the solid.
+        False where stress is even or falls straight, or no line stays in the solid.
     """
 
     node: int
     surface: float
     ahead: float
-    beyond: float
+    plain: float
     use: float
     elements: Nodes
     counts: bool
@@ -127,7 +130,7 @@ class NotchField:
         return lambda node: np.asarray(tree.query(nodes[node], k=count)[1])
 
     def at(self, points: Real) -> tuple[Real, Nodes]:
-        """Return the largest principal stress at points.
+        """Return the stress at points.
 
         Parameters
         ----------
@@ -136,15 +139,15 @@ class NotchField:
 
         Returns
         -------
-        tuple of 2 ndarray, shape (k,)
-            Stress [MPa], NaN outside, and the elements, -1 outside.
+        tuple of 2 ndarray
+            Components (k, 6) [MPa], NaN outside, and the elements (k,), -1 outside.
         """
         element, place = self._finder(points)
         inside = element >= 0
-        found = np.full(len(points), np.nan)
+        found = np.full((len(points), 6), np.nan)
         phi, _ = basis_at(self.field.space, place[inside].T)
         nodal = self.field.nodal[self.field.space.cells[element[inside]]]
-        found[inside] = extreme_principal(np.einsum("kb,kbi->ki", phi, nodal))[0]
+        found[inside] = np.einsum("kb,kbi->ki", phi, nodal)
         return found, element
 
     @cached_property
@@ -168,38 +171,60 @@ class NotchField:
             offset = space.nodes[near] - space.nodes[node]
             terms = np.column_stack([offset, *(offset[:, i] * offset[:, j] for i, j in PAIRS)])
             slope = np.linalg.lstsq(terms, self.surface[near] - self.surface[node], rcond=None)[0][:3]
-            plane = self._plane(node)
+            plane = self._axes(node)[:, :2]
             self._slopes[node] = -plane @ (plane.T @ slope)
         return self._slopes[node]
 
-    def _plane(self, node: int) -> Real:
-        """Return two unit vectors (3, 2) across the largest principal stress of a node."""
+    def _axes(self, node: int) -> Real:
+        """Return the directions (3, 3) of the principal stresses of a node, that of the largest last."""
         tensor = np.empty((3, 3))
         for (i, j), value in zip(PAIRS, self.field.nodal[node], strict=True):
             tensor[i, j] = tensor[j, i] = value
-        return np.asarray(np.linalg.eigh(tensor)[1][:, :2])
+        return np.asarray(np.linalg.eigh(tensor)[1])
 
-    def _along(self, nodes: Nodes, ways: Real, depths: Real) -> tuple[Real, Nodes]:
-        """Return stress and elements (k, d) at depths along lines from k nodes."""
+    def _across(self, node: int) -> Real:
+        """Return two unit vectors (2, 3) across the pull at a node: where stress falls without leaving, and beside.
+
+        What leads out of a face there is taken off, and what leads less than 30° into it: a thin plate soon ends.
+        """
+        space, axes, way = self.field.space, self._axes(node), self.fall(node)
+        steep = np.linalg.norm(way)
+        faces = space.nodes[space.boundary[(space.boundary == node).any(axis=1), :3]]
+        for normal in np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]):
+            out = normal / np.linalg.norm(normal)
+            if way @ out > -steep / 2.0:
+                way = way - way @ out * out
+        way = axes[:, :2] @ (axes[:, :2].T @ way)
+        size = np.linalg.norm(way)
+        first = way / size if size > 0.0 else axes[:, 0]
+        return np.array([first, np.cross(axes[:, 2], first)])
+
+    def _along(self, nodes: Nodes, ways: Real, depths: Real) -> tuple[Real, Real, Nodes]:
+        """Return stress, that in the direction of its largest at the node, and elements (k, d) along lines."""
         points = self.field.space.nodes[nodes][:, None] + depths[None, :, None] * ways[:, None]
-        stress, element = self.at(points.reshape(-1, 3))
-        return stress.reshape(len(nodes), -1), element.reshape(len(nodes), -1)
+        components, element = self.at(points.reshape(-1, 3))
+        components = components.reshape(len(nodes), -1, 6)
+        pulled = np.array([self._axes(int(node))[:, 2] for node in nodes])
+        shares = np.column_stack([(1.0 if i == j else 2.0) * pulled[:, i] * pulled[:, j] for i, j in PAIRS])
+        own = np.einsum("kdi,ki->kd", components, shares)
+        return extreme_principal(components)[0], own, element.reshape(len(nodes), -1)
 
-    def _turned(self, nodes: Nodes, depths: Real, weights: Real) -> tuple[Real, Nodes]:
+    def _turned(self, nodes: Nodes, depths: Real, weights: Real) -> tuple[Real, Real, Nodes]:
         """Return what ``_along`` does, along the steepest of some directions that stay in the solid, if any does."""
         around = np.column_stack([np.cos(_AROUND), np.sin(_AROUND)])
-        ways = np.array([around @ self._plane(int(node)).T for node in nodes]).reshape(-1, 3)
-        stress, element = self._along(np.repeat(nodes, len(around)), ways, depths)
-        mean = np.where((element >= 0).all(axis=1), stress[:, 1:-1] @ weights, np.inf).reshape(-1, len(around))
+        ways = np.array([around @ self._across(int(node)) for node in nodes]).reshape(-1, 3)
+        stress, own, element = self._along(np.repeat(nodes, len(around)), ways, depths)
+        stays = (element[:, : len(weights) + 3] >= 0).all(axis=1)
+        mean = np.where(stays, stress[:, 1 : len(weights) + 1] @ weights, np.inf).reshape(-1, len(around))
         best = np.argmin(mean, axis=1) + len(around) * np.arange(len(nodes))
-        return stress[best], element[best]
+        return stress[best], own[best], element[best]
 
     def worst(self, strength: NotchStrength) -> tuple[NotchStress, NotchStress] | None:
         """Return where the surface comes nearest to breaking, by the point and by the line method.
 
         A place uses up the larger of two shares: of the inherent strength by what is ahead of it, and of the tensile
-        strength by the stress beyond the line, which no notch bears. Places are looked at all over the surface where
-        its stress is larger than what was found.
+        strength by what a plain section would have, straight through the end of the line and the wall behind it.
+        Places are looked at all over the surface where its stress is larger than what was found.
 
         Parameters
         ----------
@@ -212,41 +237,47 @@ class NotchField:
         """
         length = 2.0 * strength.distance
         depths, weights = line_depths(strength.distance)
-        depths = np.concatenate([[strength.distance / 2.0], depths, [length]])
-        best: list[NotchStress] = []
+        depths = np.concatenate([[strength.distance / 2.0], depths, [length], length * WALL])
+        end = len(weights) + 1
+        best, weaker = list[NotchStress](), min(strength.inherent, strength.ultimate)
         places = self._places(SPACING * strength.distance)
         for first in range(0, len(places), _BATCH):
             nodes = places[first : first + _BATCH]
-            if best and self.surface[nodes[0]] / strength.ultimate <= min(one.use for one in best):
+            if best and self.surface[nodes[0]] / weaker <= min(one.use for one in best):
                 break
             falls = np.array([self.fall(int(node)) for node in nodes])
             steep = np.linalg.norm(falls, axis=1)
             even = steep * length <= EVEN * self.surface[nodes]
             ways = falls / np.where(even, np.inf, steep)[:, None]
-            stress, element = self._along(nodes, ways, depths)
-            left = np.flatnonzero((element < 0).any(axis=1))
+            stress, own, element = self._along(nodes, ways, depths)
+            left = np.flatnonzero((element[:, : end + 2] < 0).any(axis=1))
             if len(left):
-                stress[left], element[left] = self._turned(nodes[left], depths, weights)
-            counts = ~even & (element >= 0).all(axis=1)
+                stress[left], own[left], element[left] = self._turned(nodes[left], depths, weights)
+            inside = np.logical_and.accumulate(element >= 0, axis=1).sum(axis=1)
+            last = np.maximum(inside - 1, end + 1)
+            fall = own[:, end] - own[np.arange(len(nodes)), last]
+            plain = stress[:, end] + np.maximum(fall, 0.0) / (depths[last] / length - 1.0)
+            counts = ~even & (inside > end + 1) & (plain < (1.0 - EVEN) * self.surface[nodes])
             for k, node in enumerate(nodes):
+                used = element[k, [*range(end + 1), last[k]]]
                 every = [
-                    self._place(int(node), float(ahead), float(stress[k, -1]), element[k], strength, bool(counts[k]))
-                    for ahead in (stress[k, 0], weights @ stress[k, 1:-1])
+                    self._place(int(node), float(ahead), float(plain[k]), used, strength, bool(counts[k]))
+                    for ahead in (stress[k, 0], weights @ stress[k, 1:end])
                 ]
                 best = [max(pair, key=lambda one: one.use) for pair in zip(best or every, every, strict=True)]
         return (best[0], best[1]) if best else None
 
     def _place(
-        self, node: int, ahead: float, beyond: float, elements: Nodes, strength: NotchStrength, counts: bool
+        self, node: int, ahead: float, plain: float, elements: Nodes, strength: NotchStrength, counts: bool
     ) -> NotchStress:
         surface = float(self.surface[node])
         if not counts:
-            own = np.flatnonzero((self.field.space.cells == node).any(axis=1))
-            use, ahead, beyond, elements = surface / strength.ultimate, surface, surface, own
+            beside = np.flatnonzero((self.field.space.cells == node).any(axis=1))
+            use, ahead, plain, elements = surface / strength.ultimate, surface, surface, beside
         else:
-            use = max(ahead / strength.inherent, beyond / strength.ultimate)
+            use = max(ahead / strength.inherent, plain / strength.ultimate)
         return NotchStress(
-            node=node, surface=surface, ahead=ahead, beyond=beyond, use=use, elements=np.unique(elements), counts=counts
+            node=node, surface=surface, ahead=ahead, plain=plain, use=use, elements=np.unique(elements), counts=counts
         )
 
     def effective_volume(self, modulus: float) -> float:

@@ -57,7 +57,8 @@ def critical_distance(toughness: float, strength: float) -> float:
 def notch_strengths(card: CaseModel) -> tuple[NotchStrength, NotchStrength, NotchStrength] | None:
     """Return how a material bears notches as its card states, at its weakest and at its strongest.
 
-    What a notch bears rises with the toughness, the critical distance, and either strength where the others stay.
+    What a notch bears rises with the toughness, the critical distance, and either strength where the others stay. An
+    inherent strength without a range of its own scatters as the tensile strength does.
 
     Parameters
     ----------
@@ -80,12 +81,14 @@ def _at(card: CaseModel, end: int | None) -> NotchStrength:
         ends = getattr(card, scatter or f"{entry}_range")
         return float(getattr(card, entry) if end is None or ends is None else ends[end])
 
-    inherent = stated("inherent_strength")
+    inherent, ultimate = stated("inherent_strength"), stated("ultimate_strength", "strength_range")
+    if dict(card)["inherent_strength_range"] is None:
+        inherent *= ultimate / float(dict(card)["ultimate_strength"])
     if "critical_distance" in _stated(card):
         distance = stated("critical_distance")
     else:
         distance = critical_distance(stated("fracture_toughness"), inherent)
-    return NotchStrength(distance=distance, inherent=inherent, ultimate=stated("ultimate_strength", "strength_range"))
+    return NotchStrength(distance=distance, inherent=inherent, ultimate=ultimate)
 
 
 def check_brittle(card: CaseModel) -> None:

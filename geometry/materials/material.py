@@ -115,7 +115,7 @@ class Material(CaseModel):
     """Of a brittle material: what its stress reaches at the critical distance from a notch as it breaks; not below
     ultimate_strength."""
     inherent_strength_range: Range | None = None
-    """Its scatter."""
+    """Its scatter; that of ultimate_strength where left out."""
     critical_distance: Annotated[Length, POSITIVE] | None = None
     """Of a brittle material: L = (fracture_toughness/inherent_strength)²/π, at half of which a notch is judged."""
     critical_distance_range: LengthRange | None = None

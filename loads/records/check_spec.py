@@ -253,6 +253,7 @@ class NotchCheck(CaseModel):
 
     By the stress at its card's critical distance from them, and by the volume under tension where the card has the
     modulus of Weibull; the lower factor counts. The safety factor has the largest stress of the surface in its place.
+    Layers of printed links are judged beside it.
     """
 
     type: Literal["notch"]

@@ -15,6 +15,7 @@ from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import notches
 from alula.fea.judging.link_result import by_hand_shares
 from alula.fea.modes.notches import NotchFactor
+from alula.fea.outcomes.limits import layer_limit, layers_of
 from alula.fea.refine.refinement import Effort
 from alula.fea.solid.notch_field import NotchStress
 from alula.geometry.base.errors import CaseError
@@ -50,7 +51,7 @@ def own(more):
 
 
 def place(ahead, use, *, counts=True):
-    return NotchStress(node=0, surface=30.0, ahead=ahead, beyond=5.0, use=use, elements=np.array([0]), counts=counts)
+    return NotchStress(node=0, surface=30.0, ahead=ahead, plain=5.0, use=use, elements=np.array([0]), counts=counts)
 
 
 class Solved:
@@ -141,18 +142,28 @@ def test_ranges_of_the_card_widen_the_band(monkeypatch):
 
 @pytest.mark.parametrize(("volume", "share"), [(1000.0, 30.0 / 40.0), (1.0, 30.0 / 40.0 * 0.001**0.1)])
 def test_strength_by_volume(monkeypatch, volume, share):
-    """Of as much volume as the specimens have it is theirs; a thousandth bears 1000^(1/m) as much."""
+    """Of as much volume as the specimens have it is theirs; a thousandth bears 1000^(1/m) as much.
+
+    The link is a pair: that of both plates counts.
+    """
     case = edited("knee", own(BY_VOLUME))
-    found = Solved(monkeypatch, [same(0.0, 0.0)], volume=volume, spans=(180,)).factor(case)
+    assert case.links["front"].count == 2
+    found = Solved(monkeypatch, [same(0.0, 0.0)], volume=volume / 2.0, spans=(180,)).factor(case)
     ends = found.factor.low, found.factor.value, found.factor.high
     assert ends == pytest.approx((1.0 / (1.1 * share), 1.0 / share, 1.0 / (0.9 * share)))
     assert found.distance is None
     assert found.effective_volume == volume
 
 
+def test_the_range_of_the_tensile_strength_is_none_of_notches(monkeypatch):
+    case = edited("knee", own(TOUGH + ', strength_range = ["30 MPa", "60 MPa"]'))
+    found = Solved(monkeypatch, [same(0.4, 0.4)], spans=(180,)).factor(case)
+    assert "stated ranges at notches" not in " ".join(map(told, found.factor.texts))
+
+
 @pytest.mark.parametrize(("use", "decides"), [(0.5, 30.0 / 40.0), (0.9, 0.9)])
 def test_the_lower_of_distance_and_volume_counts(monkeypatch, use, decides):
-    found = Solved(monkeypatch, [same(use, use)], volume=1000.0, spans=(180,)).factor(
+    found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(
         edited("knee", own(TOUGH + BY_VOLUME))
     )
     assert found.factor.value == pytest.approx(1.0 / decides)
@@ -226,6 +237,17 @@ def test_by_hand_it_is_open_and_names_the_remedy():
     assert len(checks) == 2
     assert {one.verdict for one in checks} == {Verdict.UNDECIDED}
     assert all("--fidelity solid" in told(one.reason) for one in checks)
+
+
+def test_layers_are_judged_with_notches_alone():
+    """Notches are judged along the layers, so that a link of weak layers must not pass by them."""
+    pla = 'parts.front.material="pla-fdm-xy"', "parts.front.build_direction=[1,0,0]"
+    case = edited("knee", ['checks={ cracks={ type = "notch", minimum = 1.5, links = ["front"] } }', *pla])
+    assert layer_limit(case, "front") == 1.5
+    assert layers_of(case, "front").across == 12.0
+    result = check_case(case, fidelity="beam")
+    every = [one for found in result.load_cases.values() for one in found.checks]
+    assert len([one for one in every if one.quantity is Quantity.LAYERS]) == len(result.load_cases)
 
 
 def test_from_the_case_to_the_page():

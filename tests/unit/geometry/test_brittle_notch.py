@@ -51,6 +51,17 @@ def test_ranges_make_the_weakest_and_the_strongest():
     )
 
 
+@pytest.mark.parametrize("length", [{"fracture_toughness": "1 MPa*m^0.5"}, {"critical_distance": "0.127 mm"}])
+def test_without_a_range_the_inherent_strength_scatters_as_the_tensile_one(length):
+    spread = {"inherent_strength": "50 MPa", "strength_range": ["20 MPa", "60 MPa"], **length}
+    found = notch_strengths(card(**spread))
+    assert [(one.inherent, one.ultimate) for one in found] == [(50.0, 40.0), (25.0, 20.0), (75.0, 60.0)]
+    if "fracture_toughness" in length:
+        assert found[1].distance == pytest.approx(4.0 * found[0].distance)
+    else:
+        assert {one.distance for one in found} == {0.127}
+
+
 @pytest.mark.parametrize(
     ("entries", "says"),
     [
