@@ -46,6 +46,8 @@ CAUTION = 1.25
 """On the difference that the order leaves, as Roache's for a grid convergence index."""
 LEAST_RATIO = 1.1
 """Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
+IDLE = 1e-9
+"""Share of the largest force of a link's pins below which a pin does not press: rounding makes no plug of its hole."""
 NOTHING = 1e-12
 """Plastic strain below which a point has not flowed."""
 
@@ -223,7 +225,7 @@ def collapse_of(
     load, narrow = (one.load for one in tractions.variants(pose, (WIDE, NARROW), way))
     wide = path(coarse, load, like)
     error = CAUTION * abs(wide[1].factor / worst.factor - 1.0) / (ratio**ORDER - 1.0)
-    pressing = [one for one in tractions.loads if isinstance(one, PinPressure)]
+    pressing = _pressing(tractions, pose)
     spread = math.nan
     if pressing and wide[0].half is not None:
         bores = [(one.wall.bore, replace(one.wall.pin, wrench=one.wrench(pose))) for one in pressing]
@@ -255,6 +257,13 @@ def collapse_of(
         unknowns=fine.unknowns,
         solves=sum(one.problem.solves for one in (held, wide[0], other[0])),
     )
+
+
+def _pressing(tractions: LinkTractions, pose: LinkLoads) -> list[PinPressure]:
+    """Return the pins that press on their holes, but for those whose force is rounding."""
+    found = [one for one in tractions.loads if isinstance(one, PinPressure)]
+    forces = [float(np.linalg.norm(one.wrench(pose)[0, :2])) for one in found]
+    return [one for one, force in zip(found, forces, strict=True) if force > IDLE * max(forces)]
 
 
 def _ratio(fine: DisplacementSpace, coarse: DisplacementSpace) -> float:

@@ -16,12 +16,13 @@ from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.elements.block_matrix import SymmetricBlockMatrix
 from alula.fea.elements.space import displacement_space, upper_half
 from alula.fea.elements.supports import isostatic_supports
-from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
+from alula.fea.plastic.link_collapse import LinkCollapse, _pressing, collapse_of
 from alula.fea.plastic.load_path import NoPlasticStateError, ProportionalLoad, follow
 from alula.fea.plastic.pin_contact import PinContact
 from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.refine.link_task import ElasticLink
 from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.pin_pressure import PinPressure
 from alula.geometry.meshing.mirror import mirrored
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
@@ -146,6 +147,21 @@ def test_pins_in_contact_bear_their_force_and_the_link_more():
     found = collapse(NET)
     assert found.pressure > 1.05
     assert found.high > found.factor * found.pressure
+
+
+def test_a_pin_whose_force_is_rounding_is_no_plug_of_its_hole():
+    """A third pin has 1e-14 N; with 0 N it would be none."""
+    pose = pull(NET).chosen(None)
+    pins = [Mock(spec=PinPressure, wrench=lambda _, f=f: np.array([[f, 0, 0, 0, 0, 0.0]])) for f in (1e-14, NET, -NET)]
+    assert _pressing(Mock(loads=pins), pose) == pins[1:]
+
+
+def test_a_pin_that_touches_nowhere_has_no_state():
+    contact = touching()
+    body, fixed = PlasticBody.of(COARSE, law()), isostatic_supports(COARSE.nodes, COARSE.corners)
+    load = ProportionalLoad(body, np.zeros(COARSE.unknowns), fixed, contact=contact, threads=1)
+    with pytest.raises(NoPlasticStateError, match="not held by the walls"):
+        load._solved(load._elastic, contact.pins == 0, load.load)
 
 
 def test_without_a_state_in_contact_the_narrower_pressure_stands_in(monkeypatch):
