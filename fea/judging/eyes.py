@@ -14,9 +14,9 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, play_source
-from alula.fea.common.verdict import CheckOutcome
+from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.judging.bearing import sharing
-from alula.fea.modes.eye_modes import EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
+from alula.fea.modes.eye_modes import STRAIGHT, EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 from alula.fea.modes.eye_scatter import eye_scatter
 from alula.geometry.bodies.body import Body, extent
 from alula.geometry.bodies.features import Pin
@@ -30,8 +30,6 @@ RULE = reason("eyes_by_a_rule")
 DISHING = reason("dishing_not_drawn")
 FORMULAS = Source(kind=SourceKind.EYE_FORMULAS)
 NO_FORCE = reason("no_force_on_eyes")
-STRAIGHT = 1e-9
-"""Sine of the angle below which a force is along the shank but for rounding."""
 
 
 def eyes_of(case: Case, link: str) -> dict[str, tuple[str, ...]]:
@@ -72,12 +70,12 @@ def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]
     body, found = case.body(link), []
     for point, joints in eyes_of(case, link).items():
         modes, eyes = _modes(case, link, body.pin(point), joints, check)
-        without = dict.fromkeys(modes, RULE)
+        without, outside = dict.fromkeys(modes, RULE), None
         if check.standard == BTH_1:
             width = _shank_width(body, point)
             outside = next((why for eye in eyes if (why := eye_scatter().outside(eye, width)) is not None), None)
             without = dict.fromkeys((EyeMode.DISHING,) if outside is None else modes, outside or DISHING)
-            modes = {mode: band if mode in without else _scattered(mode, band) for mode, band in modes.items()}
+            modes = {mode: _scattered(mode, band) for mode, band in modes.items()}
         found.append(
             EyeStrength(
                 name=point,
@@ -86,13 +84,19 @@ def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]
                 across=eye_scatter().across,
                 without=without,
                 relieved=isinstance(body.part, Straight),
+                undrawn=outside,
             )
         )
     return tuple(found)
 
 
 def _scattered(mode: EyeMode, band: Band) -> Band:
-    """Return what an eye bears in a mode, with how far its formula may be off; the value stays the formula's."""
+    """Return what an eye bears in a mode, with how far its formula may be off; the value stays the formula's.
+
+    An eye unlike those that were drawn has at least as much doubt; nothing was drawn of dishing.
+    """
+    if mode is EyeMode.DISHING:
+        return band
     low, high = eye_scatter().modes[mode]
     return Scatter(low=min(low, 1.0), high=max(high, 1.0), sources=(FORMULAS,)).on(band)
 
@@ -260,6 +264,7 @@ def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatte
         force=float(np.linalg.norm(force)),
         angle=math.degrees(float(angle)),
         factors=bands,
+        undrawn=strength.undrawn,
     )
 
 
@@ -306,7 +311,7 @@ def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> Chec
     -------
     CheckOutcome
         The reason names the eye and the mode whose least factor is the least. It has no band where that one has none,
-        or the one with the least value.
+        or the one with the least value. With an eye unlike those that were drawn it does not pass.
     """
     loaded = [(eye, *eye.worst) for eye in found if eye.worst is not None]
     if not loaded:
@@ -315,6 +320,10 @@ def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> Chec
     worst = Band.least([band for _, _, band in loaded])
     least = min((band for one in found for band in one.factors.values()), key=lambda band: band.value)
     outcome = one.outcome(load_case, replace(worst, without=eye.factors[mode].without or least.without))
+    unlike = [of for of in loaded if of[0].undrawn is not None]
+    if unlike and outcome.verdict is Verdict.PASS:
+        eye, mode, _ = min(unlike, key=lambda of: of[2].low)
+        outcome = outcome.left_open(eye.undrawn or "")
     return outcome.because(mode_of_eye(eye, mode, outcome.reason))
 
 

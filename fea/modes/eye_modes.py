@@ -21,7 +21,10 @@ Real = NDArray[np.float64]
 SNUG = 0.9
 """Pin over hole from which on a pin counts as one that fits (ASME BTH-1, section 3-3.3.1)."""
 INTO_SHANK = math.radians(30.0)
-"""Angle from the middle of a shank within which a force presses the pin into it, where no edge lies ahead; assumed."""
+"""Angle from the middle of a shank within which a force presses the pin into it, where no edge lies ahead; assumed.
+Within it what lies across the shank counts, as a share of what lies across it at this angle."""
+STRAIGHT = 1e-9
+"""Sine of the angle below which a force is along the shank but for rounding."""
 
 
 class EyeMode(StrEnum):
@@ -160,7 +163,9 @@ class EyeStrength:
     without : mapping of EyeMode to Reason
         Why nothing is known of how far the formulas of these modes may be off.
     relieved : bool
-        Whether a force into a shank has no edge ahead, so that bearing alone is left.
+        Whether a force into a shank has no edge ahead, so that straight into it bearing alone is left.
+    undrawn : Reason or None
+        Which of its proportions limit analysis has not tried, so that no check of it passes.
     """
 
     name: str
@@ -169,6 +174,15 @@ class EyeStrength:
     across: float
     without: Mapping[EyeMode, Reason] = field(default_factory=dict)
     relieved: bool = True
+    undrawn: Reason | None = None
+
+    def _off_shanks(self, force: Real) -> tuple[Real, Real]:
+        """Return the angles [rad] between a force and the pull off the shank that it draws straightest, and least."""
+        to = np.arctan2(force[..., 1], force[..., 0])
+        if not self.shanks:
+            return np.zeros_like(to), np.zeros_like(to)
+        angles = np.stack([np.abs(np.angle(np.exp(1j * (to - math.atan2(-y, -x))))) for x, y in self.shanks])
+        return angles.min(axis=0), angles.max(axis=0)
 
     def off_shank(self, force: Real) -> Real:
         """Return the angle between a pin's force and the pull that draws the eye straight off its shank.
@@ -184,11 +198,7 @@ class EyeStrength:
             [rad]; of several shanks from that into which the force presses least off its middle, else from that which
             the force draws straightest.
         """
-        to = np.arctan2(force[..., 1], force[..., 0])
-        if not self.shanks:
-            return np.zeros_like(to)
-        angles = np.stack([np.abs(np.angle(np.exp(1j * (to - math.atan2(-y, -x))))) for x, y in self.shanks])
-        pressed, drawn = angles.max(axis=0), angles.min(axis=0)
+        drawn, pressed = self._off_shanks(force)
         return np.asarray(np.where(self.relieved & (pressed >= math.pi - INTO_SHANK), pressed, drawn))
 
     def factors(self, force: Real) -> tuple[dict[EyeMode, Real], Real]:
@@ -204,16 +214,18 @@ class EyeStrength:
         tuple of (dict, ndarray)
             EyeMode -> value, least and largest of its factor (3, ...), ∞ where it does not arise; ``off_shank`` (...).
         """
-        size, angle = np.linalg.norm(force, axis=-1), self.off_shank(force)
+        size, (drawn, pressed) = np.linalg.norm(force, axis=-1), self._off_shanks(force)
+        into = self.relieved & (pressed >= math.pi - INTO_SHANK)
+        beside = np.where(into, np.sin(pressed) / math.sin(INTO_SHANK), 1.0)
         found = {}
         for mode, strength in self.modes.items():
-            counts = size > 0.0
+            acts = size
             bears = np.stack([np.full_like(size, x) for x in (strength.value, strength.low, strength.high)])
             if mode is not EyeMode.BEARING:
-                counts = counts & ~(self.relieved & (angle >= math.pi - INTO_SHANK))
-                bears[1] *= 1.0 - self.across * np.sin(angle)
-            found[mode] = np.divide(bears, size, out=np.full_like(bears, np.inf), where=counts)
-        return found, angle
+                acts = np.where(beside > STRAIGHT, beside * size, 0.0)
+                bears[1] *= 1.0 - self.across * np.sin(drawn)
+            found[mode] = np.divide(bears, acts, out=np.full_like(bears, np.inf), where=acts > 0.0)
+        return found, self.off_shank(force)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,6 +242,8 @@ class EyeFactors:
         From the pull straight off the shank [degrees].
     factors : mapping of EyeMode to Band
         Of the modes that arise; none without a force.
+    undrawn : Reason or None
+        As of ``EyeStrength``.
     """
 
     check: str
@@ -238,6 +252,7 @@ class EyeFactors:
     force: float
     angle: float
     factors: Mapping[EyeMode, Band]
+    undrawn: Reason | None = None
 
     @property
     def worst(self) -> tuple[EyeMode, Band] | None:

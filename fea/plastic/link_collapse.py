@@ -8,7 +8,8 @@ as their loads are, in which no pin tilts; for others, and where contact finds n
 
 Resultants decide what a link bears, and not the peaks of stress beside its pins, so that coarse meshes do: the finer
 one is the first mesh of the elastic check. How far the factor is from that of ever finer meshes, Richardson's
-extrapolation tells from the coarser one, with the order 1 of displacements that a mechanism cuts.
+extrapolation tells from the coarser one, with the order 1 of displacements that a mechanism cuts, and with the sizes
+where it flows.
 """
 
 import math
@@ -19,6 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.elements.space import DisplacementSpace, UpperHalf, displacement_space, upper_half
@@ -46,6 +48,8 @@ CAUTION = 1.25
 """On the difference that the order leaves, as Roache's for a grid convergence index."""
 LEAST_RATIO = 1.1
 """Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
+IDLE = 1e-9
+"""Share of the largest force of a link's pins below which a pin does not press: rounding makes no plug of its hole."""
 NOTHING = 1e-12
 """Plastic strain below which a point has not flowed."""
 
@@ -222,8 +226,9 @@ def collapse_of(
     way = (variant.transfer,) if variant.transfer is not None else transfers
     load, narrow = (one.load for one in tractions.variants(pose, (WIDE, NARROW), way))
     wide = path(coarse, load, like)
+    ratio = _ratio_in_flow(held.problem.body, worst.last, wide[0].problem.body)
     error = CAUTION * abs(wide[1].factor / worst.factor - 1.0) / (ratio**ORDER - 1.0)
-    pressing = [one for one in tractions.loads if isinstance(one, PinPressure)]
+    pressing = _pressing(tractions, pose)
     spread = math.nan
     if pressing and wide[0].half is not None:
         bores = [(one.wall.bore, replace(one.wall.pin, wrench=one.wrench(pose))) for one in pressing]
@@ -257,9 +262,35 @@ def collapse_of(
     )
 
 
+def _pressing(tractions: LinkTractions, pose: LinkLoads) -> list[PinPressure]:
+    """Return the pins that press on their holes, but for those whose force is rounding."""
+    found = [one for one in tractions.loads if isinstance(one, PinPressure)]
+    forces = [float(np.linalg.norm(one.wrench(pose)[0, :2])) for one in found]
+    return [one for one, force in zip(found, forces, strict=True) if force > IDLE * max(forces)]
+
+
 def _ratio(fine: DisplacementSpace, coarse: DisplacementSpace) -> float:
     """Return how many times as long the edges of a mesh are on average."""
     return float((len(fine.cells) / len(coarse.cells)) ** (1.0 / 3.0))
+
+
+def _ratio_in_flow(fine: PlasticBody, state: PlasticState, coarse: PlasticBody) -> float:
+    """Return how many times as long edges are where the finer mesh flows, each place by its plastic strain and volume.
+
+    Shanks that bear more, and have the same elements in both meshes, say nothing of the error. It is as long as was
+    asked for at most, and ``LEAST_RATIO`` at least.
+    """
+    work = (fine.weights.reshape(-1) * state.response.past.equivalent).reshape(len(fine.space.cells), -1).sum(axis=1)
+    (own, at), (other, centres) = map(_sizes, (fine, coarse))
+    flows = work > 0.0
+    there = other[cKDTree(centres).query(at[flows])[1]]
+    return float(np.clip((work[flows] @ there) / (work @ own), LEAST_RATIO, COARSER))
+
+
+def _sizes(body: PlasticBody) -> tuple[Real, Real]:
+    """Return how long the edges of elements are (n,) but for a factor, and their middles (n, 3) [mm]."""
+    cells = body.space.cells
+    return body.weights.reshape(len(cells), -1).sum(axis=1) ** (1.0 / 3.0), body.space.nodes[cells[:, :4]].mean(axis=1)
 
 
 def _under_the_load(held: _Held, path: LoadPath, reference: LineReference) -> tuple[float | None, float | None]:

@@ -158,6 +158,13 @@ class ProportionalLoad:
             inner = np.concatenate([inner + wall, pins])
         return np.where(self.free, inner, 0.0)
 
+    def _solved(self, tangent: Real, closed: NDArray[np.bool_] | None, rhs: Real) -> Real:
+        """Return the solution with a tangent and the walls in contact; a pin that touches nowhere has none."""
+        try:
+            return self._factor(tangent, closed).solve(rhs)
+        except np.linalg.LinAlgError as error:
+            raise NoPlasticStateError("a pin is not held by the walls that it touches") from error
+
     def _factor(self, tangent: Real, closed: NDArray[np.bool_] | None) -> Factor | Bordered:
         if time.perf_counter() > self.until:
             raise NoPlasticStateError("the time limit ended the path")
@@ -174,10 +181,10 @@ class ProportionalLoad:
     def _elastic_unit(self) -> Real:
         """Return the elastic displacements at factor 1; those in contact go with the load, since pins fit."""
         if self.contact is None:
-            return self._factor(self._elastic, None).solve(self.load)
+            return self._solved(self._elastic, None, self.load)
         closed = (self.contact.forces[self.contact.pins] * self.contact.normals[:, :2]).sum(axis=1) > 0.0
         for _ in range(ITERATIONS):
-            unit = self._factor(self._elastic, closed).solve(self.load)
+            unit = self._solved(self._elastic, closed, self.load)
             before, closed = closed, self._overlap(unit) > 0.0
             if np.array_equal(before, closed):
                 return unit
@@ -270,13 +277,13 @@ class ProportionalLoad:
                     residuals=tuple(residuals),
                 )
             closed = None if self.contact is None else self._overlap(u) > 0.0
-            factored = self._factor(response.tangent + stiff, closed)
+            tangent = response.tangent + stiff
             if factor is None:
-                a, b = factored.solve(np.column_stack([self.load, inner])).T
+                a, b = self._solved(tangent, closed, np.column_stack([self.load, inner])).T
                 load = float(self.load @ b) / float(self.load @ a)
                 step = load * a - b  # f·step = 0: f·u stays
             else:
-                step = factored.solve(factor * self.load - inner)
+                step = self._solved(tangent, closed, factor * self.load - inner)
             u = u + self._length(u, step, load, past) * step
         raise NoPlasticStateError(f"no equilibrium was found in {ITERATIONS} iterations")
 
@@ -361,7 +368,7 @@ def follow(load: ProportionalLoad, *, largest_strain: float = math.inf, like: Lo
     unloaded, begin = 0.0, load.first_yield
     if like is not None:
         begin = like.states[0].control
-        begin *= RATIO ** max(math.ceil(math.log(load.first_yield / begin, RATIO)), 0)
+        begin *= RATIO ** math.floor(math.log(load.first_yield / begin, RATIO))  # the next is beyond first yield
     while len(states) < STATES:
         before = states[-1]
         control = RATIO ** len(states) * begin

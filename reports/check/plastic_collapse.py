@@ -13,7 +13,7 @@ from alula.reports.words.numbers import joined, number
 
 LEFT_OUT = (
     "change of shape while it flows (small strains)",
-    "contact of pins, which press over 180° whatever flows",
+    "clearance, friction and tilt of pins",
     "pins themselves",
     "rupture before the limit",
 )

@@ -16,12 +16,13 @@ from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.elements.block_matrix import SymmetricBlockMatrix
 from alula.fea.elements.space import displacement_space, upper_half
 from alula.fea.elements.supports import isostatic_supports
-from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
+from alula.fea.plastic.link_collapse import COARSER, LEAST_RATIO, LinkCollapse, _pressing, _ratio_in_flow, collapse_of
 from alula.fea.plastic.load_path import NoPlasticStateError, ProportionalLoad, follow
 from alula.fea.plastic.pin_contact import PinContact
 from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.refine.link_task import ElasticLink
 from alula.fea.tractions.link_tractions import LinkTractions
+from alula.fea.tractions.pin_pressure import PinPressure
 from alula.geometry.meshing.mirror import mirrored
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
@@ -146,6 +147,51 @@ def test_pins_in_contact_bear_their_force_and_the_link_more():
     found = collapse(NET)
     assert found.pressure > 1.05
     assert found.high > found.factor * found.pressure
+
+
+def test_a_pin_whose_force_is_rounding_is_no_plug_of_its_hole():
+    """A third pin has 1e-14 N; with 0 N it would be none."""
+    pose = pull(NET).chosen(None)
+    pins = [Mock(spec=PinPressure, wrench=lambda _, f=f: np.array([[f, 0, 0, 0, 0, 0.0]])) for f in (1e-14, NET, -NET)]
+    assert _pressing(Mock(loads=pins), pose) == pins[1:]
+
+
+def test_a_pin_that_touches_nowhere_has_no_state():
+    contact = touching()
+    body, fixed = PlasticBody.of(COARSE, law()), isostatic_supports(COARSE.nodes, COARSE.corners)
+    load = ProportionalLoad(body, np.zeros(COARSE.unknowns), fixed, contact=contact, threads=1)
+    with pytest.raises(NoPlasticStateError, match="not held by the walls"):
+        load._solved(load._elastic, contact.pins == 0, load.load)
+
+
+def test_sizes_count_where_it_flows():
+    """Edges 1.4 times as long about an eye, 1 times along the shank, 3 times at the other eye, where 1.6 was asked."""
+    places, flows = (0.0, 10.0, 20.0), np.array([2.0, 0.0, 0.0])
+
+    def body(*edges):
+        corners = np.concatenate([[x, 0.0, 0.0] + edge * np.eye(4, 3) for x, edge in zip(places, edges, strict=True)])
+        space = Mock(cells=np.arange(12).reshape(3, 4), nodes=corners)
+        return Mock(space=space, weights=np.repeat(np.array(edges) ** 3 / 24.0, 4))
+
+    def ratio(*strain):
+        state = Mock()
+        state.response.past.equivalent = np.repeat(strain, 4)
+        return _ratio_in_flow(body(1.0, 3.0, 1.0), state, body(1.4, 3.0, 3.0))
+
+    assert ratio(*flows) == pytest.approx(1.4)
+    assert ratio(*flows[[1, 0, 2]]) == LEAST_RATIO
+    assert ratio(*flows[::-1]) == COARSER
+    assert ratio(27.0, 0.5, 0.0) == pytest.approx((27.0 * 1.4 + 0.5 * 27.0 * 3.0) / (27.0 + 0.5 * 27.0 * 3.0))
+
+
+@pytest.mark.parametrize("earlier", [0.99, 1.01, 2.5])
+def test_paths_on_two_meshes_have_the_same_states(earlier):
+    """Beyond first yield, however that differs; else the longer step would tell of itself, not of the mesh."""
+    alone = follow(loaded(eighth_in_tension(amount=0.1)))
+    like = replace(alone, states=tuple(replace(one, control=earlier * one.control) for one in alone.states))
+    found = follow(loaded(eighth_in_tension(amount=0.1)), like=like)
+    wanted = [one.control for one in like.states if one.control > found.states[0].control]
+    assert [one.control for one in found.states[1:]][-len(wanted) :] == pytest.approx(wanted)
 
 
 def test_without_a_state_in_contact_the_narrower_pressure_stands_in(monkeypatch):

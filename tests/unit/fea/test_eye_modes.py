@@ -70,7 +70,7 @@ def strength(*shanks, **others):
 
 @pytest.mark.parametrize(
     ("degrees", "least"),
-    [(0.0, 8.0), (30.0, 7.0), (-30.0, 7.0), (90.0, 6.0), (120.0, 8.0 - 2.0 * math.sqrt(0.75)), (155.0, math.inf)],
+    [(0.0, 8.0), (30.0, 7.0), (-30.0, 7.0), (90.0, 6.0), (120.0, 8.0 - 2.0 * math.sqrt(0.75)), (180.0, math.inf)],
 )
 def test_a_force_across_the_shank_takes_off_and_one_into_it_leaves_bearing(degrees, least):
     """Shank towards -x, two forces at once: the other is twice as large, straight off the shank."""
@@ -80,6 +80,19 @@ def test_a_force_across_the_shank_takes_off_and_one_into_it_leaves_bearing(degre
     assert found[EyeMode.SHEAR_OUT][0][1] == 5.0
     assert found[EyeMode.BEARING][1] == pytest.approx([30.0, 15.0])
     assert np.degrees(angle) == pytest.approx([abs(degrees), 0.0], abs=1e-9)
+
+
+def test_as_a_force_turns_into_the_shank_factors_rise_without_a_step():
+    """From 30° to its middle, what lies across counts: half of a force at asin(1/4). One degree moves it by few %."""
+    at = np.radians([149.99, 150.01, 180.0 - math.degrees(math.asin(0.25))])
+    forces = np.stack([np.cos(at), np.sin(at)], axis=-1)
+    value, low, high = strength((-1.0, 0.0)).factors(forces)[0][EyeMode.SHEAR_OUT]
+    assert value == pytest.approx([10.0, 10.0, 20.0], rel=1e-3)
+    assert low == pytest.approx([7.0, 7.0, 16.0 * (1.0 - 0.25 / 4.0)], rel=1e-3)
+    assert high == pytest.approx([12.0, 12.0, 24.0], rel=1e-3)
+    # Of two shanks too, at right angles: the other one is across all the while.
+    two = strength((-1.0, 0.0), (0.0, 1.0)).factors(forces)[0][EyeMode.SHEAR_OUT][1]
+    assert two[:2] == pytest.approx([8.0 - 2.0 * math.sqrt(0.75)] * 2, rel=1e-3)
 
 
 def test_where_no_shank_gives_relief_all_modes_stand():
