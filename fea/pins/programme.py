@@ -39,16 +39,10 @@ ROUNDING = 1e-15
 """Least slack that is told from none."""
 IDLE = 1e-9
 """Share of the force that moving a pin through its disc would take below which a force is none."""
-STEPS = 80
-SHORTER = 0.995
-"""Share of the way to the nearest boundary that a step may go."""
-TOWARDS = 0.1
-"""Share of the mean product z s that a step aims at."""
-CENTRED = 1e-3
-"""Share of the mean product z s below which a step may leave none: a pair whose product is far smaller ends up at its
-rim, along which it then can hardly go (Nocedal & Wright, Numerical Optimization, 2006, section 14.1)."""
-HALVINGS = 6
-"""Of a step that would leave one, at most."""
+PACES = ((0.1, 0.995, 40), (0.5, 0.9, 200))
+"""Share of the mean product z s that a step aims at, share of the way to the nearest boundary that it may go, and how
+many steps there are at most. Of thousands of states one comes to a rim too soon, along which it can hardly go; those
+that the first pace does not end start anew at the second, which keeps all products near their mean."""
 NO_TIES = np.empty((0, 2), dtype=np.int64)
 
 
@@ -180,30 +174,12 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
     A[idle], b[idle] = 0.0, 0.0
     unit = np.where(idle, 1.0, size)
     A, b = A / unit[:, None, None], b / unit[:, None]
-    w, z = np.zeros_like(b), np.ones((count, discs))
-    own = np.arange(count)
-    for _ in range(STEPS):
-        a, at, by, pull = A[own], b[own], every[own], z[own]
-        inner = by.inner(w[own])
-        slack = _slack(inner)
-        force = at - np.einsum("nij,nj->ni", a, w[own])
-        rest = np.abs(by.outer(pull[:, :, None] * inner) - force).max(axis=1)
-        mean = (pull * slack).mean(axis=1)
-        going = np.maximum(rest, mean) > close
-        if not going.any():
+    w, z, left = np.empty_like(b), np.empty((count, discs)), np.arange(count)
+    for pace in PACES:
+        w[left], z[left], ended = _followed(A[left], b[left], every[left], close, pace)
+        left = left[~ended]
+        if not len(left):
             break
-        own, by = own[going], by[going]
-        a, inner, pull, slack = a[going], inner[going], pull[going], slack[going]
-        force, aim = force[going], TOWARDS * mean[going, None]
-        matrix = by.held(a, _barriers(inner, pull))
-        right = force - by.outer((aim / slack)[:, :, None] * inner)
-        step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
-        moved = by.inner(step)
-        further = (aim - pull * slack + pull * (inner * moved).sum(axis=2)) / slack
-        length = np.minimum(_to_rim(inner, moved), _to_zero(pull, further)).min(axis=1)
-        length = _centred(np.minimum(SHORTER * length, 1.0), inner, moved, pull, further)
-        w[own] += length[:, None] * step
-        z[own] += length[:, None] * further
     gap = unit * _gap(A, b, w, z, every)
     if not (gap <= max(PROVEN, 100.0 * discs * close) * unit).all():
         raise CannotRunError(
@@ -234,16 +210,38 @@ def _to_zero(value: Real, step: Real) -> Real:
     return np.asarray(np.divide(value, -step, out=np.full_like(value, np.inf), where=step < 0.0))
 
 
-def _centred(length: Real, inner: Real, moved: Real, pull: Real, further: Real) -> Real:
-    """Steps (n,) halved until all products z s are ``CENTRED``, or will soon be."""
-    for _ in range(HALVINGS):
-        by = length[:, None]
-        product = (pull + by * further) * _slack(inner + by[:, :, None] * moved)
-        far = product.min(axis=1) < CENTRED * product.mean(axis=1)
-        if not far.any():
+def _followed(
+    A: Real, b: Real, every: _Discs, close: float, pace: tuple[float, float, int]
+) -> tuple[Real, Real, NDArray[np.bool_]]:
+    """Variables, multipliers, and of which states the steps have ended."""
+    towards, shorter, steps = pace
+    w, z = np.zeros_like(b), np.ones((len(b), b.shape[1] // 2 + len(every.ties)))
+    own = np.arange(len(b))
+    for _ in range(steps):
+        a, at, by, pull = A[own], b[own], every[own], z[own]
+        inner = by.inner(w[own])
+        slack = _slack(inner)
+        force = at - np.einsum("nij,nj->ni", a, w[own])
+        rest = np.abs(by.outer(pull[:, :, None] * inner) - force).max(axis=1)
+        mean = (pull * slack).mean(axis=1)
+        going = np.maximum(rest, mean) > close
+        own, by = own[going], by[going]
+        if not len(own):
             break
-        length = np.where(far, 0.5 * length, length)
-    return length
+        a, inner, pull, slack = a[going], inner[going], pull[going], slack[going]
+        force, aim = force[going], towards * mean[going, None]
+        matrix = by.held(a, _barriers(inner, pull))
+        right = force - by.outer((aim / slack)[:, :, None] * inner)
+        step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        moved = by.inner(step)
+        further = (aim - pull * slack + pull * (inner * moved).sum(axis=2)) / slack
+        length = np.minimum(_to_rim(inner, moved), _to_zero(pull, further)).min(axis=1)
+        length = np.minimum(shorter * length, 1.0)
+        w[own] += length[:, None] * step
+        z[own] += length[:, None] * further
+    ended = np.ones(len(b), dtype=bool)
+    ended[own] = False
+    return w, z, ended
 
 
 def _gap(A: Real, b: Real, w: Real, z: Real, every: _Discs) -> Real:

@@ -111,6 +111,6 @@ def test_slopes_are_those_of_differences(ties):
 def test_what_is_not_proven_is_no_answer(monkeypatch):
     """Of two states, of which one is idle."""
     K, g = problem(8)
-    monkeypatch.setattr(programme, "STEPS", 3)
+    monkeypatch.setattr(programme, "PACES", ((0.1, 0.995, 3),))
     with pytest.raises(CannotRunError, match="how pins stand in their holes was not found"):
         least_in_discs(K, np.array([0.0 * g, g]), np.full((2, DISCS), 0.1))
