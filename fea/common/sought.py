@@ -5,7 +5,7 @@ from collections.abc import Collection
 LEFT = 0.1
 """Share of what lies between the ends found by which a number may lie beyond them: where pins stand is sought among
 clearances, and no search proves that it found the largest. The most that 10,000 draws on each of 20 random linkages
-showed, rounded up; it was tried on others (``benchmarks/draws.py``)."""
+showed, rounded up; it was tried on ten others (``benchmarks/draws.py``)."""
 
 
 def sought(found: Collection[float]) -> tuple[float, float]:
