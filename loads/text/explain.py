@@ -150,7 +150,8 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     elif kind == "too_few_values":
         rule = "the list has too few values; add what is missing"
     elif kind in _RULES:
-        example = f'["{printable(value)}", ...]' if isinstance(value, str) else '["A", "B"]'
+        example = f'["{printable(value)}", ...]' if isinstance(value, str) else f"[{value!r}, ...]"
+        example = example if isinstance(value, str | int | float) else '["A", "B"]'
         rule = _RULES[kind].format(**context, entry=entry, example=example)
     else:
         rule = first["msg"]

@@ -341,6 +341,7 @@ def held(tables):
         ([], {"bond": SLEEVE | {"outer_diameter": "9 mm"}}, "state one of the two"),
         ([], {"bond": SLEEVE | {"shear_strength": "9 MPa"}}, "shear_strength_range leaves out shear_strength"),
         ([], {"press": GRIP | {"pressure": ["1 MPa", "2 MPa"], "friction": [0.0, 0.2]}}, "friction"),
+        ([], {"press": GRIP | {"friction": 0.1}}, r"press\.friction .* write for example \[0\.1, \.\.\.\]"),
         (
             [],
             {"press": GRIP | {"interference": ["1 um", "55 um"], "hub_diameter": "16 mm", "shaft_bore": "5.7 mm"}},
