@@ -28,6 +28,7 @@ from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.judging.walls import wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand
 from alula.fea.modes.connection_modes import Transmitted
+from alula.fea.modes.wall_modes import WallFactor
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LinkEnvelope
 from alula.fea.motion.layered import forces_at
@@ -232,22 +233,17 @@ def eye_outcomes(
     CheckOutcome
     """
     case = moved.case
-    for one in asked(case, EyeCheck):
-        link = one.subject.name
-        for load_case in moved.forces:
-            plates = [loads for loads in loaded.get(link, ()) if loads.name == load_case]
-            if not plates:
-                continue
-            pose = worst_pose(case, one, plates, evaluated)
-            joints = [joint for every in eyes_of(case, link).values() for joint in every]
-            growth = {joint: _growth(moved, load_case, joint, evaluated, grown or {}) for joint in joints}
-            if case.links[link].count == 2:
-                forces = forces_at(moved, load_case, pose)
-                growth = with_sharing(case, link, growth, (forces.reactions, *forces.sharings))
-            here = [loads.chosen(pose) for loads in plates]
-            found = tuple(eye_factors(case, load_case, one, here, growth))
-            outcome = _complete(eye_outcome(load_case, one, found), evaluated)
-            yield outcome.because(reason("eyes_over_motion", when=when(moved, pose), why=outcome.reason))
+    for one, load_case, plates in _plates_asked(moved, loaded, EyeCheck):
+        link, pose = one.subject.name, worst_pose(case, one, plates, evaluated)
+        joints = [joint for every in eyes_of(case, link).values() for joint in every]
+        growth = {joint: _growth(moved, load_case, joint, evaluated, grown or {}) for joint in joints}
+        if case.links[link].count == 2:
+            forces = forces_at(moved, load_case, pose)
+            growth = with_sharing(case, link, growth, (forces.reactions, *forces.sharings))
+        here = [loads.chosen(pose) for loads in plates]
+        found = tuple(eye_factors(case, load_case, one, here, growth))
+        outcome = _complete(eye_outcome(load_case, one, found), evaluated)
+        yield outcome.because(reason("eyes_over_motion", when=when(moved, pose), why=outcome.reason))
 
 
 def wall_outcomes(
@@ -273,20 +269,25 @@ def wall_outcomes(
     CheckOutcome
     """
     case = moved.case
-    for one in asked(case, WallCheck):
-        link = one.subject.name
+    for one, load_case, plates in _plates_asked(moved, loaded, WallCheck):
+        link, found = one.subject.name, dict[int, tuple[WallFactor, ...]]()
+        spread = growth(load_case, link)
+        for pose in np.flatnonzero(evaluated).tolist():
+            beams = [link_by_hand(case, link, loads.chosen(pose)).check for loads in plates]
+            found[pose] = tuple(wall_factors(case, load_case, one, beams, spread))
+        worst = min(found, key=lambda pose: min((mode.factor.low for mode in found[pose]), default=math.inf))
+        outcome = _complete(wall_outcome(load_case, one, found[worst]), evaluated)
+        yield outcome.because(reason("walls_over_motion", when=when(moved, worst), why=outcome.reason))
+
+
+def _plates_asked(
+    moved: CaseMotion, loaded: Mapping[str, Sequence[LinkLoads]], kind: type[CaseModel]
+) -> Iterator[tuple[Asked, str, list[LinkLoads]]]:
+    """Yield every link that a kind of check asks for, with a load case and what acts on its plates there."""
+    for one in asked(moved.case, kind):
         for load_case in moved.forces:
-            plates = [loads for loads in loaded.get(link, ()) if loads.name == load_case]
-            if not plates:
-                continue
-            spread = growth(load_case, link)
-            found = {}
-            for pose in np.flatnonzero(evaluated).tolist():
-                beams = [link_by_hand(case, link, loads.chosen(pose)).check for loads in plates]
-                found[pose] = tuple(wall_factors(case, load_case, one, beams, spread))
-            worst = min(found, key=lambda pose: min((mode.factor.low for mode in found[pose]), default=math.inf))
-            outcome = _complete(wall_outcome(load_case, one, found[worst]), evaluated)
-            yield outcome.because(reason("walls_over_motion", when=when(moved, worst), why=outcome.reason))
+            if plates := [loads for loads in loaded.get(one.subject.name, ()) if loads.name == load_case]:
+                yield one, load_case, plates
 
 
 def _worst_bearing(

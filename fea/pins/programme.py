@@ -216,20 +216,20 @@ def _followed(
     """Variables, multipliers, and of which states the steps have ended."""
     towards, shorter, steps = pace
     w, z = np.zeros_like(b), np.ones((len(b), b.shape[1] // 2 + len(every.ties)))
-    own = np.arange(len(b))
+    own, a, by = np.arange(len(b)), A, every
     for _ in range(steps):
-        a, at, by, pull = A[own], b[own], every[own], z[own]
-        inner = by.inner(w[own])
+        pull, inner = z[own], by.inner(w[own])
         slack = _slack(inner)
-        force = at - np.einsum("nij,nj->ni", a, w[own])
+        force = b[own] - np.einsum("nij,nj->ni", a, w[own])
         rest = np.abs(by.outer(pull[:, :, None] * inner) - force).max(axis=1)
         mean = (pull * slack).mean(axis=1)
         going = np.maximum(rest, mean) > close
-        own, by = own[going], by[going]
+        if not going.all():
+            own, a, by, inner = own[going], a[going], by[going], inner[going]
+            pull, slack, force, mean = pull[going], slack[going], force[going], mean[going]
         if not len(own):
             break
-        a, inner, pull, slack = a[going], inner[going], pull[going], slack[going]
-        force, aim = force[going], towards * mean[going, None]
+        aim = towards * mean[:, None]
         matrix = by.held(a, _barriers(inner, pull))
         right = force - by.outer((aim / slack)[:, :, None] * inner)
         step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
