@@ -23,8 +23,10 @@ from numpy.typing import NDArray
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
-from alula.fea.doubts.force_doubt import measures, sharing_answers, stress_by_hand
+from alula.fea.doubts.force_doubt import sharing_answers
 from alula.fea.frame.build import build_frame
+from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
+from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.outcomes.pins import shared_stress, stresses_between
 from alula.fea.pins.states import PinStates, unstated
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
@@ -260,13 +262,12 @@ def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Ite
         own.append(borne[:, number.index(("link", link)) - len(number)])
         chosen = {int(i) for one in own for i in np.argsort(one)[-TRIED:]}
         answers = sharing_answers(case, "l", link, forces, loads)
-        every = [stress_by_hand(case, link, one) for one in answers.every]
-        of_draws = [
-            measures(case, link, link_loads("l", link, case.body(link), pins.reactions(v[i]), loads), tilts=True)[0]
-            for i in sorted(chosen)
-        ]
+        every = numbers_by_hand(case, link, answers.every)[0]
+        acting = [link_loads("l", link, case.body(link), pins.reactions(v[i]), loads) for i in sorted(chosen)]
+        grown = [on_tilting_pins(case, link, on_plates(case, link, one)) for one in acting]
+        of_draws = numbers_by_hand(case, link, grown)[0]
         growth = answers.stress(every[0], every[1:])
-        yield from _beyond(f"stress of {link}", growth.low * every[0], growth.high * every[0], np.array(of_draws))
+        yield from _beyond(f"stress of {link}", growth.low * every[0], growth.high * every[0], of_draws)
 
 
 def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Real = NDArray[np.float64]
 
@@ -157,12 +157,13 @@ def stiffness_matrices(nodes: Real, pressed: Real, stretches: Sequence[Stretch])
     sizes, (points, weights) = np.diff(nodes) / length, GAUSS
     count = 2 * len(nodes)
     K, G = np.zeros((count, count)), np.zeros((pressed.shape[2], count, count))
-    for e, h in enumerate(sizes):
+    bent, slope = _bending(sizes), slopes(sizes[:, None], points)
+    softened = np.einsum("egp,eg,egi,egj->epij", pressed, weights * sizes[:, None], slope, slope, optimize=True)
+    for e in range(len(sizes)):
         own, middle = slice(2 * e, 2 * e + 4), (nodes[e] + nodes[e + 1]) / 2.0
         soft = next((stretch for stretch in stretches if stretch.first < middle < stretch.last), None)
-        K[own, own] += (1.0 if soft is None else soft.bending) * _bending(h)
-        slope = slopes(h, points)
-        G[:, own, own] += np.einsum("gp,gi,gj->pij", pressed[e] * (weights * h)[:, None], slope, slope)
+        K[own, own] += (1.0 if soft is None else soft.bending) * bent[e]
+        G[:, own, own] += softened[e]
     for stretch in stretches:
         ends = [2 * int(np.argmin(np.abs(nodes - x))) + 1 for x in (stretch.first, stretch.last)]
         pair = stretch.pair * length / (stretch.last - stretch.first)
@@ -184,35 +185,33 @@ def _nodes(force: AxialForce, supports: Sequence[float], others: Sequence[float]
     return np.array(found)
 
 
-def _bending(h: float) -> Real:
-    """∫v''² of a cubic element of length h, by deflection and slope at its ends."""
-    return (
-        np.array(
-            [
-                [12.0, 6.0 * h, -12.0, 6.0 * h],
-                [6.0 * h, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
-                [-12.0, -6.0 * h, 12.0, -6.0 * h],
-                [6.0 * h, 2.0 * h * h, -6.0 * h, 4.0 * h * h],
-            ]
-        )
-        / h**3
-    )
+def _bending(h: Real) -> Real:
+    """∫v''² (n, 4, 4) of cubic elements of lengths h (n,), by deflection and slope at their ends."""
+    one = np.ones_like(h)
+    rows = [
+        [12.0 * one, 6.0 * h, -12.0 * one, 6.0 * h],
+        [6.0 * h, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
+        [-12.0 * one, -6.0 * h, 12.0 * one, -6.0 * h],
+        [6.0 * h, 2.0 * h * h, -6.0 * h, 4.0 * h * h],
+    ]
+    return np.asarray(np.moveaxis(np.array(rows), -1, 0) / h[:, None, None] ** 3)
 
 
-def slopes(h: float, t: Real) -> Real:
+def slopes(h: ArrayLike, t: Real) -> Real:
     """Return the slopes of the shape functions of a cubic element, by deflection and slope at its ends.
 
     Parameters
     ----------
-    h : float
+    h : array
         Length of the element.
-    t : ndarray, shape (n,)
-        Shares of it.
+    t : ndarray
+        Shares of it; both broadcast.
 
     Returns
     -------
-    ndarray, shape (n, 4)
+    ndarray, shape (..., 4)
         Slopes.
     """
-    across = 6.0 * t * (1.0 - t) / h
-    return np.stack([-across, 1.0 - 4.0 * t + 3.0 * t**2, across, 3.0 * t**2 - 2.0 * t], axis=1)
+    across = 6.0 * t * (1.0 - t) / np.asarray(h)
+    first, last = (np.broadcast_to(one, across.shape) for one in (1.0 - 4.0 * t + 3.0 * t**2, 3.0 * t**2 - 2.0 * t))
+    return np.stack([-across, first, across, last], axis=-1)

@@ -15,23 +15,32 @@ from alula.geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 _GAUSS = 6
+_DIRECT = [0, 3, 4, 5]
+"""Displacements that are integrals of their own strain alone: u, φ, θ_y, θ_z."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Deflection:
-    """Displacement of a beam's axis relative to the line through two of its stations.
+    """Displacement of a beam's axis relative to the line through two of its stations, in one state or in n.
 
     Attributes
     ----------
     functions : Piecewise
         u, v, w [mm] and the rotations φ, θ_y, θ_z [rad] about x, y, z; u and φ are relative to the first of the two
         stations.
-    largest : float
-        The largest √(v² + w²) [mm].
     """
 
     functions: Piecewise
-    largest: float
+
+    @property
+    def each(self) -> Floats:
+        """The largest √(v² + w²) in every state (n,) [mm]."""
+        return self.functions.peaks(lambda f: np.hypot(f[:, 1], f[:, 2])).value
+
+    @property
+    def largest(self) -> float:
+        """The largest √(v² + w²) of all [mm]."""
+        return float(self.each.max())
 
 
 def deflection(
@@ -56,7 +65,7 @@ def deflection(
     Parameters
     ----------
     forces : Piecewise
-        N, V_y, V_z, T, M_y, M_z along the beam.
+        N, V_y, V_z, T, M_y, M_z along the beam, of one state or of n.
     section : Section
         Of the beam.
     young : float
@@ -84,9 +93,10 @@ def deflection(
     stretches = [*((slot.first, slot.last) for slot in flanks), *((start, end) for start, end, _ in cells(cuts))]
     forces = divided(forces, [x for stretch in stretches for x in stretch])
     middles = (forces.breaks[:-1] + forces.breaks[1:]) / 2.0
-    out = np.zeros((len(forces.coefficients), 6, 6))
-    state = np.zeros(6)
-    for i, (c, x, h) in enumerate(zip(forces.coefficients, middles, np.diff(forces.breaks), strict=True)):
+    each = np.moveaxis(forces.coefficients, -3, 0)
+    out = np.zeros((*each.shape[:-2], 6, 6))
+    state = np.zeros(each.shape[1:-1])
+    for i, (c, x, h) in enumerate(zip(each, middles, np.diff(forces.breaks), strict=True)):
         slot = next((slot for slot in flanks if slot.first < x < slot.last), None)
         if cuts:
             strain = cut_flexibility(nearest(cuts, x), young, poisson) @ c
@@ -95,26 +105,23 @@ def deflection(
         if slot is not None:
             own = slot.together.i_z
             mean = _moment_between(forces, slot.first, slot.last) / slot.length
-            strain[5, 0] -= mean * slot.pair / (slot.pair + own) / (young * own)
-        out[i, [0, 3, 4, 5], :5] = integral(strain[[0, 3, 4, 5]], state[[0, 3, 4, 5]])
-        slope = out[i, [5, 4], :5] * np.array([[1.0], [-1.0]])
-        slope[:, :4] += strain[[1, 2]]
-        out[i, [1, 2]] = integral(slope, state[[1, 2]])
+            strain[..., 5, 0] -= mean * slot.pair / (slot.pair + own) / (young * own)
+        out[i][..., _DIRECT, :5] = integral(strain[..., _DIRECT, :], state[..., _DIRECT])
+        slope = out[i][..., [5, 4], :5] * np.array([[1.0], [-1.0]])
+        slope[..., :4] += strain[..., [1, 2], :]
+        out[i][..., [1, 2], :] = integral(slope, state[..., [1, 2]])
         state = values(out[i], h)
-    free = Piecewise(breaks=forces.breaks, coefficients=out)
+    free = Piecewise(breaks=forces.breaks, coefficients=np.moveaxis(out, 0, -3))
     at_a, at_b = free.at(x_a), free.at(x_b)
-    tilt = np.array([at_a[5], -at_a[4]]) if x_a == x_b else (at_b[1:3] - at_a[1:3]) / (x_b - x_a)
-    relative = out.copy()
-    starts = forces.breaks[:-1]
-    relative[:, [0, 3], 0] -= at_a[[0, 3]]
-    for row, angle in ((1, tilt[0]), (2, tilt[1])):
-        relative[:, row, 0] -= at_a[row] + angle * (starts - x_a)
-        relative[:, row, 1] -= angle
-    relative[:, 5, 0] -= tilt[0]
-    relative[:, 4, 0] += tilt[1]
-    functions = Piecewise(breaks=forces.breaks, coefficients=relative)
-    _, _, value = functions.largest(lambda f: np.hypot(f[:, 1], f[:, 2]))
-    return Deflection(functions=functions, largest=value)
+    tilts = (at_a[..., 5], -at_a[..., 4]) if x_a == x_b else np.moveaxis(at_b - at_a, -1, 0)[1:3] / (x_b - x_a)
+    relative, starts = free.coefficients.copy(), forces.breaks[:-1]
+    relative[..., [0, 3], 0] -= at_a[..., None, [0, 3]]
+    for row, angle in zip((1, 2), tilts, strict=True):
+        relative[..., row, 0] -= at_a[..., row, None] + angle[..., None] * (starts - x_a)
+        relative[..., row, 1] -= angle[..., None]
+    relative[..., 5, 0] -= tilts[0][..., None]
+    relative[..., 4, 0] += tilts[1][..., None]
+    return Deflection(functions=Piecewise(breaks=forces.breaks, coefficients=relative))
 
 
 def virtual_work(real: Piecewise, virtual: Piecewise, section: Section, *, young: float, poisson: float) -> float:
@@ -176,10 +183,11 @@ def flexibility(section: Section, young: float, poisson: float) -> Floats:
     )
 
 
-def _moment_between(forces: Piecewise, first: float, last: float) -> float:
-    """∫M_z dx between two stations that are breaks or lie beyond the beam, where there is none [N·mm²]."""
-    total = 0.0
-    for c, x, h in zip(forces.coefficients, forces.breaks[:-1], np.diff(forces.breaks), strict=True):
+def _moment_between(forces: Piecewise, first: float, last: float) -> Floats:
+    """∫M_z dx (...) between two stations that are breaks or lie beyond the beam, where there is none [N·mm²]."""
+    total = np.zeros(forces.coefficients.shape[:-3])
+    each = np.moveaxis(forces.coefficients[..., 5, :], -2, 0)
+    for c, x, h in zip(each, forces.breaks[:-1], np.diff(forces.breaks), strict=True):
         if first <= x < last:
-            total += float(values(integral(c[5], np.zeros(())), float(h)))
+            total = total + values(integral(c, np.zeros(total.shape)), float(h))
     return total

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CannotRunError
-from alula.geometry.base.ties import TIE, first_largest
+from alula.geometry.base.ties import TIE, first_largest_of_each
 
 Floats = NDArray[np.float64]
 Side = Literal["before", "after"]
@@ -60,14 +60,46 @@ def values(c: Floats, s: float | Floats) -> Floats:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class LargestAlong:
+    """The largest measure of functions in each of n states.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        Stations [mm].
+    before : ndarray of bool, shape (n,)
+        True where it is the value before a station where the functions jump.
+    value : ndarray, shape (n,)
+    """
+
+    x: Floats
+    before: NDArray[np.bool_]
+    value: Floats
+
+    def side(self, i: int = 0) -> Side:
+        """Return on which side of its station the largest of a state is.
+
+        Parameters
+        ----------
+        i : int, optional
+            Number of the state.
+
+        Returns
+        -------
+        Side
+        """
+        return "before" if self.before[i] else "after"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Piecewise:
-    """Some functions of x, each a polynomial between neighbouring stations.
+    """Some functions of x in one state or in n, each a polynomial between neighbouring stations.
 
     Attributes
     ----------
     breaks : ndarray, shape (k + 1,)
         Stations, rising [mm].
-    coefficients : ndarray, shape (k, m, p)
+    coefficients : ndarray, shape (k, m, p) or (n, k, m, p)
         Of m functions in powers 0 to p - 1 of the distance from the interval's first station.
     """
 
@@ -89,7 +121,7 @@ class Piecewise:
 
         Returns
         -------
-        ndarray, shape (m,)
+        ndarray, shape (m,) or (n, m)
             Values.
 
         Raises
@@ -102,42 +134,72 @@ class Piecewise:
         if not first - slack <= x <= last + slack:
             raise CannotRunError(f"station x = {x:g} mm lies off the beam, which runs from {first:g} to {last:g} mm")
         interval = int(np.searchsorted(self.breaks, x, side="right" if side == "after" else "left")) - 1
-        interval = min(max(interval, 0), len(self.coefficients) - 1)
-        return values(self.coefficients[interval], x - self.breaks[interval])
+        interval = min(max(interval, 0), self.coefficients.shape[-3] - 1)
+        return values(self.coefficients[..., interval, :, :], x - self.breaks[interval])
 
     def along(self, stations: Floats) -> Floats:
-        """Return the functions at many stations; where they jump, those after.
+        r"""Return the functions at many stations; where they jump, those after.
 
         Parameters
         ----------
-        stations : ndarray, shape (...)
+        stations : ndarray, shape s
             On the beam [mm].
 
         Returns
         -------
-        ndarray, shape (..., m)
+        ndarray, shape (\*s, m) or (n, \*s, m)
         """
         interval = np.searchsorted(self.breaks, stations, side="right") - 1
-        interval = np.clip(interval, 0, len(self.coefficients) - 1)
-        return values(self.coefficients[interval], (stations - self.breaks[interval])[..., None])
+        interval = np.clip(interval, 0, self.coefficients.shape[-3] - 1)
+        return values(self.coefficients[..., interval, :, :], (stations - self.breaks[interval])[..., None])
+
+    def state(self, i: int) -> "Piecewise":
+        """Return the functions of one of n states.
+
+        Parameters
+        ----------
+        i : int
+            Its number.
+
+        Returns
+        -------
+        Piecewise
+        """
+        return Piecewise(breaks=self.breaks, coefficients=self.coefficients[i])
 
     @cached_property
     def samples(self) -> tuple[Floats, Floats]:
-        """Stations (n,) [mm], and the functions (n, m) there: both ends of every interval, and more where they bend."""
-        grids = self._grids
+        """Stations (s,) [mm], and the functions (s, m) or (n, s, m): both ends of an interval, more where they bend."""
+        grids, each = self._grids, np.moveaxis(self.coefficients, -3, 0)
         x = np.concatenate([x0 + s for x0, s in zip(self.breaks[:-1], grids, strict=True)])
-        return x, np.concatenate([_along(c, s) for c, s in zip(self.coefficients, grids, strict=True)])
+        return x, np.concatenate([_along(c, s) for c, s in zip(each, grids, strict=True)], axis=-2)
 
     @cached_property
     def _grids(self) -> list[Floats]:
         """Distances of the samples from each interval's first station."""
-        bent = np.any(self.coefficients[:, :, 2:], axis=(1, 2))
+        bent = np.any(np.moveaxis(self.coefficients[..., 2:], -3, 0).reshape(len(self.breaks) - 1, -1), axis=1)
         lengths = np.diff(self.breaks)
         fine = np.linspace(0.0, lengths, SAMPLES, axis=-1)
         return [grid if curved else grid[[0, -1]] for grid, curved in zip(fine, bent, strict=True)]
 
     def largest(self, measure: Measure, bound: Measure | None = None) -> tuple[float, Side, float]:
-        """Find the largest measure of the functions over the beam.
+        """Find the largest measure of the functions of one state over the beam.
+
+        Parameters
+        ----------
+        measure, bound
+            As of ``peaks``.
+
+        Returns
+        -------
+        tuple of float, Side and float
+            Station [mm], side and value.
+        """
+        found = self.peaks(measure, bound)
+        return float(found.x[0]), found.side(), float(found.value[0])
+
+    def peaks(self, measure: Measure, bound: Measure | None = None) -> LargestAlong:
+        """Find the largest measure of the functions over the beam in each state.
 
         Both ends of every interval are tried, and inside it samples, about the best of which finer and finer ones
         follow; a measure that is convex where the functions are linear (any norm) has its maximum found exactly there.
@@ -145,67 +207,119 @@ class Piecewise:
         Parameters
         ----------
         measure : callable
-            Of values (n, m) of the functions at n stations, to numbers (n,).
+            Of values (r, m) of the functions at r stations, to numbers (r,).
         bound : callable, optional
-            Of sizes (n, m) of the functions, to numbers (n,) that no measure of functions of these sizes exceeds. With
+            Of sizes (r, m) of the functions, to numbers (r,) that no measure of functions of these sizes exceeds. With
             it the measure is taken only where it can be the largest; the answer is the same.
 
         Returns
         -------
-        tuple of float, Side and float
-            Station [mm], side and value.
+        LargestAlong
+            Of one state as well as of n.
         """
-        ends = np.cumsum([len(grid) for grid in self._grids])[:-1]
-        rows = np.split(self.samples[1], ends)
-        caps = self._caps(bound)
-        found, most = [-np.inf] * len(rows), -np.inf
-        places: list[tuple[float, Side]] = [(float(x), "after") for x in self.breaks[:-1]]
-        for k in sorted(range(len(rows)), key=lambda k: -caps[k].max()):
-            if caps[k].max() < most * (1.0 - 2.0 * TIE):
-                break
-            grid, sizes = self._grids[k], _where_it_counts(measure, rows[k], caps[k])
-            i = first_largest(sizes)
-            s, found[k] = float(grid[i]), float(sizes[i])
-            if 0 < i < len(grid) - 1:
-                between = float(grid[i - 1]), float(grid[i + 1])
-                s, found[k] = _refined(self.coefficients[k], measure, between, s, found[k])
-            last = i == len(grid) - 1
-            places[k] = (float(self.breaks[k + 1]), "before") if last else (float(self.breaks[k]) + s, "after")
-            most = max(most, found[k])
-        k = first_largest(found)
-        return *places[k], found[k]
+        each = self.coefficients.reshape(-1, *self.coefficients.shape[-3:])
+        sizes, counts = self._sizes(measure, bound)
+        found = np.full(counts.shape, -np.inf)
+        x, before = np.zeros(counts.shape), np.zeros(counts.shape, dtype=bool)
+        inside = list[tuple[NDArray[np.int64], int, Floats, Floats]]()
+        for k, (grid, own) in enumerate(zip(self._grids, sizes, strict=True)):
+            i = first_largest_of_each(own)
+            before[:, k] = i == len(grid) - 1
+            found[:, k], x[:, k] = own[np.arange(len(own)), i], grid[i]
+            [within] = np.nonzero(counts[:, k] & (i > 0) & ~before[:, k])
+            inside.append((within, k, grid[i[within] - 1], grid[i[within] + 1]))
+        state = np.concatenate([within for within, *_ in inside])
+        interval = np.concatenate([np.full(len(within), k) for within, k, *_ in inside])
+        if len(state):
+            low, high = (np.concatenate([one[end] for one in inside]) for end in (2, 3))
+            start = x[state, interval], found[state, interval]
+            x[state, interval], found[state, interval] = _refined(each[state, interval], measure, low, high, *start)
+        states, best = np.arange(len(found)), first_largest_of_each(found)
+        ended = before[states, best]
+        place = np.where(ended, self.breaks[best + 1], self.breaks[best] + x[states, best])
+        return LargestAlong(x=place, before=ended, value=found[states, best])
 
-    def _caps(self, bound: Measure | None) -> list[Floats]:
-        """What a measure does not exceed between neighbouring samples of each interval."""
-        grids = self._grids
+    def _sizes(self, measure: Measure, bound: Measure | None) -> tuple[list[Floats], NDArray[np.bool_]]:
+        """Measures (n, s) of each interval's samples, and in which of the intervals (n, k) it may be the largest.
+
+        Those that are not the largest of their interval, by the caps beside them, are -inf.
+        """
+        ends = np.cumsum([len(grid) for grid in self._grids])
+        rows = self.samples[1].reshape(-1, ends[-1], self.coefficients.shape[-2])
         if bound is None:
-            return [np.full(len(grid) - 1, np.inf) for grid in grids]
-        powers = np.arange(2, self.coefficients.shape[-1])
+            every = measure(rows.reshape(-1, rows.shape[-1])).reshape(rows.shape[:2])
+            return np.split(every, ends[:-1], axis=1), np.ones((len(rows), len(ends)), dtype=bool)
+        caps = self._caps(bound, rows)
+        most = [np.minimum(_beside(one, 1), _beside(one, 0)) for one in caps]
+        tops = np.stack([one.max(axis=1) for one in caps], axis=1)
+        best = np.stack([one.argmax(axis=1) for one in most], axis=1) + np.append(0, ends[:-1])
+        there = rows[np.arange(len(rows))[:, None], best]
+        least = measure(there.reshape(-1, rows.shape[-1])).reshape(best.shape) * (1.0 - 2.0 * TIE)
+        counts = tops >= least.max(axis=1, keepdims=True)
+        wanted = [
+            one >= np.where(own, low, np.inf)[:, None] for one, own, low in zip(most, counts.T, least.T, strict=True)
+        ]
+        where = np.concatenate(wanted, axis=1)
+        found = np.full(where.shape, -np.inf)
+        found[where] = measure(rows[where])
+        return np.split(found, ends[:-1], axis=1), counts
+
+    def _caps(self, bound: Measure, rows: Floats) -> list[Floats]:
+        """What a measure does not exceed between neighbouring samples (n, s - 1) of each interval."""
+        grids, powers = self._grids, np.arange(2, self.coefficients.shape[-1])
+        each = np.moveaxis(self.coefficients.reshape(-1, *self.coefficients.shape[-3:]), 1, 0)
         ends = np.cumsum([len(grid) for grid in grids])[:-1]
         sizes = []
-        for c, grid, rows in zip(self.coefficients, grids, np.split(np.abs(self.samples[1]), ends), strict=True):
+        for c, grid, own in zip(each, grids, np.split(np.abs(rows), ends, axis=1), strict=True):
             # Between two samples a function lies within h²/8 times its second derivative of their chord.
-            curved = (grid[1:, None] ** (powers - 2) * powers * (powers - 1)) @ np.abs(c[:, 2:]).T
-            sizes.append(np.maximum(rows[:-1], rows[1:]) + (np.diff(grid) ** 2 / 8.0)[:, None] * curved)
-        return np.split(bound(np.concatenate(sizes)), ends - np.arange(1, len(grids)))
+            curved = (grid[1:, None] ** (powers - 2) * powers * (powers - 1)) @ np.abs(c[..., 2:]).swapaxes(-1, -2)
+            sizes.append(np.maximum(own[:, :-1], own[:, 1:]) + (np.diff(grid) ** 2 / 8.0)[:, None] * curved)
+        together = np.concatenate(sizes, axis=1)
+        caps = bound(together.reshape(-1, together.shape[-1])).reshape(together.shape[:2])
+        return np.split(caps, ends - np.arange(1, len(grids)), axis=1)
 
 
-def _where_it_counts(measure: Measure, rows: Floats, caps: Floats) -> Floats:
-    """Measures (n,) of an interval's samples; -inf of those that are not its largest, by the caps beside them."""
-    if not np.isfinite(caps).all():
-        return measure(rows)
-    most = np.minimum(np.append(caps, np.inf), np.append(np.inf, caps))
-    found = np.full(len(rows), -np.inf)
-    best = int(np.argmax(most))
-    least = float(measure(rows[best : best + 1])[0])
-    counts = most >= least * (1.0 - 2.0 * TIE)
-    found[counts] = measure(rows[counts])
-    return found
+def _beside(caps: Floats, before: int) -> Floats:
+    """Caps (n, s) of what lies before or after each sample, from those between samples (n, s - 1)."""
+    return np.pad(caps, ((0, 0), (before, 1 - before)), constant_values=np.inf)
 
 
 def _along(c: Floats, s: Floats) -> Floats:
-    """Values (n, m) of polynomials (m, k) at n places."""
-    return np.asarray(np.vander(s, c.shape[-1], increasing=True) @ c.T)
+    """Values (..., r, m) of polynomials (..., m, k) at r places."""
+    return np.asarray(np.vander(s, c.shape[-1], increasing=True) @ c.swapaxes(-1, -2))
+
+
+def stacked(functions: Sequence[Piecewise]) -> Piecewise:
+    """Return functions of several states, of one each, as one.
+
+    Parameters
+    ----------
+    functions : sequence of Piecewise
+        Of the same breaks and powers.
+
+    Returns
+    -------
+    Piecewise
+    """
+    return Piecewise(breaks=functions[0].breaks, coefficients=np.stack([one.coefficients for one in functions]))
+
+
+def alike_stations(functions: Sequence[Piecewise]) -> list[list[int]]:
+    """Return which functions have the same breaks.
+
+    Parameters
+    ----------
+    functions : sequence of Piecewise
+
+    Returns
+    -------
+    list of list of int
+        Their numbers, rising.
+    """
+    found: dict[bytes, list[int]] = {}
+    for i, one in enumerate(functions):
+        found.setdefault(one.breaks.tobytes(), []).append(i)
+    return [*found.values()]
 
 
 def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
@@ -229,23 +343,26 @@ def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
         return functions
     rows = []
     for x in breaks[:-1]:
-        i = min(int(np.searchsorted(functions.breaks, x, side="right")) - 1, len(functions.coefficients) - 1)
-        c, s = functions.coefficients[i], float(x - functions.breaks[i])
+        i = min(int(np.searchsorted(functions.breaks, x, side="right")) - 1, functions.coefficients.shape[-3] - 1)
+        c, s = functions.coefficients[..., i, :, :], float(x - functions.breaks[i])
         taylor, factorial = [], 1.0
         for k in range(c.shape[-1]):
             taylor.append(values(c, s) / factorial)
-            c, factorial = np.polynomial.polynomial.polyder(c, axis=-1), factorial * (k + 1)
+            c = c[..., 1:] * np.arange(1, c.shape[-1])
+            factorial *= k + 1
         rows.append(np.stack(taylor, axis=-1))
-    return Piecewise(breaks=breaks, coefficients=np.array(rows))
+    return Piecewise(breaks=breaks, coefficients=np.stack(rows, axis=-3))
 
 
-def _refined(c: Floats, measure: Measure, between: tuple[float, float], s: float, peak: float) -> tuple[float, float]:
-    """Search for a maximum between two places of an interval; the start (s, peak) stays if nothing better turns up."""
+def _refined(c: Floats, measure: Measure, low: Floats, high: Floats, s: Floats, peak: Floats) -> tuple[Floats, Floats]:
+    """Search for maxima of q intervals, each between two places; a start (s, peak) stays if nothing better turns up."""
+    powers, each = np.arange(c.shape[-1]), np.arange(len(c))
     for _ in range(_ROUNDS):
-        grid = np.linspace(*between, _FINER)
-        sizes = measure(_along(c, grid))
-        i = int(np.argmax(sizes))
-        between = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, _FINER - 1)])
-        if sizes[i] > peak:
-            s, peak = float(grid[i]), float(sizes[i])
+        grid = np.linspace(low, high, _FINER, axis=-1)
+        rows = grid[..., None] ** powers @ c.swapaxes(-1, -2)
+        sizes = measure(rows.reshape(-1, rows.shape[-1])).reshape(grid.shape)
+        i = sizes.argmax(axis=1)
+        low, high = grid[each, np.maximum(i - 1, 0)], grid[each, np.minimum(i + 1, _FINER - 1)]
+        better = sizes[each, i] > peak
+        s, peak = np.where(better, grid[each, i], s), np.where(better, sizes[each, i], peak)
     return s, peak

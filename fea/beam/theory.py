@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_beam import about_centre, cut_stress, nearest
 from alula.fea.beam.loads import RECENT, BeamLoads
-from alula.fea.beam.piecewise import Piecewise, Side, divided, integral, values
+from alula.fea.beam.piecewise import LargestAlong, Piecewise, Side, divided, integral, values
 from alula.fea.beam.section_stress import (
     SectionStress,
     bending_stress,
@@ -234,9 +234,8 @@ def check_beam(
         axial, bending = (np.array([getattr(stress, name) for stress in found]) for name in ("axial", "bending"))
     else:
         axial, bending = rows[:, 0] / section.area, bending_stress(section, rows[:, 4], rows[:, 5])
-        x, side, _ = forces.largest(
-            lambda f: equivalent_stress(section, f, poisson), lambda sizes: equivalent_bound(section, sizes, poisson)
-        )
+        peak = _peaks(forces, section, poisson)
+        x, side = float(peak.x[0]), peak.side()
         worst = section_stress(section, forces.at(x, side), poisson)
     n, v_y, v_z, t, m_y, m_z = rows.T
     return BeamCheck(
@@ -257,6 +256,39 @@ def check_beam(
         strength=strength,
         safety_factor=strength / worst.equivalent if worst.equivalent > 0.0 else np.inf,
         cuts=cuts,
+    )
+
+
+def largest_stress(
+    forces: Piecewise, section: Section, poisson: float = 0.3, cuts: Sequence[CutSection] = ()
+) -> Floats:
+    """Return the largest von Mises stress along a link in each of n states.
+
+    Parameters
+    ----------
+    forces : Piecewise
+        Internal forces of the states.
+    section, poisson, cuts
+        As of ``check_beam``.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [MPa].
+    """
+    if not cuts:
+        return _peaks(forces, section, poisson).value
+    stations, rows = divided(forces, [cut.x for cut in cuts]).samples
+    along = [
+        [cut_stress(cut, about_centre(cut) @ row, poisson).equivalent for row in np.moveaxis(rows, -2, 0)[i]]
+        for i, cut in enumerate(nearest(cuts, x) for x in stations)
+    ]
+    return np.asarray(np.max(along, axis=0))
+
+
+def _peaks(forces: Piecewise, section: Section, poisson: float) -> LargestAlong:
+    return forces.peaks(
+        lambda f: equivalent_stress(section, f, poisson), lambda sizes: equivalent_bound(section, sizes, poisson)
     )
 
 

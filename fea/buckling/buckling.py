@@ -25,16 +25,16 @@ Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks
 3 a factor may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
 """
 
-import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.asked.asked import Asked
 from alula.fea.beam.column_factor import AxialForce, column_factors
+from alula.fea.beam.piecewise import Piecewise, values
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.buckling.holding import Plane, columns, holding, of_cuts
 from alula.fea.common.band import Band
@@ -111,8 +111,30 @@ def least_factor(case: Case, link: str, beam: BeamCheck) -> float:
     float
         Infinite where nothing makes it buckle.
     """
-    found = None if beam.without else column(case, link, beam)
-    return math.inf if found is None else found.value
+    return math.inf if beam.without else float(least_factors(case, link, beam.forces)[0])
+
+
+def least_factors(case: Case, link: str, forces: Piecewise) -> Real:
+    """Return the buckling factors of a link that is a beam in one state or in n, on its outermost pins.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    forces : Piecewise
+        Internal forces along it.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Infinite where nothing makes it buckle.
+    """
+    pressed = _compression(forces) > 0.0
+    found = np.full(len(pressed), math.inf)
+    if pressed.any():
+        force = _axial(forces)
+        found[pressed] = _pinned_factors(case, link, replace(force, values=force.values[..., pressed]))
+    return found
 
 
 def column(case: Case, link: str, beam: BeamCheck) -> StraightColumn | None:
@@ -129,16 +151,25 @@ def column(case: Case, link: str, beam: BeamCheck) -> StraightColumn | None:
     -------
     StraightColumn or None
     """
-    _, _, compression = beam.forces.largest(lambda f: -f[:, 0])
-    forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
-    if compression <= NO_COMPRESSION * forces:
+    compression = _compression(beam.forces)
+    if compression[0] <= 0.0:
         return None
-    breaks, at = beam.forces.breaks, beam.forces.at
-    values = [
-        [-at(a, "after")[0], -at((a + b) / 2.0, "after")[0], -at(b, "before")[0]] for a, b in itertools.pairwise(breaks)
-    ]
-    factors = link_factors(case, link, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
-    return worst_column(case, link, np.array([compression]), factors, np.array([True]))
+    return worst_column(case, link, compression, link_factors(case, link, _axial(beam.forces)), np.array([True]))
+
+
+def _compression(forces: Piecewise) -> Real:
+    """Largest compression (n,) along a link in every state; 0 where rounding alone tells of one."""
+    found = forces.peaks(lambda f: -f[:, 0]).value
+    rows = forces.samples[1]
+    largest = np.abs(rows[..., :3]).max(axis=(-2, -1))
+    return np.where(found > NO_COMPRESSION * largest, found, 0.0)
+
+
+def _axial(forces: Piecewise) -> AxialForce:
+    """Compression along a link in every state."""
+    along, half = -forces.coefficients[..., 0, :], np.diff(forces.breaks) / 2.0
+    each = np.stack([values(along, steps * half) for steps in (0.0, 1.0, 2.0)], axis=-1)
+    return AxialForce(breaks=forces.breaks, values=np.moveaxis(each.reshape(-1, *each.shape[-2:]), 0, -1))
 
 
 def worst_column(
@@ -184,30 +215,45 @@ def link_factors(case: Case, link: str, force: AxialForce) -> ColumnFactors:
     ColumnFactors
         Each of shape (P,).
     """
-    where, young = holding(case, link), case.material_of(link).youngs_modulus
-    body = case.body(link)
-    in_plane, across = columns(body)
-
-    def factors(plane: Plane, held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
-        inertia, stretches = plane
-        return column_factors(force, young * inertia, held=held, built_in=built_in, stretches=stretches)
-
-    def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
-        planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
-        if body.cuts:
-            planes = (of_cuts(body, lambda cut: cut.principal[0]),)
-        return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
-
-    value = softer(held=where.outermost) if len(where.outermost) > 1 else softer(built_in=where.outermost)
+    where = holding(case, link)
+    in_plane, across = columns(case.body(link))
+    value = _pinned_factors(case, link, force)
     least = value
     for x in where.alone:
-        least = np.minimum(least, softer(built_in=(x,)))
+        least = np.minimum(least, _softer(case, link, force, built_in=(x,)))
     most = np.full(len(value), np.inf)
     if where.in_plane is not None:
-        most = factors(in_plane, where.in_plane, where.kept)
+        most = _factors(case, link, force, in_plane, where.in_plane, where.kept)
     if where.across is not None:
-        most = np.minimum(most, factors(across, built_in=where.across))
+        most = np.minimum(most, _factors(case, link, force, across, built_in=where.across))
     return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
+
+
+def _pinned_factors(case: Case, link: str, force: AxialForce) -> Real:
+    """Factors (P,) with the outermost pins in place and free to turn; a single place is held in its angle too."""
+    outermost = holding(case, link).outermost
+    held, built_in = (outermost, ()) if len(outermost) > 1 else ((), outermost)
+    return _softer(case, link, force, held, built_in)
+
+
+def _softer(
+    case: Case, link: str, force: AxialForce, held: Sequence[float] = (), built_in: Sequence[float] = ()
+) -> Real:
+    """Factors (P,) in the plane in which the link is softer."""
+    body = case.body(link)
+    in_plane, across = columns(body)
+    planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
+    if body.cuts:
+        planes = (of_cuts(body, lambda cut: cut.principal[0]),)
+    return np.asarray(np.min([_factors(case, link, force, plane, held, built_in) for plane in planes], axis=0))
+
+
+def _factors(
+    case: Case, link: str, force: AxialForce, plane: Plane, held: Sequence[float] = (), built_in: Sequence[float] = ()
+) -> Real:
+    """Factors (P,) in a plane."""
+    (inertia, stretches), young = plane, case.material_of(link).youngs_modulus
+    return column_factors(force, young * inertia, held=held, built_in=built_in, stretches=stretches)
 
 
 def buckling_outcomes(

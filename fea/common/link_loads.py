@@ -230,3 +230,7 @@ class LinkLoads:
             force = self.inertia.at_centroid(np.array([*self.inertia.mass.centroid, 0.0]))
             total = total + np.linalg.norm(force[..., :3], axis=-1) + np.abs(force[..., 5]) / length
         return np.asarray(total)
+
+
+Plates = tuple[LinkLoads, ...]
+"""What acts on a link, or on each plate of a pair, in one state."""

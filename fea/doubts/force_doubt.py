@@ -13,18 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
-from alula.fea.buckling.buckling import least_factor
-from alula.fea.common.link_loads import LinkLoads
-from alula.fea.common.plates import plates
+from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import Growths, telling
-from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
+from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.standing.joint_forces import JointForces
-from alula.fea.superposition.link_answers import LinkAnswers, Plates, Rule, widest
+from alula.fea.superposition.link_answers import LinkAnswers, Rule, widest
 from alula.loads.case.case import Case
-from alula.loads.case.forks import apart
 from alula.loads.records.applied import Load
 from alula.loads.statics.statics import Reactions
 
@@ -73,7 +70,7 @@ def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces
     """
     body, rule = case.body(link), _summed(forces.sources)
     stated, *others = (
-        borne(case, link, link_loads(load_case, link, body, reactions, loads), tilts=False)
+        on_plates(case, link, link_loads(load_case, link, body, reactions, loads))
         for reactions in (forces.on_tight_pins, *(one.reactions for one in forces.open_by))
     )
     return LinkAnswers(stated=stated, others=tuple(others), stress=rule, displacement=rule)
@@ -140,9 +137,10 @@ def sharing_answers(
     least = forces.pins.least(link) if forces.pins is not None else None
     least = int(np.argmin(np.linalg.norm(across, axis=1))) if least is None else least
     chosen = {*outermost(across).tolist(), least}
-    tilted = tuple(borne(case, link, others[i], tilts=True) for i in sorted(chosen))
+    stated, *tilted = _on_tilting_pins(case, link, [tight, *(others[i] for i in sorted(chosen))])
     rule = widest(COUPLES)
-    return LinkAnswers(stated=borne(case, link, tight, tilts=grown), others=tilted, stress=rule, displacement=rule)
+    stated = stated if grown else on_plates(case, link, tight)
+    return LinkAnswers(stated=stated, others=tuple(tilted), stress=rule, displacement=rule)
 
 
 def _growths(
@@ -155,9 +153,9 @@ def _growths(
     """What a cause makes of links by hand, and of joint forces."""
     stress, displacement = {}, {}
     for link, one in answers.items():
-        plain, *others = (_by_hand(case, link, borne) for borne in one.every)
-        stress[link] = one.stress(plain[0], [other[0] for other in others])
-        displacement[link] = one.displacement(plain[1], [other[1] for other in others])
+        stresses, moved = numbers_by_hand(case, link, one.every).tolist()
+        stress[link] = one.stress(stresses[0], stresses[1:])
+        displacement[link] = one.displacement(moved[0], moved[1:])
     return Growths(
         stress=telling(stress), displacement=telling(displacement), joints=telling(_joints(stated, changes, rule))
     )
@@ -200,93 +198,11 @@ def _joints(stated: Reactions, changes: Sequence[Reactions], around: Rule) -> di
     return joints
 
 
-def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> tuple[float, float]:
-    """Return stress and displacement by hand; the largest pin force for both of a link for which no beam stands.
-
-    Parameters
-    ----------
-    case : Case
-    link : str
-    loads : LinkLoads
-        At one pose; of a pair the numbers are those of its worse plate.
-    tilts : bool, optional
-        Whether its pins tilt, so that bending grows as ``on_tilting_pins`` says.
-
-    Returns
-    -------
-    tuple of (float, float)
-        [MPa], [mm]; twice [N] without beam.
-    """
-    return _by_hand(case, link, borne(case, link, loads, tilts=tilts))
-
-
-def measures_and_column(case: Case, link: str, loads: LinkLoads) -> tuple[float, float, float]:
-    """Return stress, displacement and the inverse of the buckling factor by hand, as ``measures`` has the first two.
-
-    Parameters
-    ----------
-    case : Case
-    link : str
-    loads : LinkLoads
-        At one pose; of a pair the numbers are those of its worse plate.
-
-    Returns
-    -------
-    tuple of (float, float, float)
-        [MPa], [mm], pure; three times [N] without beam.
-    """
-    each = borne(case, link, loads)
-    hands = [link_by_hand(case, link, plate) for plate in each]
-    stress, displacement = _numbers(hands, each)
-    if hands[0].check.without:
-        return stress, displacement, stress
-    return stress, displacement, max(1.0 / least_factor(case, link, hand.check) for hand in hands)
-
-
-def stress_by_hand(case: Case, link: str, borne: Plates) -> float:
-    """Return the stress by hand of a link, or of the worse plate of a pair; the largest pin force where no beam stands.
-
-    Parameters
-    ----------
-    case : Case
-    link : str
-    borne : tuple of LinkLoads
-        What acts on it, or on each plate.
-
-    Returns
-    -------
-    float
-        [MPa], or [N].
-    """
-    return _by_hand(case, link, borne)[0]
-
-
-def borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> Plates:
-    """Return what acts on a link, or on each plate of a pair.
-
-    Parameters
-    ----------
-    case, link, loads, tilts
-        As of ``measures``.
-
-    Returns
-    -------
-    tuple of LinkLoads
-    """
-    each = plates(loads, apart(case, link))
-    return tuple(on_tilting_pins(case, link, plate) for plate in each) if tilts else each
-
-
-def _by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[float, float]:
-    return _numbers([link_by_hand(case, link, plate) for plate in borne], borne)
-
-
-def _numbers(hands: Sequence[LinkByHand], borne: Sequence[LinkLoads]) -> tuple[float, float]:
-    """Stress and displacement of the worse plate; the largest pin force for both without beam."""
-    if hands[0].check.without:
-        largest = max(float(np.linalg.norm(pin.wrench[:3])) for plate in borne for pin in plate.pins)
-        return largest, largest
-    return max(hand.worst[1].equivalent for hand in hands), max(hand.displacement for hand in hands)
+def _on_tilting_pins(case: Case, link: str, states: Sequence[LinkLoads]) -> list[Plates]:
+    """What acts on a link, or on each plate of a pair, in each state, grown as ``on_tilting_pins`` says."""
+    each = [on_plates(case, link, loads) for loads in states]
+    grown = iter(on_tilting_pins(case, link, [plate for found in each for plate in found]))
+    return [tuple(next(grown) for _ in found) for found in each]
 
 
 def _summed(sources: tuple[Source, ...]) -> Rule:

@@ -14,8 +14,8 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
-from alula.fea.doubts.force_doubt import borne, measures, measures_and_column
 from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.fea.superposition.link_answers import LinkAnswers
@@ -74,27 +74,33 @@ def play_doubt(
     displacement: dict[str, Scatter] = {}
     columns: dict[str, Scatter] = {}
     for link in links:
-        body = case.body(link)
-        acting = link_loads(load_case, link, body, forces.reactions, loads)
-        told = partial(_told, case, load_case, link, body, acting)
-        plain = told(*nominal)
-        tried = {name: [told(*end) for end in each] for name, each in ends.items()}
-        for i, found in enumerate((stress, displacement, columns)):
-            slopes = {name: np.array([end[i] - plain[i] for end in each]) for name, each in tried.items()}
-            for name, slope in slopes.items() if i == COLUMN else ():
-                # Where nothing presses the link any more, the other end tells how compression changes.
-                idle = [k for k, end in enumerate(tried[name]) if end[COLUMN] == 0.0 < plain[COLUMN]]
-                others = _ends(play, forces, name, -1.0) if idle else []
-                slope[idle] = [plain[COLUMN] - told(*others[k])[COLUMN] for k in idle if k < len(others)]
-            slack = sum(float(np.linalg.norm(slope)) for slope in slopes.values())
-            telling = 2.0 * slack > LEAST * plain[i]
-            worst = [told(*end)[i] for end in _worst(play, forces, slopes)] if telling else []
-            low, high = min(plain[i] - slack, *worst, plain[i]), max(plain[i] + slack, *worst, plain[i])
-            found[link] = _scatter(Span(value=plain[i], low=max(low, 0.0), high=high), source)
+        acting = link_loads(load_case, link, case.body(link), forces.reactions, loads)
+        told = partial(_told, case, load_case, link, acting)
+        plain, *each = told([nominal, *(end for found in ends.values() for end in found)])
+        numbers = iter(each)
+        tried = {name: np.array([next(numbers) for _ in found]).reshape(-1, 3) for name, found in ends.items()}
+        steps = {name: found - plain for name, found in tried.items()}
+        for name, found in tried.items():
+            # Where nothing presses the link any more, the other end tells how compression changes.
+            if (idle := (found[:, COLUMN] == 0.0) & (plain[COLUMN] > 0.0)).any():
+                others = _ends(play, forces, name, -1.0)
+                if len(others) == len(found):
+                    steps[name][idle, COLUMN] = plain[COLUMN] - told(others)[idle, COLUMN]
+        slopes = [{name: step[:, i] for name, step in steps.items()} for i in range(3)]
+        slack = [sum(float(np.linalg.norm(slope)) for slope in own.values()) for own in slopes]
+        worst = [
+            list(_worst(play, forces, own)) if 2.0 * least > LEAST * value else []
+            for own, least, value in zip(slopes, slack, plain, strict=True)
+        ]
+        numbers = iter(told([end for found in worst for end in found]))
+        for i, kept in enumerate((stress, displacement, columns)):
+            reached = [float(next(numbers)[i]) for _ in worst[i]]
+            low, high = min(plain[i] - slack[i], *reached, plain[i]), max(plain[i] + slack[i], *reached, plain[i])
+            kept[link] = _scatter(Span(value=plain[i], low=max(low, 0.0), high=high), source)
             if case.layered and i != COLUMN:  # couples between layers go with the forces of the link's pins
                 held = [joints[name] for name in case.linkage.joints_of(link)]
                 least, most = min(one.low for one in held), max(one.high for one in held)
-                found[link] = replace(found[link], low=min(found[link].low, least), high=max(found[link].high, most))
+                kept[link] = replace(kept[link], low=min(kept[link].low, least), high=max(kept[link].high, most))
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints), columns=_open(columns))
 
 
@@ -153,7 +159,7 @@ def play_answers(
         def endless(_value: float, _others: Sequence[float]) -> Scatter:
             return Scatter(low=0.0, high=np.inf, sources=(source,))
 
-        return LinkAnswers(stated=borne(case, link, acting), others=(), stress=endless, displacement=endless)
+        return LinkAnswers(stated=on_plates(case, link, acting), others=(), stress=endless, displacement=endless)
     at = partial(_at, load_case, link, body, acting)
     stated = at(_reactions(play, forces, play.nominal), play.nominal)
     others, places = list[LinkLoads](), list[tuple[str, int]]()
@@ -164,7 +170,7 @@ def play_answers(
                 if here is not None:
                     others.append(at(_reactions(play, forces, here), here))
                     places.append((name, i))
-    plain, *tried = (measures(case, link, one) for one in (stated, *others))
+    plain, *tried = numbers_by_hand(case, link, [on_plates(case, link, one) for one in (stated, *others)]).T
     for k in (0, 1):
         slopes = {name: np.zeros(2) for name in play.loose.radii}
         for (name, i), one in reversed(list(zip(places, tried, strict=True))):  # that at the end in x or y rules
@@ -188,18 +194,21 @@ def play_answers(
         )
 
     return LinkAnswers(
-        stated=borne(case, link, stated),
-        others=tuple(borne(case, link, one) for one in others),
+        stated=on_plates(case, link, stated),
+        others=tuple(on_plates(case, link, one) for one in others),
         stress=rule,
         displacement=rule,
     )
 
 
 def _told(
-    case: Case, load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced
-) -> tuple[float, float, float]:
-    """Stress, displacement and inverse of the buckling factor of a link by hand, with its joints at offsets."""
-    return measures_and_column(case, link, _at(load_case, link, body, plain, here, at))
+    case: Case, load_case: str, link: str, plain: LinkLoads, states: Sequence[tuple[Reactions, Displaced]]
+) -> Real:
+    """Stress, displacement and inverse of the buckling factor (n, 3) of a link by hand, with its joints at offsets."""
+    if not states:
+        return np.zeros((0, 3))
+    found = (_at(load_case, link, case.body(link), plain, *state) for state in states)
+    return numbers_by_hand(case, link, [on_plates(case, link, one) for one in found], columns=True).T
 
 
 def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:

@@ -1,30 +1,35 @@
-"""What acts on one link cut free, with the growth of its bending, and its hand calculation."""
+"""What acts on one link cut free, with the growth of its bending, and its hand calculation, in one state or in many."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
-from alula.fea.beam.deflection import deflection
+from alula.fea.beam.deflection import Deflection, deflection
 from alula.fea.beam.details import Detail, details, remarks
 from alula.fea.beam.flanks import flanks_of
 from alula.fea.beam.loads import BeamLoads, PointLoad
+from alula.fea.beam.piecewise import Piecewise, alike_stations, divided, stacked
 from alula.fea.beam.section_stress import SectionStress
-from alula.fea.beam.theory import BeamCheck, check_beam
-from alula.fea.buckling.buckling import least_factor
-from alula.fea.common.link_loads import LinkLoads
+from alula.fea.beam.theory import BeamCheck, check_beam, internal_forces, largest_stress
+from alula.fea.buckling.buckling import least_factor, least_factors
+from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.plates import plates
 from alula.fea.common.reason import Reason
 from alula.fea.links.on_axis import on_axis
 from alula.fea.links.second_order import second_order_loads
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.unloaded import load_size, without_rounding
-from alula.geometry.bodies.body import hand_section, no_beam, reference_line
+from alula.geometry.bodies.body import Body, hand_section, no_beam, reference_line
+from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
 from alula.loads.records.applied import Load
 from alula.loads.statics.statics import Reactions
+
+Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,11 +92,26 @@ def cut_link(
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
     found = deformed or link_loads(load_case, link, case.body(link), moved.reactions or reactions, loads)
-    found = without_rounding(found, load_size(loads, longest), longest)
-    borne = plates(found, apart(case, link))
+    borne = on_plates(case, link, without_rounding(found, load_size(loads, longest), longest))
     if deformed is None and moved.state not in ("off", "unknown") and link != case.linkage.ground:
         return borne
     return tuple(second_order_loads(case, link, plate, stays=deformed is not None) for plate in borne)
+
+
+def on_plates(case: Case, link: str, loads: LinkLoads) -> Plates:
+    """Return what acts on a link, or on each plate of a pair whose plates bear differently.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : LinkLoads
+
+    Returns
+    -------
+    tuple of LinkLoads
+    """
+    return tuple(plates(loads, apart(case, link)))
 
 
 def plates_by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[tuple[LinkLoads, LinkByHand], ...]:
@@ -156,14 +176,62 @@ def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
         return LinkByHand(check=replace(nothing, without=without), displacement=0.0, details=(), remarks=(without,))
     acting = on_axis(loads, body, material.density)
     check = check_beam(acting, section, material.allowable, material.poissons_ratio, body.cuts)
-    bent = deflection(
-        check.forces,
-        section,
+    bent = _bent(body, material, check.forces)
+    found = details(body, loads, check.forces, material.poissons_ratio)
+    return LinkByHand(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))
+
+
+def _bent(body: Body, material: Material, forces: Piecewise) -> Deflection:
+    return deflection(
+        forces,
+        hand_section(body),
         young=material.youngs_modulus,
         poisson=material.poissons_ratio,
         line=reference_line(body),
         flanks=flanks_of(body),
         cuts=body.cuts,
     )
-    found = details(body, loads, check.forces, material.poissons_ratio)
-    return LinkByHand(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))
+
+
+def numbers_by_hand(case: Case, link: str, answers: Sequence[Plates], *, columns: bool = False) -> Real:
+    """Return stress, displacement and, if wanted, the inverse of the buckling factor of a link by hand, in n states.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    answers : sequence of tuple of LinkLoads
+        What acts on the link in each state, or on each plate of a pair: its numbers are those of the worse plate.
+    columns : bool, optional
+
+    Returns
+    -------
+    ndarray, shape (2 or 3, n)
+        [MPa], [mm], pure; each the largest pin force [N] of a link for which no beam stands.
+    """
+    first = np.cumsum([0, *(len(plates) for plates in answers[:-1])])
+    every, body = [loads for plates in answers for loads in plates], case.body(link)
+    if no_beam(body):
+        pulled = [max(float(np.linalg.norm(pin.wrench[:3])) for pin in loads.pins) for loads in every]
+        found = np.tile(pulled, (2 + columns, 1))
+    else:
+        found = _numbers(case, link, body, every, columns)
+    return np.asarray(np.maximum.reduceat(found, first, axis=1))
+
+
+def _numbers(case: Case, link: str, body: Body, every: Sequence[LinkLoads], columns: bool) -> Real:
+    material, section = case.material_of(link), hand_section(body)
+    poisson = material.poissons_ratio
+    found = np.zeros((2 + columns, len(every)))
+    alone = [internal_forces(on_axis(loads, body, material.density)) for loads in every]
+    for alike in alike_stations(alone):
+        forces = divided(stacked([alone[i] for i in alike]), [cut.x for cut in body.cuts])
+        found[0, alike] = largest_stress(forces, section, poisson, body.cuts)
+        for i in alike:
+            found[0, i] = max(
+                found[0, i], *(one.stress.equivalent for one in details(body, every[i], alone[i], poisson)), 0.0
+            )
+        found[1, alike] = _bent(body, material, forces).each
+        if columns:
+            found[2, alike] = 1.0 / least_factors(case, link, forces)
+    return found

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.column_factor import GAUSS, MERGED, Stretch, slopes, stiffness_matrices
 from alula.fea.beam.cut_beam import curving_forces
-from alula.fea.beam.piecewise import Piecewise, Side
+from alula.fea.beam.piecewise import Piecewise, Side, alike_stations, stacked
 from alula.fea.beam.theory import internal_forces
 from alula.fea.buckling.holding import columns, holding
 from alula.fea.common.link_loads import LinkLoads
@@ -85,7 +85,7 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     return on_its_pins(loads, forces, planes[0], planes[1], held, on_arms)
 
 
-def on_tilting_pins(case: Case, link: str, loads: LinkLoads) -> LinkLoads:
+def on_tilting_pins(case: Case, link: str, states: Sequence[LinkLoads]) -> tuple[LinkLoads, ...]:
     """Return the loads of a link between layers with its bending out of the plane, free to turn on its outermost pins.
 
     Pins that tilt keep no angle, as those of the spatial frame do. In the plane the frame tells how bending grows.
@@ -94,24 +94,33 @@ def on_tilting_pins(case: Case, link: str, loads: LinkLoads) -> LinkLoads:
     ----------
     case : Case
     link : str
-    loads : LinkLoads
-        At one pose.
+    states : sequence of LinkLoads
+        At one pose each.
 
     Returns
     -------
-    LinkLoads
-        Unchanged where compression buckles the link.
+    tuple of LinkLoads
+        Unchanged where compression is negligible or buckles the link.
     """
     body, material = case.body(link), case.material_of(link)
     if no_beam(body):
-        return loads
-    forces = curving_forces(internal_forces(on_axis(loads, body, material.density)), body.cuts)
-    if forces.largest(lambda f: -f[:, 0])[2] <= 0.0:
-        return loads
+        return tuple(states)
     inertia, soft = columns(body, free=True)[1]
     across = Bend(stiffness=material.youngs_modulus * inertia, stretches=soft)
     on_arms = {pin.name for pin in body.pins if pin.foot is not None}
-    return on_its_pins(loads, forces, None, across, holding(case, link).outermost, on_arms)
+    forces = [curving_forces(internal_forces(on_axis(one, body, material.density)), body.cuts) for one in states]
+    held = holding(case, link).outermost
+    grows = np.zeros(len(forces), dtype=bool)
+    for alike in alike_stations(forces):
+        marks = _marks(states[alike[0]], on_arms)
+        if len(marks) > 1 and {*held} <= {*marks}:
+            nodes, every = _nodes(marks, _ends(soft)), stacked([forces[i] for i in alike])
+            share = _shares(*_system(every, across, nodes, held)[:3])
+            grows[alike] = (share >= NEGLIGIBLE) & (share < 1.0)
+    return tuple(
+        on_its_pins(loads, own, None, across, held, on_arms) if grown else loads
+        for loads, own, grown in zip(states, forces, grows, strict=True)
+    )
 
 
 def between_stations(
@@ -168,8 +177,13 @@ def on_its_pins(
     LinkLoads
         Unchanged where compression buckles the link, and where a held place is no pin or loaded end on the axis.
     """
-    stations = _stations(loads, {*on_arms, *(pin.name for pin in loads.pins if pin.slotted)})
+    stations = _marks(loads, on_arms)
     return _bowed(loads, forces, (in_plane, across), stations, held) if {*held} <= {*stations} else loads
+
+
+def _marks(loads: LinkLoads, on_arms: Collection[str]) -> list[float]:
+    """Stations of pins that stay at their place, and of loaded ends, on the axis."""
+    return _stations(loads, {*on_arms, *(pin.name for pin in loads.pins if pin.slotted)})
 
 
 def _stations(loads: LinkLoads, on_arms: Collection[str]) -> list[float]:
@@ -183,8 +197,7 @@ def _bowed(
     if len(marks) < 2:
         return loads
     bends = {axis: bend for axis, bend in enumerate(planes, start=1) if bend is not None}
-    softer = [stretch for bend in bends.values() for stretch in bend.stretches]
-    nodes = _nodes(marks, [x for stretch in softer for x in (stretch.first, stretch.last)])
+    nodes = _nodes(marks, _ends([stretch for bend in bends.values() for stretch in bend.stretches]))
     intensity, point, left = np.zeros((len(nodes) - 1, 2, 3)), np.zeros((len(marks), 3)), np.zeros(3)
     for axis, bend in bends.items():
         found = _transverse(forces, bend, _MOMENT[axis], nodes, marks, held)
@@ -215,6 +228,10 @@ _MOMENT: dict[int, Callable[[Real], float]] = {1: lambda f: float(f[5]), 2: lamb
 """E I times the curvature of v and of w."""
 
 
+def _ends(stretches: Sequence[Stretch]) -> list[float]:
+    return [x for stretch in stretches for x in (stretch.first, stretch.last)]
+
+
 def _nodes(marks: Sequence[float], others: Sequence[float]) -> Real:
     first, last = marks[0], marks[-1]
     breaks = sorted({*marks, *(x for x in others if all(abs(x - mark) > MERGED * (last - first) for mark in marks))})
@@ -239,25 +256,17 @@ def _transverse(
     """
     points, weights = GAUSS
     length = float(nodes[-1] - nodes[0])
-    at = nodes[:-1, None] + np.diff(nodes)[:, None] * points
-    inner = forces.along(at)
-    pressed = np.maximum(-inner[..., 0], 0.0)
-    K, G = stiffness_matrices(nodes, pressed[..., None], bend.stretches)
-    K, G = K * bend.stiffness / length**2, G[0]
-    load = np.zeros(len(K))
-    for e, h in enumerate(np.diff(nodes) / length):
-        bending = np.array([moment(f) for f in inner[e]])
-        load[2 * e : 2 * e + 4] += (weights * h * bending) @ _curvatures(h, points)
-    fixed = [2 * int(np.argmin(np.abs(nodes - x))) for x in held]
-    fixed += [fixed[0] + 1] if len(held) == 1 else []
-    free = np.setdiff1d(np.arange(len(K)), fixed)
-    inverse = np.linalg.inv(np.linalg.cholesky(K[np.ix_(free, free)]))
-    share = float(np.linalg.eigvalsh(inverse @ G[np.ix_(free, free)] @ inverse.T)[-1])
+    K, every, free, at, across = _system(forces, bend, nodes, held)
+    share, G, pressed = float(_shares(K, every, free)[0]), every[0], across[0]
     if share >= 1.0:
         return None
     cells, at_marks = np.zeros((len(nodes) - 1, 2)), np.zeros(len(marks))
     if share < NEGLIGIBLE:
         return cells, at_marks, 0.0
+    inner, load = forces.along(at), np.zeros(len(K))
+    for e, h in enumerate(np.diff(nodes) / length):
+        bending = np.array([moment(f) for f in inner[e]])
+        load[2 * e : 2 * e + 4] += (weights * h * bending) @ _curvatures(h, points)
     v = np.zeros(len(K))
     v[free] = np.linalg.solve((K - G)[np.ix_(free, free)], load[free])
     total = 0.0
@@ -278,6 +287,28 @@ def _transverse(
     for node, i in numbers.items():
         at_marks[i] = (thrust(node, "before") if i else 0.0) - (thrust(node, "after") if i < len(marks) - 1 else 0.0)
     return cells, at_marks, total
+
+
+def _system(
+    forces: Piecewise, bend: Bend, nodes: Real, held: Sequence[float]
+) -> tuple[Real, Real, NDArray[np.int64], Real, Real]:
+    """Return the bending stiffness K (k, k), what compression takes of it G (n, k, k), and its free unknowns.
+
+    Then stations (e, 4) of each element's Gauss points [mm], and the compression (n, e, 4) there [N].
+    """
+    length = float(nodes[-1] - nodes[0])
+    at = nodes[:-1, None] + np.diff(nodes)[:, None] * GAUSS[0]
+    pressed = np.maximum(-forces.along(at)[..., 0], 0.0).reshape(-1, *at.shape)
+    K, G = stiffness_matrices(nodes, np.moveaxis(pressed, 0, -1), bend.stretches)
+    fixed = [2 * int(np.argmin(np.abs(nodes - x))) for x in held]
+    fixed += [fixed[0] + 1] if len(held) == 1 else []
+    return K * bend.stiffness / length**2, G, np.setdiff1d(np.arange(len(K)), fixed), at, pressed
+
+
+def _shares(K: Real, G: Real, free: NDArray[np.int64]) -> Real:
+    """Compression over that which buckles the link, in every state (n,)."""
+    inverse = np.linalg.inv(np.linalg.cholesky(K[np.ix_(free, free)]))
+    return np.asarray(np.linalg.eigvalsh(inverse @ G[:, free[:, None], free] @ inverse.T)[:, -1])
 
 
 def _curvatures(h: float, t: Real) -> Real:

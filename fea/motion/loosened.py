@@ -29,10 +29,9 @@ from alula.fea.buckling.buckling import least_factor
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct, play_source
-from alula.fea.doubts.force_doubt import measures
 from alula.fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
 from alula.fea.doubts.play_doubt import play_doubt
-from alula.fea.links.link_by_hand import plates_by_hand
+from alula.fea.links.link_by_hand import numbers_by_hand, on_plates, plates_by_hand
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.link_history import link_histories
@@ -172,7 +171,8 @@ def _hand(moved: CaseMotion, load_case: str, link: str, pose: int) -> float:
     """Stress of a link by hand at a pose."""
     case, loads = moved.case, [chosen(load, pose) for load in moved.loads[load_case]]
     forces = forces_at(moved, load_case, pose)
-    return measures(case, link, link_loads(load_case, link, case.body(link), forces.reactions, loads))[0]
+    found = link_loads(load_case, link, case.body(link), forces.reactions, loads)
+    return float(numbers_by_hand(case, link, [on_plates(case, link, found)])[0, 0])
 
 
 def joint_growth(moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_]) -> Scatter:

@@ -7,13 +7,11 @@ rule the numbers found under these become an interval (``docs/theory/bands.md``)
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.link_loads import Plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import Source
 
-Plates = tuple[LinkLoads, ...]
-"""What acts on a link, or on each plate of a pair, in one answer."""
 Rule = Callable[[float, Sequence[float]], Scatter]
 """From a number as stated, and in every other answer, to the least and the largest factor on it."""
 

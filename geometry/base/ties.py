@@ -1,9 +1,7 @@
 """Which of several values counts as largest or least where rounding alone tells them apart."""
 
-from math import isfinite
-
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 TIE = 1e-9
 """Values that differ by no more than this share of their size are equal."""
@@ -41,9 +39,29 @@ def first_least(values: ArrayLike, size: float = 0.0) -> int:
     -------
     int
     """
-    given = np.asarray(values, dtype=float)
-    least = float(np.nanmin(given))
-    return int(np.argmax(given <= (least + TIE * max(abs(least), size) if isfinite(least) else least)))
+    return int(_first(np.asarray(values, dtype=float), size))
+
+
+def first_largest_of_each(values: ArrayLike) -> NDArray[np.int64]:
+    """Return the number of the first of the largest values in each row, as ``first_largest`` does.
+
+    Parameters
+    ----------
+    values : array, shape (n, P)
+
+    Returns
+    -------
+    ndarray of int, shape (n,)
+    """
+    return np.asarray(_first(-np.asarray(values, dtype=float), 0.0))
+
+
+def _first(given: NDArray[np.float64], size: float) -> NDArray[np.int64]:
+    """Numbers of the first of the least values along the last axis."""
+    least = np.nanmin(given, axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore"):  # of an infinite one there is no share
+        most = np.where(np.isfinite(least), least + TIE * np.maximum(np.abs(least), size), least)
+    return np.asarray(np.argmax(given <= most, axis=-1))
 
 
 def ranked(values: ArrayLike, size: float) -> list[int]:

@@ -11,7 +11,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.alternatives import least_of_convex
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Verdict
-from alula.fea.doubts.force_doubt import measures
+from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
 from alula.fea.motion.buckling_history import factors_over_motion
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.link_history import link_histories
@@ -167,7 +167,8 @@ def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
     def worst(one, link: str) -> float:
         body = one.case.body(link)
         acting = link_loads("air", link, body, one.forces["air"], one.loads["air"])
-        return max(measures(one.case, link, acting.chosen(i))[0] for i in range(len(every)))
+        poses = [on_plates(one.case, link, acting.chosen(i)) for i in range(len(every))]
+        return float(numbers_by_hand(one.case, link, poses)[0].max())
 
     others = [solve_case_motion(swept(c, c, c)) for c in (1.2, 5.0, *RANDOM[:2])]
     for link in moved.case.checked_links:

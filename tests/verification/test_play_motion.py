@@ -15,8 +15,8 @@ from told_motion import record, rows, texts
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.source import SourceKind
-from alula.fea.doubts.force_doubt import measures
 from alula.fea.findings.of_motion import motion_findings
+from alula.fea.links.link_by_hand import numbers_by_hand
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.loosened import joint_growth, loosened
 from alula.fea.refine.refinement import Effort
@@ -230,8 +230,10 @@ def test_an_envelope_holds_the_linkage_with_another_coupler() -> None:
         """Stress by hand and force at B, the most of all poses, of a linkage without play."""
         of = solve_case_motion(case)
         every = [link_loads("push", "rocker", case.body("rocker"), of.forces["push"], of.loads["push"])]
-        hands = [measures(case, "rocker", every[0].chosen(pose))[0] for pose in range(len(of.motion.angles))]
-        return max(hands), float(np.linalg.norm(of.forces["push"].forces["B"], axis=1).max())
+        poses = [(every[0].chosen(pose),) for pose in range(len(of.motion.angles))]
+        return float(numbers_by_hand(case, "rocker", poses)[0].max()), float(
+            np.linalg.norm(of.forces["push"].forces["B"], axis=1).max()
+        )
 
     of, every = solve_case_motion(rocker("0.8 mm")), np.ones(7, dtype=np.bool_)
     shares = loosened(of, every)["push", "rocker"], joint_growth(of, "push", "B", every)

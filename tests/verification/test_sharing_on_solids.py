@@ -12,7 +12,8 @@ from tilting_pins import PLA, loaded
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.sought import LEFT
-from alula.fea.doubts.force_doubt import measures, outermost, sharing_answers, sharing_doubt
+from alula.fea.doubts.force_doubt import outermost, sharing_answers, sharing_doubt
+from alula.fea.links.link_by_hand import numbers_by_hand
 from alula.fea.links.solid_result import link_task
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from alula.fea.solid.solution import SolidSolution, solve_solid
@@ -38,9 +39,8 @@ def worst() -> Reactions:
     """The way under which the rocker bears most, by hand."""
     case, statics, forces = in_plane()
     body, loads = case.body("rocker"), statics.loads["l"]
-    return max(
-        forces.sharings, key=lambda one: measures(case, "rocker", link_loads("l", "rocker", body, one, loads))[0]
-    )
+    acting = [(link_loads("l", "rocker", body, one, loads),) for one in forces.sharings]
+    return forces.sharings[int(numbers_by_hand(case, "rocker", acting)[0].argmax())]
 
 
 @cache

@@ -19,9 +19,8 @@ from alula.fea.common.scatter import Scatter, compliance_scatter
 from alula.fea.common.sought import LEFT
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
-from alula.fea.doubts.force_doubt import stress_by_hand
 from alula.fea.judging.walls import EXACT, ROUND, wall_factors, wall_outcome
-from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.links.link_by_hand import link_by_hand, numbers_by_hand
 from alula.fea.modes.wall_modes import WallMode
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.envelope_outcomes import wall_outcomes
@@ -295,11 +294,11 @@ def test_over_a_motion_play_and_the_sharing_of_couples_widen_the_band_and_edges_
     over.shares[key] = Scatter(high=9.0)
     [history] = over.loaded["rocker"]
     ways = [(history.chosen(pose),) for pose in (0, 6)]
-    stressed = [stress_by_hand(case, "rocker", way) for way in ways]
+    stressed = numbers_by_hand(case, "rocker", ways)[0].tolist()
     high = max(stressed) / min(stressed)
     assert high > 1.0
     high += LEFT * (high - 1.0)  # what a search may have left
-    first, second = sorted(ways, key=lambda way: stress_by_hand(case, "rocker", way))
+    first, second = (ways[i] for i in np.argsort(stressed))
     over.ways[key] = LinkAnswers(stated=first, others=(second,), stress=widest(COUPLES), displacement=widest(COUPLES))
     [shared] = [one for one in over.outcomes({}) if one.quantity is Quantity.WALLS]
     assert shared.value.low == pytest.approx(plain.value.low / high)
