@@ -2,23 +2,23 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.alternatives import Alternatives
-from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
-from alula.fea.doubts.load_growth import LEAST, Growths
+from alula.fea.doubts.load_growth import LEAST, Growths, telling
 from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.standing.joint_forces import JointForces, joint_forces
-from alula.fea.superposition.link_answers import LinkAnswers
+from alula.fea.superposition.link_answers import LinkAnswers, Rule
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.bodies.body import Body
 from alula.loads.case.case import Case
@@ -31,18 +31,12 @@ Real = NDArray[np.float64]
 
 OUT_OF_PLANE = [2, 3, 4]
 """Components of a wrench that equilibrium in the plane does not give."""
-COLUMN = 2
-"""Number of the buckling factor's inverse among what hand calculation tells of a link."""
 
 
 def play_doubt(
     case: Case, load_case: str, forces: JointForces, loads: Sequence[Load], links: Sequence[str] | None = None
 ) -> Growths:
-    """Return by how much stress, displacement of links and joint forces may differ by the play of pins.
-
-    A link's stress by hand is calculated with every joint with play at its end in x and in y. The sizes of these
-    slopes add up; it is calculated once more at the worst combination either way, and the outer of both counts. So are
-    its displacement and the inverse of its buckling factor.
+    """Return by how much stress, displacement and columns of links, and joint forces, may differ by play, by hand.
 
     Parameters
     ----------
@@ -65,43 +59,13 @@ def play_doubt(
         return Growths()
     links, source = case.checked_links if links is None else links, play_source(play.clearances)
     joints = {name: _scatter(span, source) for name, span in play.forces.items()}
-    if play.through_dead_point or play.nominal is None:
-        lost = dict.fromkeys(links, Scatter(low=0.0, high=np.inf, sources=(source,)))
-        return Growths(stress=lost, displacement=lost, joints=joints, columns=lost)
-    ends = {name: _ends(play, forces, name) for name in play.loose.radii}
-    nominal = _reactions(play, forces, play.nominal), play.nominal
-    stress: dict[str, Scatter] = {}
-    displacement: dict[str, Scatter] = {}
-    columns: dict[str, Scatter] = {}
+    kinds: tuple[dict[str, Scatter], ...] = ({}, {}, {})
     for link in links:
-        acting = link_loads(load_case, link, case.body(link), forces.reactions, loads)
-        told = partial(_told, case, load_case, link, acting)
-        plain, *each = told([nominal, *(end for found in ends.values() for end in found)])
-        numbers = iter(each)
-        tried = {name: np.array([next(numbers) for _ in found]).reshape(-1, 3) for name, found in ends.items()}
-        steps = {name: found - plain for name, found in tried.items()}
-        for name, found in tried.items():
-            # Where nothing presses the link any more, the other end tells how compression changes.
-            if (idle := (found[:, COLUMN] == 0.0) & (plain[COLUMN] > 0.0)).any():
-                others = _ends(play, forces, name, -1.0)
-                if len(others) == len(found):
-                    steps[name][idle, COLUMN] = plain[COLUMN] - told(others)[idle, COLUMN]
-        slopes = [{name: step[:, i] for name, step in steps.items()} for i in range(3)]
-        slack = [sum(float(np.linalg.norm(slope)) for slope in own.values()) for own in slopes]
-        worst = [
-            list(_worst(play, forces, own)) if 2.0 * least > LEAST * value else []
-            for own, least, value in zip(slopes, slack, plain, strict=True)
-        ]
-        numbers = iter(told([end for found in worst for end in found]))
-        for i, kept in enumerate((stress, displacement, columns)):
-            reached = [float(next(numbers)[i]) for _ in worst[i]]
-            low, high = min(plain[i] - slack[i], *reached, plain[i]), max(plain[i] + slack[i], *reached, plain[i])
-            kept[link] = _scatter(Span(value=plain[i], low=max(low, 0.0), high=high), source)
-            if case.layered and i != COLUMN:  # couples between layers go with the forces of the link's pins
-                held = [joints[name] for name in case.linkage.joints_of(link)]
-                least, most = min(one.low for one in held), max(one.high for one in held)
-                kept[link] = replace(kept[link], low=min(kept[link].low, least), high=max(kept[link].high, most))
-    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints), columns=_open(columns))
+        told = _play_on_link(case, load_case, link, forces, loads)
+        for kind, rule, numbers in zip(kinds, told.rules, told.by_hand.tolist(), strict=True):
+            kind[link] = rule(numbers[0], numbers[1:])
+    stress, displacement, columns = map(telling, kinds)
+    return Growths(stress=stress, displacement=displacement, joints=telling(joints), columns=columns)
 
 
 def play_at_joint(play: Play | None, joint: str, *, driven: bool) -> Scatter:
@@ -135,9 +99,9 @@ def play_answers(
 ) -> LinkAnswers | None:
     """Return what acts on a link as pins stand otherwise in their holes.
 
-    Every joint with play stands at its ends in x and in y, then all joints stand where the link's stress and its
-    displacement by hand are largest and least. The sizes of what the single joints make add up; what all make together
-    counts as well.
+    Every joint with play stands at its ends in x and in y, then all joints stand where the link's stress, displacement
+    and buckling factor by hand are largest and least. The sizes of what the single joints make add up; what all make
+    together counts as well.
 
     Parameters
     ----------
@@ -150,65 +114,66 @@ def play_answers(
     LinkAnswers or None
         None without play.
     """
-    play, body = forces.play, case.body(link)
-    if play is None:
+    if forces.play is None:
         return None
+    told = _play_on_link(case, load_case, link, forces, loads)
+    stated, *others = told.answers
+    return LinkAnswers(stated=stated, others=tuple(others), stress=told.rules[0], displacement=told.rules[1])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _OnLink:
+    """What play makes of a link: answers, as stated first, their numbers by hand (3, n), and the rule of each number.
+
+    Numbers are stress, displacement and inverse of the buckling factor.
+    """
+
+    answers: Sequence[Plates]
+    by_hand: Real
+    rules: tuple[Rule, Rule, Rule]
+
+
+def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> _OnLink:
+    play, body = forces.play, case.body(link)
+    assert play is not None
     source, acting = play_source(play.clearances), link_loads(load_case, link, body, forces.reactions, loads)
     if play.through_dead_point or play.nominal is None:
-
-        def endless(_value: float, _others: Sequence[float]) -> Scatter:
-            return Scatter(low=0.0, high=np.inf, sources=(source,))
-
-        return LinkAnswers(stated=on_plates(case, link, acting), others=(), stress=endless, displacement=endless)
+        lost = Scatter(low=0.0, high=np.inf, sources=(source,))
+        without = [on_plates(case, link, acting)]
+        return _OnLink(answers=without, by_hand=np.zeros((3, 1)), rules=(lambda *_: lost,) * 3)
     at = partial(_at, load_case, link, body, acting)
-    stated = at(_reactions(play, forces, play.nominal), play.nominal)
-    others, places = list[LinkLoads](), list[tuple[str, int]]()
-    for name in play.loose.radii:
-        for i, share in enumerate(np.eye(2)[: len(play.loose.directions(name))]):
-            for sign in (1.0, -1.0):
-                here = play.at(play.loose.offsets({name: sign * share}))
-                if here is not None:
-                    others.append(at(_reactions(play, forces, here), here))
-                    places.append((name, i))
-    plain, *tried = numbers_by_hand(case, link, [on_plates(case, link, one) for one in (stated, *others)]).T
-    for k in (0, 1):
+    ends = _ends(play, forces)
+    standing = [(_reactions(play, forces, play.nominal), play.nominal), *(end for _, _, end in ends)]
+    answers = [on_plates(case, link, at(*state)) for state in standing]
+    numbers = numbers_by_hand(case, link, answers, columns=True)
+    worst = list[Plates]()
+    for plain, *tried in numbers.tolist():
         slopes = {name: np.zeros(2) for name in play.loose.radii}
-        for (name, i), one in reversed(list(zip(places, tried, strict=True))):  # that at the end in x or y rules
-            slopes[name][i] = one[k] - plain[k]
-        others += [at(*end) for end in _worst(play, forces, slopes)]
+        for (name, i, _), one in reversed(list(zip(ends, tried, strict=True))):  # that at the end in x or y rules
+            slopes[name][i] = one - plain
+        if 2.0 * sum(float(np.linalg.norm(slope)) for slope in slopes.values()) > LEAST * plain:
+            worst += [on_plates(case, link, at(*state)) for state in _worst(play, forces, slopes)]
+    if worst:
+        numbers = np.hstack([numbers, numbers_by_hand(case, link, worst, columns=True)])
     held = [_scatter(play.forces[name], source) for name in case.linkage.joints_of(link)] if case.layered else []
 
-    def rule(value: float, found: Sequence[float]) -> Scatter:
-        if not value > 0.0:
-            return Scatter()
+    def alone(value: float, found: Sequence[float]) -> Scatter:
         steps = {name: np.zeros(2) for name in play.loose.radii}
-        for (name, i), one in zip(places, found, strict=False):
+        for (name, i, _), one in zip(ends, found, strict=False):
             steps[name][i] = max(steps[name][i], abs(one - value))
         slack = sum(float(np.linalg.norm(step)) for step in steps.values())
-        low, high = (end / value for end in (min(value - slack, *found), max(value + slack, *found)))
-        # Couples between layers go with the forces of the link's pins.
-        return Scatter(
-            low=max(min(low, *(one.low for one in held)), 0.0) if held else max(low, 0.0),
-            high=max(high, *(one.high for one in held)) if held else high,
-            sources=(source,),
-        )
+        low, high = min(value - slack, *found, value), max(value + slack, *found, value)
+        return _scatter(Span(value=value, low=max(low, 0.0), high=high), source)
 
-    return LinkAnswers(
-        stated=on_plates(case, link, stated),
-        others=tuple(on_plates(case, link, one) for one in others),
-        stress=rule,
-        displacement=rule,
-    )
+    def with_couples(value: float, found: Sequence[float]) -> Scatter:
+        """Couples between layers go with the forces of the link's pins."""
+        one = alone(value, found)
+        if not held or not value > 0.0:
+            return one
+        low, high = min(one.low, *(pin.low for pin in held)), max(one.high, *(pin.high for pin in held))
+        return Scatter(low=max(low, 0.0), high=high, sources=(source,))
 
-
-def _told(
-    case: Case, load_case: str, link: str, plain: LinkLoads, states: Sequence[tuple[Reactions, Displaced]]
-) -> Real:
-    """Stress, displacement and inverse of the buckling factor (n, 3) of a link by hand, with its joints at offsets."""
-    if not states:
-        return np.zeros((0, 3))
-    found = (_at(load_case, link, case.body(link), plain, *state) for state in states)
-    return numbers_by_hand(case, link, [on_plates(case, link, one) for one in found], columns=True).T
+    return _OnLink(answers=[*answers, *worst], by_hand=numbers, rules=(with_couples, with_couples, alone))
 
 
 def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:
@@ -232,11 +197,17 @@ def _across(wrench: Real, plain: Real) -> Real:
     return found
 
 
-def _ends(play: Play, forces: JointForces, name: str, sign: float = 1.0) -> list[tuple[Reactions, Displaced]]:
-    """Forces with a joint at the end of its play, in each of its directions, or against it."""
-    shares = sign * np.eye(2)[: len(play.loose.directions(name))]
-    ends = [play.at(play.loose.offsets({name: share})) for share in shares]
-    return [(_reactions(play, forces, end), end) for end in ends if end is not None]
+@lru_cache(maxsize=2)
+def _ends(play: Play, forces: JointForces) -> tuple[tuple[str, int, tuple[Reactions, Displaced]], ...]:
+    """Joint, number of a direction of its play, and forces with it at an end there; each direction has two ends."""
+    found = []
+    for name in play.loose.radii:
+        for i, share in enumerate(np.eye(2)[: len(play.loose.directions(name))]):
+            for sign in (1.0, -1.0):
+                here = play.at(play.loose.offsets({name: sign * share}))
+                if here is not None:
+                    found.append((name, i, (_reactions(play, forces, here), here)))
+    return tuple(found)
 
 
 def _worst(play: Play, forces: JointForces, slopes: Mapping[str, Real]) -> Iterator[tuple[Reactions, Displaced]]:
@@ -264,10 +235,6 @@ def _scatter(span: Span, source: Source) -> Scatter:
     if not span.value > 0.0:
         return Scatter()
     return Scatter(low=span.low / span.value, high=span.high / span.value, sources=(source,))
-
-
-def _open(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
-    return {name: one for name, one in found.items() if one.high - one.low > LEAST}
 
 
 def shaken(case: Case, load_case: str, forces: JointForces, moved: LargeDisplacement) -> LargeDisplacement:

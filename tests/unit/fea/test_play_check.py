@@ -5,6 +5,7 @@ import tomllib
 from functools import cache
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from edited_cases import PLANAR, edited
 from rocker_case import TOML
@@ -158,13 +159,15 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
     (1, -3) and (0, 2), since nothing presses the link any more with B at its second end, and thrice as much against it.
     """
     told = {"plain": (10.0, 1.0, 1.0), "B0": (13.0, 1.3, 2.0), "B1": (14.0, 1.4, 0.0), "C0": (10.0, 1.0, 1.0),
-            "C1": (12.0, 1.2, 3.0), "-B0": (7.0, 0.7, 0.0), "-B1": (6.0, 0.6, 4.0),
-            "most": (19.0, 1.5, 2.0), "least": (2.5, 0.5, 0.5)}  # fmt: skip
+            "C1": (12.0, 1.2, 3.0), "-B0": (7.0, 0.7, 0.0), "-B1": (6.0, 0.6, 4.0), "-C0": (10.0, 1.0, 1.0),
+            "-C1": (8.0, 0.8, 0.0), "most": (19.0, 1.5, 2.0), "least": (2.5, 0.5, 0.5)}  # fmt: skip
     stubs = {
-        "_told": lambda *given: told[given[-1]],
-        "_ends": lambda play, forces, name, sign=1.0: [
-            (None, f"{'' if sign > 0.0 else '-'}{name}{i}") for i in range(2)
+        "_ends": lambda *_: [
+            (name, i, (None, f"{sign}{name}{i}")) for name in ("B", "C") for i in range(2) for sign in ("", "-")
         ],
+        "_at": lambda *given: given[-1],
+        "on_plates": lambda case, link, loads: (loads,),
+        "numbers_by_hand": lambda case, link, answers, columns: np.array([told[one] for (one,) in answers]).T,
         "_worst": lambda *_: [(None, "most"), (None, "least")],
         "_reactions": lambda *_: None,
         "link_loads": lambda *_: None,
