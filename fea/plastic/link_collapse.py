@@ -82,6 +82,8 @@ class LinkCollapse:
         Its faces.
     zone : ndarray, shape (n,)
         Plastic strain at the nodes, at the end of the path.
+    shape : ndarray, shape (n, 3)
+        Displacements of the nodes there, less the rigid motion [mm]; how far it flowed is where the path ends.
     plastic_share : float
         Of the volume that has flowed then.
     unknowns : int
@@ -103,6 +105,7 @@ class LinkCollapse:
     nodes: Real
     boundary: NDArray[np.int64]
     zone: Real
+    shape: Real
     plastic_share: float
     unknowns: int
     solves: int
@@ -239,7 +242,8 @@ def collapse_of(
     if math.isnan(spread):
         other = path(coarse, narrow, like)
         spread = max(wide[1].factor / other[1].factor, 1.0)
-    strain, residual = _under_the_load(held, worst, LineReference(fine, link.line))
+    reference = LineReference(fine, link.line)
+    strain, residual = _under_the_load(held, worst, reference)
     flowed = worst.last.response.past.equivalent
     weights = held.problem.body.weights.reshape(-1)
     return LinkCollapse(
@@ -256,6 +260,7 @@ def collapse_of(
         nodes=fine.nodes,
         boundary=fine.boundary,
         zone=held.at_nodes(flowed),
+        shape=reference.relative(held.displacement(worst.last)),
         plastic_share=float(weights[flowed > NOTHING].sum() / weights.sum()),
         unknowns=fine.unknowns,
         solves=sum(one.problem.solves for one in (held, wide[0], other[0])),

@@ -9,6 +9,7 @@ from pathlib import Path
 from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
+from alula.reports.check.plastic_collapse import governing_collapses
 from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
 from alula.reports.figures.sheet.drawing import Drawing
@@ -76,7 +77,7 @@ def write_report(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from alula.reports.turnable.link import link_models
+    from alula.reports.turnable.link import collapse_models, link_models
     from alula.reports.turnable.moving import LINKAGE, check_linkage
     from alula.reports.turnable.pack import data_block
 
@@ -90,6 +91,7 @@ def write_report(
             drawn = beside.submit(check_pictures, result, page, progress)
             _write_fields(result, folder / FIELDS)
             models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
+            models |= collapse_models(governing_collapses(result), result.case)
             pictures, warnings = drawn.result()
             files = beside.submit(_write_pictures, pictures, folder / PICTURES)  # packing them lets others run
             if warnings:

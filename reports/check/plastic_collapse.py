@@ -97,9 +97,10 @@ def _parts(result: CheckResult) -> Iterator[Part]:
     for link, one in governing_collapses(result).items():
         yield Picture(
             name=f"plastic-{link}",
+            model=f"plastic-{link}",
             alt=f"Plastic zone of link {link} at its collapse",
-            caption=f"Link {link} at {number(one.factor, 3)} times its loads: what has flowed is red, "
-            f"{number(100.0 * one.plastic_share, 2)} % of its volume.",
+            caption=f"Link {link} at {number(one.factor, 3)} times its loads. Of its volume "
+            f"{number(100.0 * one.plastic_share, 2)} % has flowed: red in the picture, with its strain in the model.",
         )
     yield Text(f"Left out: {joined(LEFT_OUT)}.", "small")
 

@@ -216,9 +216,7 @@ def scene_from(
     doubt = "" if meshes is None else STATUS_NOTES.get(meshes.status, "")
     space, values = stress.space, stress.decisive(brittle=brittle)
     triangles = surface_triangles(space.boundary)
-    length = float(np.ptp(space.nodes[:, 0]))
-    largest = float(np.linalg.norm(displacement, axis=1).max())
-    scale = round_scale(_VISIBLE_SHIFT * length / largest) if largest > 0.0 else 1.0
+    scale = shown_scale(space.nodes, displacement)
     hottest = int(np.argmax(values))
     reach = 0.65 * min(
         2.0 * max(section.half_y, section.half_z),
@@ -258,6 +256,24 @@ def surface_triangles(faces: Int) -> Int:
         (m, 3); four of each quadratic face.
     """
     return faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+
+
+def shown_scale(nodes: Real, displacement: Real) -> float:
+    """Return the factor with which displacements are drawn.
+
+    Parameters
+    ----------
+    nodes : array
+        (n, 3) of a link in its frame [mm].
+    displacement : array
+        (n, 3) [mm].
+
+    Returns
+    -------
+    float
+    """
+    largest = float(np.linalg.norm(displacement, axis=1).max())
+    return round_scale(_VISIBLE_SHIFT * float(np.ptp(nodes[:, 0])) / largest) if largest > 0.0 else 1.0
 
 
 def round_scale(value: float) -> float:

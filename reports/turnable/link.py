@@ -1,4 +1,4 @@
-"""The model of a link: stress and displacements of every variant on the surface of its solid."""
+"""The model of a link: stress and displacements of every variant, or what flowed at its collapse, on its surface."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,12 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult, VariantPeak
+from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.solid.stress import stress_field
+from alula.loads.case.case import Case
 from alula.reports.figures.figures import COLOURS, colour_range
-from alula.reports.figures.scene import Scene, scene_of
+from alula.reports.figures.scene import Scene, View, scene_of, shown_scale, strip_view
 from alula.reports.turnable.pack import data_block, indices, quantised
 from alula.reports.turnable.surface import CutSurface, cut_surface
 from alula.reports.words.numbers import fixed, number
+
+Real = NDArray[np.float64]
+
+
+SHOWN = 0.9
+"""Share of the nodes that flow whose strain is below the last colour: beside rims it is many times that of the rest."""
 
 
 def link_name(link: str) -> str:
@@ -27,6 +35,20 @@ def link_name(link: str) -> str:
     str
     """
     return f"link-{link}"
+
+
+def collapse_name(link: str) -> str:
+    """Return the name of the model of a link's plastic collapse.
+
+    Parameters
+    ----------
+    link : str
+
+    Returns
+    -------
+    str
+    """
+    return f"plastic-{link}"
 
 
 def link_models(result: CheckResult) -> dict[str, str]:
@@ -46,6 +68,26 @@ def link_models(result: CheckResult) -> dict[str, str]:
         link_name(link): data_block(link_model(link, found, result.case.links[link].points))
         for link, found in worst.items()
         if isinstance(found, SolidResult)
+    }
+
+
+def collapse_models(found: Mapping[str, LinkCollapse], case: Case) -> dict[str, str]:
+    """Return the models of links at their plastic collapse.
+
+    Parameters
+    ----------
+    found : mapping of str to LinkCollapse
+        By link.
+    case : Case
+
+    Returns
+    -------
+    dict
+        ``collapse_name`` -> data block.
+    """
+    return {
+        collapse_name(link): data_block(collapse_model(link, one, case.links[link].points))
+        for link, one in found.items()
     }
 
 
@@ -72,23 +114,15 @@ def link_model(name: str, link: SolidResult, points: Mapping[str, tuple[float, f
     cases = [case for case in link.solution.cases if case.load == link.governing_case.load]
     named: list[tuple[int, str | None]] = [(case.span, case.transfer) for case in cases]
     governing = named.index((link.governing.span, link.governing.transfer))
-    low, high = space.nodes.min(axis=0), space.nodes.max(axis=0)
     return {
         "name": name,
         "measure": scene.measure,
+        "seek": "Largest stress",
         "unit": "MPa",
         "top": colour_range(scene)[1],
         "scale": scene.scale,
-        "colours": [colour.removeprefix("#") for colour in COLOURS],
-        "points": {point: list(at) for point, at in points.items()},
-        "high": float(high[2]),
-        "corners": [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])],
         "close": scene.close.half_height,
-        "toward": scene.strip.toward.tolist(),
-        "up": scene.strip.up.tolist(),
-        "nodes": quantised(space.nodes[cut.nodes]),
-        "faces": indices(cut.faces),
-        "edges": indices(cut.edges),
+        **_body(space.nodes, cut, points, scene.strip),
         "governing": governing,
         "variants": [
             _variant(link, scene, cut, case.displacement, peak, governs=place == governing)
@@ -97,11 +131,71 @@ def link_model(name: str, link: SolidResult, points: Mapping[str, tuple[float, f
     }
 
 
+def collapse_model(name: str, found: LinkCollapse, points: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    """Return the record of a link at its plastic collapse, which ``source/link.js`` draws too.
+
+    Parameters
+    ----------
+    name : str
+    found : LinkCollapse
+    points : mapping
+        As of ``link_model``.
+
+    Returns
+    -------
+    dict
+    """
+    cut, strain = cut_surface(found.nodes, found.boundary), 100.0 * found.zone
+    surface, scale = strain[cut.nodes], shown_scale(found.nodes, found.shape)
+    hottest = int(np.argmax(surface))
+    top = float(np.quantile(surface[surface > 0.0], SHOWN)) if surface.any() else 1.0
+    return {
+        "name": name,
+        "measure": "plastic strain",
+        "seek": "Largest strain",
+        "unit": "%",
+        "top": top,
+        "scale": scale,
+        "close": 0.1 * float(np.ptp(found.nodes[:, 0])),
+        **_body(found.nodes, cut, points, strip_view(np.vstack([found.nodes, found.nodes + scale * found.shape]))),
+        "governing": 0,
+        "variants": [
+            {
+                "title": f"at {number(found.factor, 3)} times its loads",
+                "peak": [
+                    f"largest: {number(surface[hottest], 2)} % where the path ends; it grows as the link flows on"
+                ],
+                "beyond": bool(surface[hottest] > top),
+                "hottest": hottest,
+                "largest": float(np.linalg.norm(found.shape, axis=1).max()),
+                "displacement": quantised(found.shape[cut.nodes]),
+                "values": quantised(surface),
+            }
+        ],
+    }
+
+
+def _body(nodes: Real, cut: CutSurface, points: Mapping[str, tuple[float, float]], view: View) -> dict[str, Any]:
+    """Return the surface, the names on it and how it is looked at first."""
+    low, high = nodes.min(axis=0), nodes.max(axis=0)
+    return {
+        "colours": [colour.removeprefix("#") for colour in COLOURS],
+        "points": {point: list(at) for point, at in points.items()},
+        "high": float(high[2]),
+        "corners": [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])],
+        "toward": view.toward.tolist(),
+        "up": view.up.tolist(),
+        "nodes": quantised(nodes[cut.nodes]),
+        "faces": indices(cut.faces),
+        "edges": indices(cut.edges),
+    }
+
+
 def _variant(
     link: SolidResult,
     scene: Scene,
     cut: CutSurface,
-    displacement: NDArray[np.float64],
+    displacement: Real,
     peak: VariantPeak,
     *,
     governs: bool,

@@ -98,6 +98,10 @@ def test_an_eye_bears_what_its_ring_bears_and_at_most_its_net_section():
     flowed = found.nodes[found.zone > 0.0]
     assert np.minimum(np.abs(flowed[:, 0]), np.abs(flowed[:, 0] - LENGTH)).max() < WIDTH
     assert 0.01 < found.plastic_share < 0.6
+    about = [np.hypot(found.nodes[:, 0] - x, found.nodes[:, 1]) < 1.01 * HOLE for x in (0.0, LENGTH)]
+    near, far = (found.shape[bore, 0].mean() for bore in about)
+    assert abs(near) < 0.05 * far
+    assert far > NET / E  # it is drawn out
 
 
 COARSE = displacement_space(mesh(1.6))

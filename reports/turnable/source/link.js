@@ -1,4 +1,4 @@
-// A link: the stress that decides, on its deformed shape, for each variant in its band.
+// A link: the stress that decides, for each variant in its band, or the plastic strain at its collapse, on its deformed shape.
 
 import { Vector3 } from "three";
 import { indices, reals } from "./data.js";
@@ -50,9 +50,9 @@ export function startLink(holder, record) {
 
   function point(node) {
     chosen = node;
-    const { value: stress, place, displacement } = value(node);
+    const { value: size, place, displacement } = value(node);
     const where = ["x", "y", "z"].map((axis, k) => `${axis} = ${fixed(place[k], 2)}`).join(", ");
-    reading.textContent = `${number(stress)} ${record.unit} at ${where} mm; displacement ${number(Math.hypot(...displacement), 3)} mm`;
+    reading.textContent = `${number(size)} ${record.unit} at ${where} mm; displacement ${number(Math.hypot(...displacement), 3)} mm`;
     stage.redraw();
   }
 
@@ -74,7 +74,7 @@ export function startLink(holder, record) {
   });
   stage.canvas.addEventListener("click", pickAt);
   stage.picture.after(reading);
-  stage.tools.append(button("Largest stress", "Show the place of the largest stress", () => face(variant.hottest)));
+  stage.tools.append(button(record.seek, `Show the place of the ${record.seek.toLowerCase()}`, () => face(variant.hottest)));
   if (variants.length > 1) {
     stage.tools.append(choice("Variant", variants.map(({ title }, place) => title + (place === record.governing ? " (value)" : "")), record.governing, take));
   }

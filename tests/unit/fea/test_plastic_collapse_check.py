@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from edited_cases import edited
+from plastic_problems import FOUND
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity, Verdict
@@ -12,12 +13,12 @@ from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import plastic_collapse
 from alula.fea.judging.link_result import by_hand_shares
 from alula.fea.judging.plastic_collapse import collapse_outcomes
-from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.plastic.load_path import NoPlasticStateError
 from alula.geometry.base.errors import CaseError
 from alula.reports.check.plastic_collapse import collapse_section
 from alula.reports.sections.section import Picture
 from alula.reports.sentences import told
+from alula.reports.turnable.link import collapse_name
 
 CHECK = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5 }'
 FRONT = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
@@ -25,24 +26,6 @@ OWN = (
     'materials.own={{ title = "Aluminium", density = "2800 kg/m^3", youngs_modulus = "70 GPa", poissons_ratio = 0.33, '
     'yield_strength = "400 MPa", ultimate_strength = "480 MPa", strength = "yield", '
     "minimum_safety_factor = 2.0{}, sources = {{}}, status = {{}} }}"
-)
-FOUND = LinkCollapse(
-    factor=2.0,
-    low=1.9,
-    high=2.2,
-    mesh_error=0.05,
-    pressure=1.0,
-    transfer=None,
-    ended="limit",
-    unloaded=0.0,
-    strain=0.001,
-    residual=0.01,
-    nodes=np.zeros((6, 3)),
-    boundary=np.arange(6)[None],
-    zone=np.ones(6),
-    plastic_share=0.3,
-    unknowns=18,
-    solves=20,
 )
 
 
@@ -114,7 +97,8 @@ def test_from_the_case_to_the_section(monkeypatch):
     record = section.data["plastic_collapse"]["load_cases"]
     assert record["heel-strike"]["links"]["front"]["factor"] == 2.0
     assert record["late-stance"]["links"] == {}
-    assert [part.name for part in section.parts if isinstance(part, Picture)] == ["plastic-front"]
+    [picture] = [part for part in section.parts if isinstance(part, Picture)]
+    assert (picture.name, picture.model) == ("plastic-front", collapse_name("front"))
 
 
 @pytest.mark.parametrize(

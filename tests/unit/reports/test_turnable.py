@@ -12,11 +12,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mesh_states import state
+from plastic_problems import FOUND
 from told import as_json, render
 
 from alula.fea.solid.stress import stress_field
 from alula.reports.figures.figures import colours
-from alula.reports.turnable.link import link_model, link_models, link_name
+from alula.reports.turnable.link import collapse_models, link_model, link_models, link_name
 from alula.reports.turnable.pack import data_block, indices, quantised
 from alula.reports.turnable.script import FOLDER, built_from, sources_digest, viewer
 from alula.reports.turnable.surface import cut_surface
@@ -194,6 +195,27 @@ def test_the_surface_is_that_of_the_solid(record, result):
     p, q, r, s = np.moveaxis(space.nodes[space.cells[:, :4]], 1, 0)
     volume = np.einsum("ij,ij->i", q - p, np.cross(r - p, s - p)).sum() / 6.0
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0 == pytest.approx(volume, rel=1e-4)
+
+
+def test_the_plastic_strain_of_a_link_at_its_collapse(result):
+    """Where a quarter of it flows: nine in ten of its nodes below the last colour, the largest with its place."""
+    space = result.load_cases["weight"].links["GF"].solution.space
+    span = np.ptp(space.nodes[:, 0])
+    share = (space.nodes[:, 0] - space.nodes[:, 0].min()) / span
+    zone = np.where(share > 0.75, np.random.default_rng(1).random(len(share)), 0.0)
+    shape = share[:, None] * [0.0, span, 0.0]
+    found = replace(FOUND, nodes=space.nodes, boundary=space.boundary, zone=zone, shape=shape)
+    record = json.loads(collapse_models({"GF": found}, result.case)["plastic-GF"])
+    nodes, moved, values = fields(record, 0)
+    near = np.linalg.norm(space.nodes[:, None] - nodes[None], axis=2).argmin(axis=0)
+    assert values == pytest.approx(100.0 * zone[near], abs=1e-2)
+    assert moved == pytest.approx(shape[near], abs=1e-4 * span)
+    assert (record["measure"], record["unit"], record["scale"]) == ("plastic strain", "%", 0.05)
+    flows = values[values > 1e-2]
+    assert np.mean(flows <= record["top"]) == pytest.approx(0.9, abs=0.02)
+    [variant] = record["variants"]
+    assert variant["beyond"]
+    assert values[variant["hottest"]] == values.max()
 
 
 def test_colours_are_those_of_the_picture(record):
