@@ -26,12 +26,12 @@ CLOSE, END = 1.12, 4.5
 lost the eyes."""
 
 
-def strip():
+def strip(**hardening):
     """A strip with a hole of half its width, in plane stress."""
     p = strip_problem(0.5, 2, 3, 2, E=E, nu=NU)
     for node in np.flatnonzero(p.space.nodes[:, 2] > 1e-9):
         p.fixed.pop(3 * int(node) + 2, None)
-    return loaded(p)
+    return loaded(p, law(**hardening))
 
 
 def square_eyes():
@@ -78,7 +78,9 @@ def calculix_path(load, states, *, time_limit=600.0):
             deck.write(f"*NODE, NSET=LED\n{node}, 0., 0., 0.\n*EQUATION\n{len(terms)}\n")
             deck.writelines(f"{', '.join(terms[i : i + 4])}\n" for i in range(0, len(terms), 4))
             deck.write(f"*MATERIAL, NAME=MATERIAL\n*ELASTIC\n{yields.E!r}, {yields.nu!r}\n")
-            deck.write(f"*PLASTIC\n{yields.strength!r}, 0.\n*SOLID SECTION, ELSET=EALL, MATERIAL=MATERIAL\n*BOUNDARY\n")
+            rows = [(0.0, 1.0), *yields.hardening]
+            deck.write("*PLASTIC\n" + "".join(f"{factor * yields.strength!r}, {strain!r}\n" for strain, factor in rows))
+            deck.write("*SOLID SECTION, ELSET=EALL, MATERIAL=MATERIAL\n*BOUNDARY\n")
             deck.writelines(f"{u // 3 + 1}, {u % 3 + 1}\n" for u in load.fixed.tolist())
             for state in states:
                 amount = state.control * load.work / size

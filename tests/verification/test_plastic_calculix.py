@@ -27,10 +27,11 @@ def test_the_load_follows_what_calculix_found(body):
 
 
 @pytest.mark.skipif(calculix.installed() is None, reason="CalculiX (ccx) is not on PATH")
-def test_calculix_follows_the_same_path():
-    load = strip()
+@pytest.mark.parametrize("hardening", [(), ((0.01, 1.2), (0.05, 1.5))], ids=["perfect", "hardening"])
+def test_calculix_follows_the_same_path(hardening):
+    load = strip(hardening=hardening)
     states = our_path(load)
     factors, displacements = calculix_path(load, states)
-    assert [state.factor for state in states] == pytest.approx(factors, rel=1e-5)
+    assert [state.factor for state in states] == pytest.approx(factors, rel=1e-4)
     for state, u in zip(states, displacements, strict=True):
-        assert np.abs(state.displacement.reshape(-1, 3) - u).max() < 1e-4 * np.abs(u).max()
+        assert np.abs(state.displacement.reshape(-1, 3) - u).max() < 2e-4 * np.abs(u).max()
