@@ -253,11 +253,22 @@ class _Stated:
             return _told([dict.fromkeys(kind, (1.0 / (1.0 + most), 1.0 + most)) for kind in plain])
         rise = max(most / nominal if nominal > 0.0 else high, 1.0)
         found = []
-        for before, after in zip(plain, self.by_hand(moved.grown), strict=True):
+        for before, after in zip(self._undeformed(moved, plain), self.by_hand(moved.grown), strict=True):
             least = NOTHING * max(before.values(), default=0.0)
             over = {n: rise * (after[n] / value - 1.0) if value > least else 0.0 for n, value in before.items()}
             found.append({name: (max(1.0 + min(x, 0.0), 0.0), 1.0 + max(x, 0.0)) for name, x in over.items()})
         return _told(found)
+
+    def _undeformed(self, moved: LargeDisplacement, plain: Numbers) -> Numbers:
+        """Numbers on the undeformed shape, with pins as they are on the deformed one.
+
+        Frames that deform have tight pins. What pins that run make of couples between layers is no growth, and has a
+        band of its own (``alula.fea.doubts.force_doubt``).
+        """
+        if not self.case.layered or moved.frame is None or moved.solution is None:
+            return plain
+        tight = moved.frame.reactions(moved.solution.joint_wrenches, moved.solution.residual)
+        return replace(self, reactions=tight).by_hand(moved)
 
     def by_hand(self, moved: LargeDisplacement) -> Numbers:
         """Numbers of the load case on a shape."""

@@ -373,16 +373,41 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     every = (forces.reactions, *forces.sharings)
     plain, *others = stresses_between(case, joint, np.array([one.joints[joint].wrench for one in every]))
 
-    def widened(name: str) -> Band:
+    def widened(name: str, least: float = 0.0) -> Band:
         value, sizes = getattr(found, name).value, [getattr(one, name).value for one in (plain, *others)]
         # Shares first: the least is then 1 at most, and the largest 1 at least, in spite of rounding.
         low, high = sought([value * (size / sizes[0]) for size in sizes] if sizes[0] > 0.0 else [value, *sizes])
-        return Band(value=value, low=max(low, 0.0), high=high, sources=COUPLES)
+        low = max(low, min(least, value))
+        width = high / low if low > 0.0 else math.inf
+        return Band(value=value, low=low, high=high, sources=(replace(COUPLES[0], width=width),))
 
     _, most = sought([one.shear / (plain.shear or math.inf) for one in (plain, *others)])
     shear = found.shear * most
-    moment, bending, equivalent = map(widened, ("moment", "bending", "equivalent"))
-    return replace(found, moment=moment, bending=bending, shear=shear, equivalent=equivalent)
+    equivalent = widened("equivalent", crossing(case, joint, reaction))
+    return replace(found, moment=widened("moment"), bending=widened("bending"), shear=shear, equivalent=equivalent)
+
+
+def crossing(case: Case, joint: str, reaction: JointReaction) -> float:
+    """Return the least stress of a pin between layers: that of its force in shear, which crosses between the eyes.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    reaction : JointReaction
+
+    Returns
+    -------
+    float
+        Von Mises stress at the neutral axis [MPa], however the pin stands in its holes.
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
+    """
+    diameter, poisson = _pin_of(case, joint)
+    return math.sqrt(3.0) * _shear_stress(float(np.hypot(*reaction.wrench[:2])), diameter, poisson)
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:

@@ -9,7 +9,7 @@ of its flexibility, of the load, the moduli, air and friction, and by the play a
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from alula.fea.asked.asked import asked
 from alula.fea.common.band import Band
-from alula.fea.common.reason import reason
+from alula.fea.common.reason import Reason, reason, together
+from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct, play_source
-from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.frame.displacement_band import compliance_range
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
@@ -197,31 +198,91 @@ class LayerGaps:
     @cached_property
     def least(self) -> LayerGap | None:
         """The gap of which least is left, by the low end of its band; None where no link passes over another."""
-        frame, solution = self.moved.frame, self.moved.solution
+        frame, loose, causes = self.moved.frame, clearances(self.case), self.moved.of_loads
         assert frame is not None
-        assert solution is not None
-        soft = compliance_range(self.case, frame, solution).times(stated_scatter(self.case, self.load_case))
-        loose = clearances(self.case)
-        causes = self.moved.of_loads
         told = (*(cause.source for cause in causes), *((play_source(loose),) if loose else ()))
-        sources = distinct(soft.sources, told)
+        sources = distinct(self._soft.sources, told)
         found = []
-        for over in overlaps(frame, self.assembly):
-            closed = np.array(
-                [one.at(over.lower, over.places) - one.at(over.upper, over.places) for one in self._shapes]
-            )
-            free = self._free(frame, over) if loose else np.zeros(len(over.places))
-            ends = np.sort(np.vstack([soft.low * closed, soft.high * closed, closed]), axis=0)
-            k = int(np.argmax(ends[-1] + free))
+        for over, closed in zip(self._overlaps, self._closed, strict=True):
+            free = self._free(frame, over).sum(axis=0) if loose else np.zeros(len(over.places))
+            least, most = closed.min(axis=0), closed.max(axis=0)
+            k = int(np.argmax(most + free))
             left = Band(
                 value=over.gap - float(closed[0, k]),
-                low=-math.inf if any(cause.endless for cause in causes) else over.gap - float(ends[-1][k] + free[k]),
-                high=over.gap - float(ends[0][k] - free[k]),
+                low=-math.inf if any(cause.endless for cause in causes) else over.gap - float(most[k] + free[k]),
+                high=over.gap - float(least[k] - free[k]),
                 sources=sources,
             )
             place = float(over.places[k, 0]), float(over.places[k, 1])
             found.append(LayerGap(names=(over.lower, over.upper), gap=over.gap, left=left, place=place))
         return min(found, key=lambda one: one.left.low, default=None)
+
+    @property
+    def remedy(self) -> Reason | None:
+        """What keeps all gaps open, as tried: one tight pin, else less play of all; None where neither does.
+
+        Where deflection alone may close a gap, that is told.
+        """
+        frame, joints = self.moved.frame, tuple(self.case.joints)
+        loose = clearances(self.case)
+        if frame is None or not loose or any(cause.endless for cause in self.moved.of_loads):
+            return None
+        free = [self._free(frame, over) for over in self._overlaps]
+        if min(float(left.min()) for left, _ in self._beside(free)) < 0.0:
+            return reason("deflection_closes_gap")
+        alone = {
+            name: self._share([np.delete(each, i, axis=0) for each in free], [each[i] for each in free])
+            for i, name in enumerate(joints)
+            if name in loose
+        }
+        name = max(alone, key=lambda one: alone[one])
+        rows = np.array([alone[name] if one == name else 1.0 for one in joints])
+        if not alone[name] > 0.0:
+            every = self._share([each[:0] for each in free], [each.sum(axis=0) for each in free])
+            name, rows = "", np.full(len(joints), every)
+        share = float(rows.min())
+        tried = share > 0.0 and self._opens([self._free(frame, over, rows) for over in self._overlaps])
+        return reason("less_play_keeps_gap", joint=name, share=share) if tried else None
+
+    def _share(self, others: Sequence[Real], own: Sequence[Real]) -> float:
+        """The share of its own play, in hundredths, that leaves every gap open beside what others take; 0 for none."""
+        found = 1.0
+        for (left, beside), one in zip(self._beside(others), own, strict=True):
+            room = left - beside.sum(axis=0)
+            every = np.divide(room, one, out=np.where(room < 0.0, 0.0, np.inf), where=one > 0.0)
+            found = min(found, float(every.min()))
+        return max(math.floor(100.0 * found) / 100.0, 0.0)
+
+    def _opens(self, free: Sequence[Real]) -> bool:
+        """Whether all gaps stay open where play closes them by so much: ndarrays of shape (joints, n)."""
+        return all(bool((left >= each.sum(axis=0)).all()) for left, each in self._beside(free))
+
+    def _beside(self, free: Sequence[Real]) -> Iterator[tuple[Real, Real]]:
+        """What deflection leaves of each gap, and by what play closes it."""
+        left = (over.gap - closed.max(axis=0) for over, closed in zip(self._overlaps, self._closed, strict=True))
+        return zip(left, free, strict=True)
+
+    @cached_property
+    def _overlaps(self) -> list[Overlap]:
+        assert self.moved.frame is not None
+        return list(overlaps(self.moved.frame, self.assembly))
+
+    @cached_property
+    def _soft(self) -> Scatter:
+        """Load over stiffness, over what it is."""
+        frame, solution = self.moved.frame, self.moved.solution
+        assert frame is not None
+        assert solution is not None
+        return compliance_range(self.case, frame, solution).times(stated_scatter(self.case, self.load_case))
+
+    @cached_property
+    def _closed(self) -> list[Real]:
+        """By what deflection closes every overlap's gap at its places: (m, n), first as stated, then as it may."""
+        every = [
+            np.array([one.at(over.lower, over.places) - one.at(over.upper, over.places) for one in self._shapes])
+            for over in self._overlaps
+        ]
+        return [np.vstack([one, self._soft.low * one, self._soft.high * one]) for one in every]
 
     @cached_property
     def _shapes(self) -> list[Raised]:
@@ -229,19 +290,19 @@ class LayerGaps:
         known = [(one.frame, one.solution) for one in self.moved.shapes]
         return [Raised(frame=frame, solution=solution) for frame, solution in known if frame and solution]
 
-    def _free(self, frame: LinkageFrame, over: Overlap) -> Real:
-        """How far play lets both links come nearer to each other at places (n,), by forces at rims there."""
-        total = np.zeros(len(over.places))
+    def _free(self, frame: LinkageFrame, over: Overlap, shares: Real | None = None) -> Real:
+        """How far play of joints, or shares of it, lets both links come nearer at places (J, n), by forces at rims."""
+        total = np.zeros((len(self.case.joints), len(over.places)))
         middle, units = over.places.mean(axis=0), {}
         for link in (over.lower, over.upper):
             if link in frame.stations:
                 near = [(float(np.linalg.norm(frame.model.nodes[n][:2] - middle)), n) for _, n in frame.stations[link]]
                 units[link] = self._units(frame, min(near)[1])
-        for name in self.case.joints:
+        for i, name in enumerate(self.case.joints):
             for group in loose_holes(self.case, name):
                 each = []
-                for held, play in group:
-                    force = np.zeros((len(total), 2, 2))
+                for held, whole in group:
+                    play, force = whole if shares is None else shares[i] * whole, np.zeros((len(over.places), 2, 2))
                     for link, sign in ((over.lower, 1.0), (over.upper, -1.0)):
                         if link in units:
                             origin, (push, about_x, about_y) = units[link]
@@ -251,7 +312,7 @@ class LayerGaps:
                     alone = len(group) == 1
                     apart = apart_at_rims(self.case, name, held, play) if alone else play
                     each.append(furthest(play / 2.0 * force, np.array(apart / (play / 2.0))))
-                total += np.max(each, axis=0)
+                total[i] += np.max(each, axis=0)
         return total
 
     def _units(self, frame: LinkageFrame, node: int) -> tuple[Real, list[dict[tuple[str, str], Real]]]:
@@ -290,10 +351,12 @@ def layer_gap_outcomes(
     every = [*asked(case, ClearanceCheck, quantity=Quantity.LAYER_GAP)]
     if not every or assembly is None or moved.frame is None or moved.solution is None:
         return
-    found = LayerGaps(case=case, load_case=load_case, moved=moved, assembly=assembly).least
+    gaps = LayerGaps(case=case, load_case=load_case, moved=moved, assembly=assembly)
+    found = gaps.least
     if found is None:
         return
     x, y = (0.0 if abs(end) < 1e-6 * case.linkage.longest else end for end in found.place)
     why = reason("layers_come_nearest", links=tuple(found.names), gap=found.gap, x=x, y=y)
     for one in every:
-        yield one.outcome(load_case, found.left, why)
+        outcome = one.outcome(load_case, found.left, why)
+        yield outcome.because(together(why, gaps.remedy)) if outcome.verdict is Verdict.UNDECIDED else outcome

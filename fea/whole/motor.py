@@ -261,7 +261,9 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
     drives = None
     if case.load_cases[title].carried and case.carried:
         bare = empty.forces[title].drive_power
-        factor = largest_factor(bare, solved.drive_power - bare, 1000.0 * limit)
+        # What leaves the power open goes with it: play, air, friction and the scatter of the load.
+        open_by = value.high / value.value if value.value > 0.0 else math.inf
+        factor = largest_factor(bare, solved.drive_power - bare, 1000.0 * limit / open_by)
         carried = 1e6 * sum(mass.mass for mass in case.carried)
         if 0.0 < factor < math.inf:
             drives = reason("can_drive", mass=factor * carried, now=carried)

@@ -181,9 +181,11 @@ def check_clearances(case: CoreCase) -> None:
             raise CaseError(
                 f"{entry}: a slider has no pin with play, and play of its guide is not modelled; leave it out"
             )
-        if joint.clearance is None and (case.linkage.joints[name].fixed or not _follows_play(case)):
+        if case.linkage.joints[name].fixed and not joint.fixed:
+            continue  # bonds of the whole case leave play without meaning
+        if joint.clearance is None and (joint.fixed or not _follows_play(case)):
             continue  # the pin sits as stated, but has no play that is followed; ``joint_caveats`` tells it
-        if case.linkage.joints[name].fixed:
+        if joint.fixed:
             raise CaseError(f"{entry}: a bonded joint has no play; leave it out, or let the joint turn")
         if _redundant(case):
             raise CaseError(

@@ -249,7 +249,7 @@ def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():
 def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_shared(monkeypatch, worst):
     """Shares of 2 N are 1 and, of three ways, two and one of 3: of bending, and of the shear that is told.
 
-    The search may have left a twentieth of what lies between beyond either end.
+    The search may have left a tenth of what lies between beyond either end, but no less than crosses between the eyes.
     """
     sizes = [0.5, 1.2, 0.8]
     sizes[worst] = 3.0
@@ -265,13 +265,27 @@ def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_sh
     monkeypatch.setattr(
         "alula.fea.outcomes.pins.stresses_between", lambda case, joint, every: [at(case, joint, one) for one in every]
     )
+    least = 15.0
+    monkeypatch.setattr("alula.fea.outcomes.pins.crossing", lambda *_: least)
     case = SimpleNamespace(linkage=SimpleNamespace(rise=lambda joint: 2.0))
     forces = SimpleNamespace(reactions=ways(2.0), sharings=[ways(2.0 * size) for size in sizes])
     found = shared_stress(case, "B", 4.0, forces)
     beyond = LEFT * (3.0 - min(sizes))
     assert found.shear == pytest.approx(4.0 * (3.0 + beyond))
     for name in ("moment", "bending", "equivalent"):
-        band = getattr(found, name)
-        assert (band.value, band.low, band.high) == pytest.approx(
-            (40.0, 40.0 * (min(sizes) - beyond), 40.0 * (3.0 + beyond))
-        )
+        band, low = getattr(found, name), 40.0 * (min(sizes) - beyond)
+        low = max(low, least) if name == "equivalent" else low
+        assert (band.value, band.low, band.high) == pytest.approx((40.0, low, 40.0 * (3.0 + beyond)))
+        assert [source.width for source in band.sources] == pytest.approx([band.high / band.low])
+
+
+def test_no_state_of_a_pin_between_layers_bears_less_than_its_force_in_shear():
+    """Love's largest shear stress of a circle, (3 + 2 nu)/(2 + 2 nu) of the mean."""
+    case = edited("slider-crank", [])
+    result = check_case(case, fidelity="beam").load_cases["push forward"]
+    for joint, pin in result.pins.items():
+        record = case.joints[joint]
+        nu, area = case.all_materials[record.pin_material].poissons_ratio, np.pi * record.pin_diameter**2 / 4.0
+        force = np.hypot(*result.forces.reactions.joints[joint].wrench[:2])
+        least = np.sqrt(3.0) * (3.0 + 2.0 * nu) / (2.0 + 2.0 * nu) * force / area
+        assert pin.equivalent.low >= least * (1.0 - 1e-9), joint

@@ -252,6 +252,7 @@ def test_play_that_is_not_followed_is_told():
         edited("spring-pedal", ['joints.O.clearance="0.1 mm"'], fits=False)
 
 
-def test_bonds_of_the_whole_case_leave_fits_without_meaning():
-    case = edited(FOUR_BAR, ['joints.A.fit="H8/f7"', 'joint_model="bonded"'])
-    assert clearances(case) == {}
+@pytest.mark.parametrize("stated", ['fit="H8/f7"', 'clearance="0.1 mm"', 'clearance={crank=["0.05 mm", "0.1 mm"]}'])
+def test_bonds_of_the_whole_case_leave_fits_and_play_without_meaning(stated):
+    assert clearances(edited(FOUR_BAR, [f"joints.A.{stated}"])) != {}
+    assert clearances(edited(FOUR_BAR, [f"joints.A.{stated}", 'joint_model="bonded"'])) == {}
