@@ -57,10 +57,13 @@ class PinStates:
     ----------
     rims : RimFrame
     radii : Radii
+    begin : ndarray, shape (n, k), or None
+        Shares at which the search starts where states of a like pose, or under like loads, are known; None for draws.
     """
 
     rims: RimFrame
     radii: Radii
+    begin: Real | None = None
 
     def solved(self, shares: Real) -> InDiscs:
         """Return where pins stand.
@@ -202,8 +205,8 @@ class PinStates:
         if not len(value) or not aims.count:
             return value[None]
         alike = np.outer(LEVELS, np.ones(len(value)))
-        starts = np.vstack([value, alike, _drawn(DRAWS, len(value))])
-        for close, paths, near in STAGES:
+        starts = np.vstack([value, alike, _drawn(DRAWS, len(value)) if self.begin is None else self.begin])
+        for close, paths, near in STAGES if self.begin is None else STAGES[1:]:
             starts = self._followed(starts, aims, close, paths, near)
         reached = aims.values(self._stands(starts, ROUGH)[1].v)
         return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])
