@@ -142,7 +142,9 @@ def test_however_large_a_load_is_that_pulls_a_rod_straight_steps_of_it_are_few(a
     force = 1e12
     tip = solve_large_displacement(pulled(force, force * across), 2).displacements[1] + [100.0, 0.0, 0.0]
     assert len(steps) < 60
-    assert np.linalg.norm(tip) == pytest.approx(100.0 + 100.0 * force * np.hypot(1.0, across) / (2400.0 * 12.0), rel=1e-6)
+    assert np.linalg.norm(tip) == pytest.approx(
+        100.0 + 100.0 * force * np.hypot(1.0, across) / (2400.0 * 12.0), rel=1e-6
+    )
     assert tip[1] / tip[0] == pytest.approx(across, rel=1e-6)
 
 
