@@ -239,7 +239,7 @@ def _followed(
         aim = towards * mean[:, None]
         matrix = by.held(a, _barriers(inner, pull))
         right = force - by.outer((aim / slack)[:, :, None] * inner)
-        step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        step = np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0], dtype=np.float64)
         moved = by.inner(step)
         further = (aim - pull * slack + pull * _dot(inner, moved)) / slack
         length = np.minimum(_to_rim(inner, moved), _to_zero(pull, further)).min(axis=1)
