@@ -263,7 +263,8 @@ def shaken(case: Case, load_case: str, forces: JointForces, moved: LargeDisplace
         if here is not None:
             pose = play.pose(here, forces.reactions.pose)
             with suppress(CaseError, CannotRunError):
-                found.append(examine(case, load_case, joint_forces(case, pose, here.loads), here.loads))
+                there = joint_forces(case, pose, here.loads, like=forces.pins)
+                found.append(examine(case, load_case, there, here.loads))
     source, passes = play_source(play.clearances), play.through_dead_point
     cause = Alternatives(source=source, others=tuple(found), endless=passes)
     return replace(moved, causes=(*moved.causes, cause))

@@ -119,6 +119,23 @@ class CorotationalElements:
         loads = factor * self.loads
         return _response(self._potential(natural, displacements, rotations, loads), -self._at_ends(loads))
 
+    def pressed(self, natural: Jet, strains: Floats) -> ElementResponse:
+        """Evaluate deformed elements under the forces of further strains, with what these add to the tangent.
+
+        Parameters
+        ----------
+        natural : Jet
+            Natural deformations (m, 6), the first that ``natural`` returns.
+        strains : ndarray, shape (m, 6)
+            Beside these.
+
+        Returns
+        -------
+        ElementResponse
+        """
+        forces = (self.stiffness @ strains[:, :, None]).swapaxes(1, 2)
+        return _response(natural.map(forces), np.zeros((len(strains), 2, 3)))
+
     def geometric(self, natural: Floats) -> ElementResponse:
         """Evaluate the undeformed elements under natural forces.
 

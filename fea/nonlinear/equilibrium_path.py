@@ -43,6 +43,11 @@ _SLOW = 0.3
 """Share of the largest rate that is added to each, so that an unknown which happens to stand still bounds no step."""
 _DIFFERENCE = 1e-3
 """Turn [rad], or displacement over the frame's size, by which the bend of the path is measured."""
+_IDLE = 2
+"""Iterations in a row that may fail to halve what is left over; those of steps that converge do, but for one."""
+MOST_STEPS = 200
+"""Of a path, tried ones as well: ten times what a cantilever takes that its load bends along itself. Each length goes
+with what the path bends, so that a load in which rounding alone bends it could be followed for ever."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,6 +98,29 @@ class NoEquilibriumError(CannotRunError):
             "load or stiffen the frame"
         )
         self.reached, self.failed, self.buckled = reached, failed, buckled
+
+
+class UnfollowedError(NoEquilibriumError):
+    """The path of stable equilibrium was not followed to the whole load in ``MOST_STEPS``.
+
+    ``reached`` is the share of it that was held, ``failed`` is infinite.
+    """
+
+    def __init__(self, reached: float) -> None:
+        super().__init__(reached, np.inf, buckled=False)
+        self.args = (
+            f"the path of the frame's equilibrium bends so much that {MOST_STEPS} steps of load reach "
+            f"{100.0 * reached:.3g} % of the whole load; reduce the load or stiffen the frame",
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Course:
+    """How a path goes on: change of the unknowns by the load factor, its own change, and how far it bends little."""
+
+    rate: Floats
+    bend: Floats
+    length: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -190,12 +218,17 @@ class EquilibriumPath:
         ------
         NoEquilibriumError
             Where the step falls below ``least_step`` and a 64th of the load that was reached.
+        UnfollowedError
+            Where ``MOST_STEPS`` do not reach it.
         """
-        step = first = self._straight()
-        while self.reached < to:
+        course = self._course()
+        step = first = course.length
+        for _ in range(MOST_STEPS):
+            if self.reached >= to:
+                return
             finest = min(least_step, _RESOLUTION * (self.reached or first))
             target = min(to, self.reached + max(step, finest))
-            found = self._newton(target, most_iterations)
+            found = self._newton(target, course, most_iterations)
             buckled = found is not None and stable and not self.is_stable(found[0], target)
             if found is None or buckled:
                 step = (target - self.reached) / 2.0
@@ -205,10 +238,13 @@ class EquilibriumPath:
             self.state, iterations = found
             self.reached = target
             if target < to:
-                step = min(2.0 * step if iterations <= 6 else step, self._straight())
+                course = self._course()
+                step = min(2.0 * step if iterations <= 6 else step, course.length)
+        if self.reached < to:
+            raise UnfollowedError(self.reached)
 
-    def _straight(self) -> float:
-        """Return the share of the load that lies ahead before the path bends much, however large the load is.
+    def _course(self) -> _Course:
+        """Return how the path goes on, and the share of the load that lies ahead before it bends much, however large.
 
         With the rates u' of the unknowns and their change u'', both by the load factor, |u''| h is at most a share of
         |u'|. The forces left over where the frame goes on along u' by t are -t² K u''/2.
@@ -218,35 +254,67 @@ class EquilibriumPath:
         rate = -self._solve(tangent, self.balance(state, factor + 1.0)[0] - left)
         largest = float(np.abs(rate[: len(unit)] / unit).max(initial=0.0))
         if largest < _TOLERANCE:  # as of a force straight into the ground
-            return 1.0
-        t = _DIFFERENCE / largest
+            return _Course(rate=rate, bend=np.zeros_like(rate), length=1.0)
+        t, kept = _DIFFERENCE / largest, (self._at, self._balanced)
         ahead, behind = (self.balance(self._moved(state, d * rate), factor + d)[0] for d in (t, -t))
-        change = np.abs(self._solve(tangent, ahead - 2.0 * left + behind)[: len(unit)] / unit) / t**2
+        self._at, self._balanced = kept
+        parted = ahead - 2.0 * left + behind
+        if self._measure(parted) <= self._rounding(state):
+            return _Course(rate=rate, bend=np.zeros_like(rate), length=1.0)
+        bend = -self._solve(tangent, parted) / t**2
         allowed = np.abs(rate[: len(unit)] / unit) + _SLOW * largest
-        return _BEND / max(float((change / allowed).max()), _BEND)
+        sharpest = float((np.abs(bend[: len(unit)] / unit) / allowed).max())
+        return _Course(rate=rate, bend=bend, length=_BEND / max(sharpest, _BEND))
 
-    def _newton(self, factor: float, most_iterations: int) -> tuple[State, int] | None:
-        """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails."""
-        state, tangents = self.state, np.zeros(self.size)
-        for iteration in range(most_iterations):
+    def _newton(self, factor: float, course: _Course, most_iterations: int) -> tuple[State, int] | None:
+        """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails.
+
+        The forces in elements are unknowns of their own, which follow from k v to first order and are eliminated: the
+        tangent has those that go with the last change, k (v + B δ), and what is left over has k v. Turns whose
+        first-order change is a stretch too so leave no forces behind, and a step takes five iterations, not nine. It
+        starts on the course of the path, with forces that grow as they do there.
+        """
+        h = factor - self.reached
+        tangents, change, further = h * course.rate, h * course.rate, h**2 / 2.0 * course.bend
+        state, best, idle = self.state, np.inf, 0
+        for iteration in range(1, most_iterations):
+            turn = float(np.abs((change + further)[: self.chain.count][self.chain.is_turn]).max(initial=0.0))
+            if not np.isfinite(change).all() or turn > _DIVERGED:
+                return None
+            share = min(1.0, _LARGEST_TURN / turn if turn > 0.0 else 1.0)
+            ahead = self._strains(state, share * change)
+            state = self._moved(state, share * (change + further))
             try:
                 residual, tangent = self.balance(state, factor)
-                if self._measure(residual) <= max(_TOLERANCE * factor, self._rounding(state)) and iteration > 0:
+                size = self._measure(residual)
+                if size <= max(_TOLERANCE * factor, self._rounding(state)):
                     tangents = (tangents + self._solve(tangent, self.balance(state, self.reached)[0])) / 2.0
                     moved = state.displacements - self.state.displacements
                     missed = float(np.linalg.norm(moved - self._displacements(tangents)))
                     most = max(_ROUGH * float(np.linalg.norm(moved)), _TOLERANCE * self.model.size)
                     return (state, iteration) if missed <= most else None
-                change = -self._solve(tangent, residual)
+                best, idle = (size, 0) if size < best / 2.0 else (best, idle + 1)
+                if idle == _IDLE:
+                    return None
+                change, further = -self._solve(self._ahead(state, factor, ahead), residual), np.zeros(self.size)
             except CannotRunError:
                 return None
-            if iteration == 0:
-                tangents = change
-            turn = float(np.abs(change[: self.chain.count][self.chain.is_turn]).max(initial=0.0))
-            if not np.isfinite(change).all() or turn > _DIVERGED:
-                return None
-            state = self._moved(state, change * min(1.0, _LARGEST_TURN / turn if turn > 0.0 else 1.0))
         return None
+
+    def _strains(self, state: State, change: Floats) -> Floats:
+        """Natural deformations (m, 6) of the elements after a change of the unknowns, to first order."""
+        natural, _ = self._natural(state)
+        moved = self._displacements(change)[self.pairs]
+        spins = self.chain.spins(state.rotations, change[: self.chain.count])[self.pairs]
+        nine = np.concatenate([moved[:, 1] - moved[:, 0], spins[:, 0], spins[:, 1]], axis=1)
+        return np.asarray(natural.value + (natural.gradient @ nine[:, :, None])[:, :, 0])
+
+    def _ahead(self, state: State, factor: float, strains: Floats) -> Floats:
+        """Derivative of what is left over, with the forces of other natural deformations (m, 6) in the elements."""
+        natural, _ = self._natural(state)
+        answer, more = self.respond(state, factor), self.elements.pressed(natural, strains - natural.value)
+        both = ElementResponse(forces=answer.forces + more.forces, tangent=answer.tangent + more.tangent)
+        return self.assemble(both, state, factor)[1]
 
     def balance(self, state: State, factor: float) -> tuple[Floats, Floats]:
         """Return the out-of-balance forces and gaps of the guides, with their derivative.

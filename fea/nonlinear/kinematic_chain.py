@@ -107,6 +107,25 @@ class KinematicChain:
         carried = np.einsum("kij,kj->ki", rotations[self._carriers], self._axes)
         return np.where(self._carriers[:, None] >= 0, carried, self._axes)
 
+    def spins(self, rotations: Floats, increments: Floats) -> Floats:
+        """Return the spins of the nodes that increments of the unknowns make, to first order.
+
+        Parameters
+        ----------
+        rotations : ndarray, shape (n, 3, 3)
+            Of the nodes.
+        increments : ndarray, shape (count,)
+            Of the unknowns [rad].
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+        """
+        node, _, number = self._levels
+        found = np.zeros((len(rotations), 3))
+        np.add.at(found, node, (self.axes(rotations) * increments[:, None])[number])
+        return found
+
     def turned(self, rotations: Floats, increments: Floats) -> Floats:
         """Return the rotations of the nodes after increments of the unknowns; free turns first, then the pins.
 

@@ -42,7 +42,7 @@ from alula.fea.frame.displacement_band import compliance_range
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
-from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.fea.nonlinear.equilibrium_path import MOST_STEPS, NoEquilibriumError, UnfollowedError
 from alula.fea.nonlinear.softened import followed
 from alula.fea.nonlinear.stability import LARGE, ON_RIMS, SNAP, dead_point_factor, linkage_factor, span
 from alula.fea.standing.joint_forces import JointForces
@@ -76,8 +76,8 @@ class LargeDisplacement:
     ----------
     state : State
         Small: the linear answer is valid. deformed: stable equilibrium was found on the deformed shape. unstable: it
-        buckles below the whole load. no equilibrium: equilibrium ends below it. off: the case says not to look.
-        unknown: there is no frame of this linkage.
+        buckles below the whole load. no equilibrium: equilibrium ends below it, or was not followed up to it. off: the
+        case says not to look. unknown: there is no frame of this linkage.
     span : float
         Largest distance between two points of the pose [mm].
     linear : float
@@ -258,7 +258,7 @@ class LargeDisplacement:
         else:
             value, lost = (self.held, self.lost) if self.gives_way else _end(self.frame, self.held)
             low, high = value / slack.high, lost / slack.low
-            value = value / soft if math.isfinite(lost) else MOST
+            value = value / soft if math.isfinite(lost) else value
             sources = (Source(kind=SourceKind.PATH, detail=reason("steps_of_load")), *sources)
             if faults < low:
                 detail = reason("buckling_below", factor=LEAST_LINEAR)
@@ -449,6 +449,9 @@ def _deformed(
         why = reason("dead_point_too_near", factor=small.dead_point, limit=LEAST_FACTOR)
     try:
         found = followed(frame, 1.0)
+    except UnfollowedError as error:
+        unknown = reason("not_followed_to_load", why=why, held=error.reached, steps=MOST_STEPS)
+        return replace(small, state="no equilibrium", held=error.reached, points={}, reason=unknown)
     except NoEquilibriumError as error:
         state: State = "unstable" if error.buckled else "no equilibrium"
         lost = reason("buckles_below_load" if error.buckled else "gives_way_below_load", why=why, held=error.reached)

@@ -43,6 +43,8 @@ PACES = ((0.1, 0.995, 40), (0.5, 0.9, 200))
 """Share of the mean product z s that a step aims at, share of the way to the nearest boundary that it may go, and how
 many steps there are at most. Of thousands of states one comes to a rim too soon, along which it can hardly go; those
 that the first pace does not end start anew at the second, which keeps all products near their mean."""
+BATCH = 100
+"""States that are solved side by side: with more, their matrices leave the processor's cache."""
 NO_TIES = np.empty((0, 2), dtype=np.int64)
 
 
@@ -127,18 +129,16 @@ class _Discs:
     def held(self, A: Real, own: Real) -> Real:
         """A (n, 2 m, 2 m) with the stiffness (n, m + f, 2, 2) of all inner shares."""
         found, count = A.copy(), A.shape[1] // 2
-        at = [slice(2 * i, 2 * i + 2) for i in range(count)]
-        tied = set(self.ties.ravel().tolist())
-        for i in range(count):
-            if i not in tied:
-                found[:, at[i], at[i]] += own[:, i]
+        blocks = found.reshape(len(A), count, 2, count, 2)
+        free = np.setdiff1d(np.arange(count), self.ties)
+        blocks[:, free, :, free] += own[:, free].swapaxes(0, 1)
         for k, (i, j) in enumerate(self.ties):
             both, half = own[:, i] + own[:, j], self.half[:, k, None, None]
             across = half * (own[:, j] - own[:, i])
-            found[:, at[i], at[i]] += both
-            found[:, at[i], at[j]] += across
-            found[:, at[j], at[i]] += across
-            found[:, at[j], at[j]] += half**2 * both + self.own[:, k, None, None] ** 2 * own[:, count + k]
+            blocks[:, i, :, i] += both
+            blocks[:, i, :, j] += across
+            blocks[:, j, :, i] += across
+            blocks[:, j, :, j] += half**2 * both + self.own[:, k, None, None] ** 2 * own[:, count + k]
         return found
 
 
@@ -166,6 +166,13 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
     CannotRunError
         Where the bound does not come near to the value.
     """
+    each = np.broadcast_to(g, (len(radii), len(K)))
+    batches = [slice(k, k + BATCH) for k in range(0, max(len(radii), 1), BATCH)]
+    found = [_least(K, each[batch], radii[batch], close, ties) for batch in batches]
+    return InDiscs(**{name: np.concatenate([vars(one)[name] for one in found]) for name in vars(found[0])})
+
+
+def _least(K: Real, g: Real, radii: Real, close: float, ties: NDArray[np.int64]) -> InDiscs:
     count, discs = radii.shape
     scale, every = np.repeat(radii[:, : discs - len(ties)], 2, axis=1), _Discs.of(radii, ties)
     A, b = _scaled(K, scale, every), every.folded(scale * g)
@@ -199,8 +206,8 @@ def _scaled(K: Real, scale: Real, every: _Discs) -> Real:
 
 def _to_rim(inner: Real, step: Real) -> Real:
     """Length of a step (n, m) at which a pair leaves the unit disc."""
-    across, along = (step**2).sum(axis=2), (inner * step).sum(axis=2)
-    room = np.maximum(1.0 - (inner**2).sum(axis=2), 0.0)
+    across, along = _dot(step, step), _dot(inner, step)
+    room = np.maximum(1.0 - _dot(inner, inner), 0.0)
     root = np.sqrt(along**2 + across * room)
     return np.asarray(np.divide(room, along + root, out=np.full_like(room, np.inf), where=along + root > 0.0))
 
@@ -220,7 +227,7 @@ def _followed(
     for _ in range(steps):
         pull, inner = z[own], by.inner(w[own])
         slack = _slack(inner)
-        force = b[own] - np.einsum("nij,nj->ni", a, w[own])
+        force = b[own] - (a @ w[own][:, :, None])[:, :, 0]
         rest = np.abs(by.outer(pull[:, :, None] * inner) - force).max(axis=1)
         mean = (pull * slack).mean(axis=1)
         going = np.maximum(rest, mean) > close
@@ -232,9 +239,9 @@ def _followed(
         aim = towards * mean[:, None]
         matrix = by.held(a, _barriers(inner, pull))
         right = force - by.outer((aim / slack)[:, :, None] * inner)
-        step = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        step = np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0], dtype=np.float64)
         moved = by.inner(step)
-        further = (aim - pull * slack + pull * (inner * moved).sum(axis=2)) / slack
+        further = (aim - pull * slack + pull * _dot(inner, moved)) / slack
         length = np.minimum(_to_rim(inner, moved), _to_zero(pull, further)).min(axis=1)
         length = np.minimum(shorter * length, 1.0)
         w[own] += length[:, None] * step
@@ -295,8 +302,8 @@ def slopes(
     each = along * w[state] + own * force[state] - (scale[state] * own) @ K * w[state]
     by_radii = np.hstack([each.reshape(len(state), pairs, 2).sum(axis=2), np.zeros((len(state), len(ties)))])
     tied = [*ties.ravel(), *range(pairs, pairs + len(ties))]  # whose w depends on several radii
-    pull = _over(z * (2.0 + (inner**2).sum(axis=2) / _slack(inner)), radii)[state]
-    by_radii[:, tied] = (pull * (y * inner[state]).sum(axis=2))[:, tied]
+    pull = _over(z * (2.0 + _dot(inner, inner) / _slack(inner)), radii)[state]
+    by_radii[:, tied] = (pull * _dot(y, inner[state]))[:, tied]
     return np.asarray(by_radii)
 
 
@@ -311,4 +318,9 @@ def _barriers(inner: Real, pull: Real) -> Real:
 
 
 def _slack(inner: Real) -> Real:
-    return np.asarray(np.maximum((1.0 - (inner**2).sum(axis=2)) / 2.0, ROUNDING))
+    return np.asarray(np.maximum((1.0 - _dot(inner, inner)) / 2.0, ROUNDING))
+
+
+def _dot(one: Real, other: Real) -> Real:
+    """Products (n, m) of pairs (n, m, 2), quicker than sums over so short an axis."""
+    return np.asarray(one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1])

@@ -57,10 +57,27 @@ class PinStates:
     ----------
     rims : RimFrame
     radii : Radii
+    like : PinStates or None
+        Those of a pose and loads that are nearly these: the search starts at the shares it found there, without draws.
     """
 
     rims: RimFrame
     radii: Radii
+    like: "PinStates | None" = None
+
+    def beside(self, like: "PinStates") -> "PinStates":
+        """Return the same, with the search to start where that of nearly the same pose and loads ended.
+
+        Parameters
+        ----------
+        like : PinStates
+
+        Returns
+        -------
+        PinStates
+            Unless other holes are open there.
+        """
+        return replace(self, like=like) if like.radii.clearances == self.radii.clearances else self
 
     def solved(self, shares: Real) -> InDiscs:
         """Return where pins stand.
@@ -118,7 +135,7 @@ class PinStates:
     @cached_property
     def _told(self) -> tuple[Real, Real]:
         """Shares, and where pins stand by them, of ``states``."""
-        shares = self.extremes()
+        shares = self.extremes
         found = self.solved(shares).v
         alike = np.arange(1, min(1 + len(LEVELS), len(found)))
         kept = np.union1d(_telling(self.aims.values(found)), alike) if self.aims.count else np.array([0])
@@ -191,19 +208,16 @@ class PinStates:
         """Joint forces in ``states``."""
         return tuple(self.rims.frame.reactions(one.joint_wrenches, one.residual) for one in self.answers[1:])
 
+    @cached_property
     def extremes(self) -> Real:
-        """Return the shares at which what is sought is largest, after that of the values and those of ``LEVELS``.
-
-        Returns
-        -------
-        ndarray, shape (n, k)
-        """
+        """(n, k) the shares at which what is sought is largest, after that of the values and those of ``LEVELS``."""
         value, aims = self.radii.value, self.aims
         if not len(value) or not aims.count:
             return value[None]
         alike = np.outer(LEVELS, np.ones(len(value)))
-        starts = np.vstack([value, alike, _drawn(DRAWS, len(value))])
-        for close, paths, near in STAGES:
+        further, stages = (_drawn(DRAWS, len(value)), STAGES) if self.like is None else (self.like.extremes, STAGES[1:])
+        starts = np.vstack([value, alike, further])
+        for close, paths, near in stages:
             starts = self._followed(starts, aims, close, paths, near)
         reached = aims.values(self._stands(starts, ROUGH)[1].v)
         return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])

@@ -161,7 +161,7 @@ class JointForces:
         return self.reactions.system.condition if self.solution is None else self.solution.condition
 
 
-def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
+def joint_forces(case: Case, pose: Pose, loads: Sequence[Load], like: "PinStates | None" = None) -> JointForces:
     """Return the joint forces under loads, by the simplest model that has them.
 
     Parameters
@@ -172,6 +172,8 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         The linkage's pose.
     loads : sequence of Load
         That act on the links, global axes.
+    like : PinStates, optional
+        How pins may stand in a pose, and under loads, like these: where the search for how they do here starts.
 
     Returns
     -------
@@ -214,10 +216,11 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
             frame=frame,
             solution=solution,
         ),
+        like,
     )
 
 
-def on_pins(case: Case, tight: JointForces) -> JointForces:
+def on_pins(case: Case, tight: JointForces, like: "PinStates | None" = None) -> JointForces:
     """Return joint forces with pins that stand in their holes between layers.
 
     Parameters
@@ -225,6 +228,8 @@ def on_pins(case: Case, tight: JointForces) -> JointForces:
     case : Case
     tight : JointForces
         By a frame, with pins that are tight.
+    like : PinStates, optional
+        As of ``joint_forces``.
 
     Returns
     -------
@@ -233,7 +238,9 @@ def on_pins(case: Case, tight: JointForces) -> JointForces:
     if tight.frame is None or tight.solution is None:
         return tight
     reactions, pins = stood(case, tight.frame, tight.solution)
-    return tight if pins is None else replace(tight, reactions=reactions, pins=pins)
+    if pins is None:
+        return tight
+    return replace(tight, reactions=reactions, pins=pins if like is None else pins.beside(like))
 
 
 def stood(case: Case, frame: "LinkageFrame", solution: "FrameSolution") -> "tuple[Reactions, PinStates | None]":

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from alula.fea.pins import programme
+from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.joints.heads import Heads
 from alula.loads.case.case import Case
@@ -31,10 +32,32 @@ def test_no_state_that_is_drawn_lies_outside_the_bands(seed, heads):
 
 def test_a_band_that_is_too_narrow_is_told(monkeypatch):
     """Where the search ends at once, draws leave the bands."""
-    monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", lambda pins: pins.radii.value[None])
+    monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", property(lambda pins: pins.radii.value[None]))
     found = draws.outside(draws.linkage(1), 100)
     assert max(one.excess for one in found) > 0.2
     assert {one.of.split()[0] for one in found} == {"thrust", "pin", "stress", "displacement"}
+
+
+@pytest.mark.parametrize("seed", [11, 14])
+def test_a_search_that_starts_where_one_of_a_like_pose_ended_finds_the_ends_without_draws(seed, monkeypatch):
+    """As play shakes the linkage; ends differ by 1 % of what lies between them at most."""
+    statics = draws.solve_case_statics(draws.linkage(seed))
+    stated = statics.forces["l"]
+    play, pins = stated.play, stated.pins
+    assert play is not None
+    assert pins is not None
+    assert play.furthest is not None
+    pose = play.pose(play.furthest, stated.reactions.pose)
+    alone, like = (joint_forces(statics.case, pose, play.furthest.loads, known).pins for known in (None, pins))
+    assert alone is not None
+    assert like is not None
+    full = alone.aims.values(alone.states)
+    assert pins.extremes.shape[1] == alone.extremes.shape[1]
+    monkeypatch.delattr("alula.fea.pins.states._drawn")
+    found = alone.aims.values(like.states)
+    assert ((full.max(axis=0) - found.max(axis=0)) / np.ptp(full, axis=0)).max() < 0.01
+    other = replace(pins.radii, clearances=pins.radii.clearances[:-1])
+    assert alone.beside(replace(pins, radii=other)) is alone  # of other holes nothing is known
 
 
 def test_rounding_moves_no_end():

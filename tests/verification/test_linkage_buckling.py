@@ -12,7 +12,7 @@ from alula.fea.common.verdict import LINKAGE, Verdict
 from alula.fea.frame.build import build_frame
 from alula.fea.nonlinear import stability
 from alula.fea.nonlinear.corotational import solve_large_displacement
-from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, NoEquilibriumError, UnfollowedError
 from alula.fea.nonlinear.stability import buckling_factor
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, validate
@@ -119,6 +119,24 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
     assert found.value.value == pytest.approx(min(1.0, 1.0 / share), rel=3e-3)
     assert found.value.low == pytest.approx(min(1.0, 1.0 / share / 3.0 / moved.eyes.high), rel=3e-3)
     assert found.value.value <= found.value.high < 1.02 * found.value.value / moved.eyes.low
+
+
+@pytest.mark.parametrize("share", [0.11, 1.03])
+def test_a_path_that_is_not_followed_to_the_load_decides_nothing(share, monkeypatch) -> None:
+    """Of one that passes and one that fails else; nothing that rests on its equilibrium passes either."""
+    monkeypatch.setattr(EquilibriumPath, "follow", lambda *_, **__: raised(UnfollowedError(0.4)))
+    result = check_case(parallelogram(share * critical()), fidelity="beam").load_cases["weight"]
+    moved, (found,) = result.large_displacement, [c for c in result.checks if c.subject == LINKAGE]
+    assert (moved.state, moved.held, moved.lost) == ("no equilibrium", 0.4, np.inf)
+    assert found.verdict is Verdict.UNDECIDED
+    assert "it holds 0.4 of the load, and 200 steps of load reach no further" in told(found.reason)
+    assert moved.limit_load.high == np.inf
+    assert found.value.high == 1.0
+    assert not [c for c in result.checks if c.verdict is Verdict.PASS and c.quantity.origin == "loads"]
+
+
+def raised(error: Exception) -> None:
+    raise error
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.18, Verdict.PASS), (0.3, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
 from alula.fea.nonlinear.corotational import solve_large_displacement, subdivide
+from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, UnfollowedError
 from alula.fea.nonlinear.stability import buckling_factor
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.parts.part import rectangle, ring
@@ -122,6 +123,52 @@ def test_the_root_holds_what_lies_beyond() -> None:
     out = solve_large_displacement(model, 8)
     tip = np.array([100.0, 0, 0]) + out.displacements[1]
     assert out.end_forces[0, 0] == pytest.approx([*-force, *-(moment + np.cross(tip, force))], abs=1e-5)
+
+
+def pulled(force: float, *across: float) -> FrameModel:
+    return FrameModel(
+        nodes=np.array([[0.0, 0, 0], [100, 0, 0]]),
+        elements=(element(0, 1),),
+        supports=(Support(node=0),),
+        loads=(NodeLoad(node=1, wrench=np.array([force, *across, *[0.0] * (5 - len(across))])),),
+    )
+
+
+@pytest.mark.parametrize("across", [1e-6, 1e-2])
+def test_however_large_a_load_is_that_pulls_a_rod_straight_steps_of_it_are_few(across, monkeypatch) -> None:
+    """4400 steps were taken where rounding alone bent the path; the rod lies along its load and is F L/(E A) longer."""
+    steps, newton = [], EquilibriumPath._newton
+    monkeypatch.setattr(EquilibriumPath, "_newton", lambda path, *more: [steps.append(1), newton(path, *more)][1])
+    force = 1e12
+    tip = solve_large_displacement(pulled(force, force * across), 2).displacements[1] + [100.0, 0.0, 0.0]
+    assert len(steps) < 60
+    assert np.linalg.norm(tip) == pytest.approx(
+        100.0 + 100.0 * force * np.hypot(1.0, across) / (2400.0 * 12.0), rel=1e-6
+    )
+    assert tip[1] / tip[0] == pytest.approx(across, rel=1e-6)
+
+
+def test_tangents_know_the_forces_that_go_with_the_last_change_so_that_steps_take_few_iterations(monkeypatch) -> None:
+    """Forces of a stretch that turns do not make took eight."""
+    iterations, newton = [], EquilibriumPath._newton
+
+    def counted(path, *more):
+        found = newton(path, *more)
+        iterations.append(0 if found is None else found[1])
+        return found
+
+    monkeypatch.setattr(EquilibriumPath, "_newton", counted)
+    solve_large_displacement(four_bar(20.0), 2)
+    assert 0 not in iterations
+    assert max(iterations) <= 5
+
+
+def test_a_path_that_bends_too_much_ends_without_a_word_on_what_the_frame_bears(monkeypatch) -> None:
+    monkeypatch.setattr("alula.fea.nonlinear.equilibrium_path.MOST_STEPS", 5)
+    with pytest.raises(UnfollowedError, match=r"5 steps of load reach .* of the whole load") as ended:
+        solve_large_displacement(four_bar(20.0), 2)
+    assert 0.0 < ended.value.reached < 1.0
+    assert ended.value.failed == np.inf
 
 
 def test_division_keeps_the_linear_answer() -> None:
