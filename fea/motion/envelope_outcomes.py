@@ -119,6 +119,12 @@ def envelope_outcomes(
     return found
 
 
+def _above_first_yield(case: Case, one: Asked, elastic: CheckOutcome) -> CheckOutcome:
+    """Outcome of plastic collapse over the motion, where no path is followed: by its first yield alone."""
+    why = COLLAPSE_NOT_FOLLOWED
+    return above_first_yield(case, one, elastic) or one.outcome(elastic.load_case, Band.unknown(why), why)
+
+
 def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iterator[CheckOutcome]:
     """Yield the outcome of the layers of a printed link under every load case.
 
