@@ -196,9 +196,7 @@ def needs_path(case: Case, load_case: str, link: str, result: LinkResult) -> boo
     bool
     """
     every = asked(case, PlasticCollapseCheck, subject=Subject.link(link))
-    return any(
-        above_first_yield(case, one, of_link(case, load_case, as_elastic(one), result)) is None for one in every
-    )
+    return any(above_first_yield(case, one, of_link(case, load_case, as_elastic(one), result)) is None for one in every)
 
 
 def _worse(one: Found | None, other: Found) -> Found:

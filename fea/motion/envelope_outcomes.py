@@ -59,9 +59,7 @@ LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
 COLLAPSE_NOT_FOLLOWED = reason("collapse_not_followed")
 OF_JOINTS = (PinCheck, BearingCheck, LineContactCheck, ConnectionCheck)
-FOLLOWED = (
-    *(SafetyFactorCheck, *OF_JOINTS, EyeCheck, WallCheck, PlasticCollapseCheck, FatigueCheck, LimitLoadCheck),
-)
+FOLLOWED = (*(SafetyFactorCheck, *OF_JOINTS, EyeCheck, WallCheck, PlasticCollapseCheck, FatigueCheck, LimitLoadCheck),)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 

@@ -13,8 +13,8 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.outcomes.limits import layer_caveats, limit_caveats
 from alula.fea.outcomes.pins import shaft_caveats
 from alula.geometry.materials.plausible import untold, unusual
+from alula.loads.case.break_rules import eye_caveats
 from alula.loads.case.case import Case
-from alula.loads.case.eye_rules import eye_caveats
 from alula.loads.case.joint_rules import joint_caveats
 from alula.loads.case.load_rules import load_caveats
 from alula.loads.case.toleranced import tolerance_caveats

@@ -80,7 +80,7 @@ def test_a_limit_within_the_band_is_not_decided_by_hand():
 
 @pytest.mark.parametrize(("ends", "by_hand"), [((15.0, 40.0), False), ((4.0, 40.0), True), ((39.0, 41.0), True)])
 def test_what_doubts_leave_open_by_hand_is_left_to_a_solid_that_may_decide(ends, by_hand):
-    """The stress is 4.5 to 19.6 MPa by hand: partly in the first range, as a whole in the second, clear of the third."""
+    """By hand the stress is 4.5 to 19.6 MPa: partly in the first range, wholly in the second, clear of the third."""
     task = replace(eye_link.task(40.0), open_ranges={"mixed": OpenRanges(limits={"von_mises": (ends,)})})
     hand = hand_bands(task, task.loads[0], eye_link.beam(task))
     assert 4.0 < hand.von_mises.low < 15.0 < hand.von_mises.high < 39.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from alula.fea.asked.asked import asked
+from alula.fea.asked.asked import asked, asked_of
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import Quantity, Verdict, deciding
@@ -22,8 +22,8 @@ from alula.reports.check.plastic_collapse import collapse_section
 from alula.reports.sections.section import Picture
 from alula.reports.sentences import told
 
-CHECK = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5 }'
-FRONT = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
+CHECK = 'checks.collapse={ type = "plastic-collapse", minimum = 1.5 }'
+FRONT = 'checks.collapse={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
 BEYOND = FRONT.replace("1.5", "150.0")
 """A limit that no safety factor of the knee is at."""
 OWN = (
@@ -91,7 +91,7 @@ def collapses(result):
 
 
 def test_what_stays_elastic_is_told_by_hand():
-    case = edited("slider-crank", ['checks.breaks={ type = "plastic-collapse", minimum = 2.4, links = ["crank"] }'])
+    case = edited("slider-crank", ['checks.collapse={ type = "plastic-collapse", minimum = 2.4, links = ["crank"] }'])
     result = check_case(case, fidelity="beam")
     own = collapses(result)
     assert {one.load_case for one in own} == {"push forward", "push backward"}
@@ -174,8 +174,10 @@ def test_from_the_case_to_the_section(monkeypatch):
 )
 def test_brittle_and_layered_links_are_refused(entry, says):
     with pytest.raises(CaseError, match=says) as error:
-        edited("knee", [CHECK, entry])
+        edited("knee", [FRONT, entry])
     assert "front" in str(error.value)
+    case = edited("knee", [CHECK, entry])
+    assert asked_of(case, PlasticCollapseCheck) == ("rear",)
 
 
 @pytest.mark.parametrize(
