@@ -106,6 +106,6 @@ def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, .
 
 
 def _decides(own: Sequence[CheckOutcome]) -> CheckOutcome:
-    """Return the worst outcome of a tier; of what passes also one of which only is known that it is at least so large."""
+    """Return the worst outcome of a tier; of what passes also one that is known to be at least so large alone."""
     first, *_ = found = deciding(own)
     return min(found, key=lambda one: one.margin) if first.verdict is Verdict.PASS else first

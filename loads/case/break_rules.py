@@ -1,4 +1,4 @@
-"""Of which links it can be told whether they break: eyes of ductile metals, collapse of ductile links, notches of brittle.
+"""Of which links it can be told whether they break: eyes of ductile metals, collapse of ductile links, brittle notches.
 
 Formulas for eyes are of round ones, and not of printed parts. A refusal names the check that judges the link instead.
 """

@@ -245,8 +245,8 @@ class PlasticCollapseCheck(CaseModel):
     minimum: Annotated[float, Field(gt=0)]
     """The least plastic-collapse factor of each link."""
     links: tuple[Name, ...] = ()
-    """The links to check; all that are ductile and not printed when left out. One whose safety factor is not at or above
-    the minimum is solved as a solid."""
+    """The links to check; all that are ductile and not printed when left out. One whose safety factor is not at or
+    above the minimum is solved as a solid."""
 
 
 class NotchCheck(CaseModel):
