@@ -10,6 +10,7 @@ from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
 from alula.geometry.parts.bar import Bar
 from alula.geometry.parts.part import Body, FilePart
+from alula.geometry.parts.step import ImportedPart
 from alula.geometry.parts.tube import Tube
 from alula.loads.case.break_rules import check_break_check, check_eye_check
 from alula.loads.case.connection_rules import check_connection, check_line_contact
@@ -301,7 +302,8 @@ def _check_thin(case: CoreCase, name: str, link: str) -> None:
     slotted = any(pin.slot > 0.0 for pin in case.body(link).pins)
     varying = isinstance(part, Bar) and bool(part.widths)
     if not isinstance(part, Tube | Bar) or slotted or varying:
-        what = "has a slot" if slotted else f"is a {part.shape}{' of varying width' if varying else ''}"
+        kind = "file, whose section is not known" if isinstance(part, ImportedPart) else part.shape
+        what = "has a slot" if slotted else f"is a {kind}{' of varying width' if varying else ''}"
         raise CaseError(
             f"checks.{name}.links: its formulas are those of tubes and of bars of one section, but link '{link}' "
             f"{what}; name the other links alone"
