@@ -15,9 +15,9 @@ from alula.fea.common.verdict import LINKAGE, SIZES, CheckOutcome, Quantity, Sen
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.materials.material import Material
+from alula.loads.case.break_rules import break_links, eye_links
 from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import cards_of_connection
-from alula.loads.case.eye_rules import eye_links
 from alula.loads.records.check_spec import (
     BearingCheck,
     ClearanceCheck,
@@ -295,14 +295,9 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
             return (Subject.point(point, link),)
         case EyeCheck():
             return tuple(map(Subject.link, eye_links(case, check)))
-        case (
-            SafetyFactorCheck()
-            | SustainedCheck()
-            | DisplacementCheck()
-            | PlasticCollapseCheck()
-            | NotchCheck()
-            | FatigueCheck()
-        ):
+        case PlasticCollapseCheck() | NotchCheck():
+            return tuple(map(Subject.link, break_links(case, check)))
+        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | FatigueCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))
         case WallCheck():
             return tuple(map(Subject.link, check.links or case.checked_links))

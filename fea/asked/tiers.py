@@ -98,8 +98,14 @@ def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, .
                 tier=tier,
                 links=links,
                 unasked=unasked,
-                decides=deciding(own)[0] if own else None,
+                decides=_decides(own) if own else None,
                 asks="plastic-collapse" if collapses else "safety-factor",
             )
         )
     return tuple(found)
+
+
+def _decides(own: Sequence[CheckOutcome]) -> CheckOutcome:
+    """Return the worst outcome of a tier; of what passes also one that is known to be at least so large alone."""
+    first, *_ = found = deciding(own)
+    return min(found, key=lambda one: one.margin) if first.verdict is Verdict.PASS else first

@@ -39,7 +39,7 @@ from alula.fea.judging.link_result import by_hand_shares, link_result, open_rang
 from alula.fea.judging.linkage import linkage_outcomes, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from alula.fea.judging.notches import notch_outcomes
-from alula.fea.judging.plastic_collapse import Found, collapse_outcomes, find_collapses
+from alula.fea.judging.plastic_collapse import Found, collapse_outcomes, find_collapses, needs_path
 from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.judging.walls import wall_factors, wall_outcome
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
@@ -396,7 +396,7 @@ class _LoadCase:
             *(connection_outcome(load_case, one, found) for one, found in connections),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
-            *collapse_outcomes(case, load_case, collapses, self.acts_on, doubts),
+            *collapse_outcomes(case, load_case, collapses, links, self.acts_on, doubts),
             *(outcome for outcome, _ in notches),
             *pose_outcomes(case, load_case, links, lasting, self.acts_on, pressing),
             *whole,
@@ -595,11 +595,14 @@ def check_case(
     }
     collapses: Mapping[str, Mapping[str, Found]] = {}
     if fidelity not in BY_HAND and asks(case, PlasticCollapseCheck):
+        results = {x: one.links(decided, solved[x]) for x, one in by_load_case.items()}
         acting = {
             x: {
                 link: [cut for cut, _ in plates]
                 for link, plates in one.plates.items()
-                if one.acts_on(link) and (only is None or link in only)
+                if one.acts_on(link)
+                and (only is None or link in only)
+                and (fidelity == "solid" or needs_path(case, x, link, results[x][link]))
             }
             for x, one in by_load_case.items()
         }

@@ -40,6 +40,11 @@ class Band:
         return math.isnan(self.value) and math.isnan(self.low) and math.isnan(self.high)
 
     @property
+    def least_alone(self) -> bool:
+        """True of a number of which only is known that it is at least so large."""
+        return self.value == self.low < self.high == math.inf
+
+    @property
     def told(self) -> "Band":
         """The band as others read it: without ends (NaN) where it covers no error of the model."""
         return replace(self, low=math.nan, high=math.nan) if self.without else self
@@ -74,6 +79,21 @@ class Band:
         Band
         """
         return cls(value=value, low=value, high=value, without=without)
+
+    @classmethod
+    def at_least(cls, low: float, sources: tuple[Source, ...] = ()) -> "Band":
+        """Return the band of a number that is at least so large.
+
+        Parameters
+        ----------
+        low : float
+        sources : tuple of Source, optional
+
+        Returns
+        -------
+        Band
+        """
+        return cls(value=low, low=low, high=math.inf, sources=sources)
 
     @classmethod
     def around(cls, value: float, others: tuple[float, ...], *sources: Source) -> "Band":

@@ -450,7 +450,8 @@ class CheckOutcome:
 def by_nearness(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     """Return checks in the order of their verdicts, fail, undecided, pass; of each the nearest to its limit first.
 
-    Those that are not applicable come last.
+    Numbers of which only is known that they are at least so large come behind those alike: how near they are nobody
+    knows. Those that are not applicable come last.
 
     Parameters
     ----------
@@ -460,7 +461,11 @@ def by_nearness(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     -------
     list of CheckOutcome
     """
-    return sorted(checks, key=lambda check: (not check.applies, _DECISIVE.index(check.verdict), check.margin))
+
+    def order(check: CheckOutcome) -> tuple[bool, int, bool, float]:
+        return not check.applies, _DECISIVE.index(check.verdict), check.value.least_alone, check.margin
+
+    return sorted(checks, key=order)
 
 
 def deciding(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:

@@ -59,7 +59,7 @@ def strengths(case: Case, link: str, check: EyeCheck) -> tuple[EyeStrength, ...]
     ----------
     case : Case
     link : str
-        Of a ductile metal, with round eyes (``alula.loads.case.eye_rules``).
+        Of a ductile metal, with round eyes (``alula.loads.case.break_rules``).
     check : EyeCheck
 
     Returns

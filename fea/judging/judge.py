@@ -75,7 +75,7 @@ def outcomes(
         elif one.quantity is Quantity.DISPLACEMENT:
             found.append(point_outcome(loaded, one))
         else:
-            found.append(_of_link(case, load_case, one, links[name]))
+            found.append(of_link(case, load_case, one, links[name]))
     beams = {link: result.beam for link, result in links.items()}
     found += layer_outcomes(case, load_case, links)
     solids = {
@@ -86,7 +86,23 @@ def outcomes(
     return (*found, *linkage_outcomes(load_case, moved, beams, solids))
 
 
-def _of_link(case: Case, load_case: str, one: Asked, result: LinkResult) -> CheckOutcome:
+def of_link(case: Case, load_case: str, one: Asked, result: LinkResult) -> CheckOutcome:
+    """Return the outcome of what is asked of the result of a link.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    one : Asked
+        A safety factor, a deflection or a sustained stress.
+    result : LinkResult
+
+    Returns
+    -------
+    CheckOutcome
+        Open where no model decided the link.
+    """
     bands = {
         Quantity.SAFETY_FACTOR: result.safety_factor,
         Quantity.DEFLECTION: result.displacement_max,

@@ -1,19 +1,26 @@
-"""Plastic collapse of links: found where a check asks for it, and decided on its band."""
+"""Plastic collapse of links: found where a check asks for it, and decided on its band.
+
+Up to its first yield a link is elastic, and has not collapsed. So where its safety factor, with the whole band, is at
+or above what is asked for, no path is followed: the factor is at least the low end of that band.
+"""
 
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 
-from alula.fea.asked.asked import asked, asked_of
+from alula.fea.asked.asked import Asked, asked, asked_of
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import strength_scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import CheckOutcome
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
+from alula.fea.judging.judge import of_link
 from alula.fea.judging.link_result import spread
+from alula.fea.outcomes.result import LinkResult
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
 from alula.fea.plastic.yield_law import YieldLaw
 from alula.fea.refine.link_task import ElasticLink
@@ -83,7 +90,7 @@ def find_collapses(
     ----------
     case : Case
     loaded : mapping of str to mapping of str to sequence of LinkLoads
-        Load case -> link -> what acts on it, on both plates where they bear differently.
+        Load case -> link -> what acts on it, on both plates where they bear differently; of links whose path is wanted.
     start : MeshSettings
         Of the first mesh of the elastic check.
     first : mapping of str to TaggedMesh
@@ -130,6 +137,68 @@ def find_collapses(
     return found
 
 
+def as_elastic(one: Asked) -> Asked:
+    """Return the safety factor that a check of plastic collapse asks for in effect: of the same link, as large.
+
+    Parameters
+    ----------
+    one : Asked
+
+    Returns
+    -------
+    Asked
+    """
+    return replace(one, quantity=Quantity.SAFETY_FACTOR)
+
+
+def above_first_yield(case: Case, one: Asked, elastic: CheckOutcome) -> CheckOutcome | None:
+    """Return the outcome of a link whose safety factor says that it bears what is asked for.
+
+    With the von Mises stress within the yield strength everywhere under the loads times a factor, nothing has flowed
+    along the path, whatever the material does later; for perfect plasticity that stress is a lower bound of what the
+    link bears by the static theorem of limit analysis, too.
+
+    Parameters
+    ----------
+    case : Case
+    one : Asked
+        Of a check of plastic collapse.
+    elastic : CheckOutcome
+        Of ``as_elastic``.
+
+    Returns
+    -------
+    CheckOutcome or None
+        None where only a path can tell: the band of the safety factor is not at or above the limit or holds no error
+        of its model, or the material yields earlier than by von Mises where it is pulled from all sides.
+    """
+    law = yield_law(case.material_of(one.subject.name))
+    if elastic.verdict is not Verdict.PASS or elastic.value.without or law.compression > 1.0:
+        return None
+    least = elastic.value.low
+    band = Band.at_least(least, elastic.value.sources)
+    return one.outcome(elastic.load_case, band, reason("collapse_above_first_yield", factor=least))
+
+
+def needs_path(case: Case, load_case: str, link: str, result: LinkResult) -> bool:
+    """Return whether the safety factor of a link leaves a check of its plastic collapse open.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    link : str
+    result : LinkResult
+
+    Returns
+    -------
+    bool
+    """
+    every = asked(case, PlasticCollapseCheck, subject=Subject.link(link))
+    return any(above_first_yield(case, one, of_link(case, load_case, as_elastic(one), result)) is None for one in every)
+
+
 def _worse(one: Found | None, other: Found) -> Found:
     """Return the plate that is not known, else the one that collapses first."""
     if one is None or not isinstance(other, LinkCollapse):
@@ -141,6 +210,7 @@ def collapse_outcomes(
     case: Case,
     load_case: str,
     found: Mapping[str, Found],
+    links: Mapping[str, LinkResult],
     acting: Callable[[str], bool],
     doubts: Callable[[str], tuple[Growths, Shares]],
 ) -> Iterator[CheckOutcome]:
@@ -152,7 +222,8 @@ def collapse_outcomes(
     load_case : str
         Its name.
     found : mapping of str to (LinkCollapse or Reason or str)
-        By link; of those that are left out no solid was solved.
+        By link; of those that are left out no path was followed.
+    links : mapping of str to LinkResult
     acting : callable
         Whether anything acts on a link.
     doubts : callable
@@ -167,7 +238,11 @@ def collapse_outcomes(
         if not acting(link):
             yield one.outcome(load_case, Band(value=math.inf, low=math.inf, high=math.inf), reason("idle_link"))
             continue
-        known = found.get(link, NOT_SOLVED)
+        if link not in found:
+            elastic = of_link(case, load_case, as_elastic(one), links[link])
+            yield above_first_yield(case, one, elastic) or one.outcome(load_case, Band.unknown(NOT_SOLVED), NOT_SOLVED)
+            continue
+        known = found[link]
         if not isinstance(known, LinkCollapse):
             yield one.outcome(load_case, Band.unknown(known), known)
             continue

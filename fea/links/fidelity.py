@@ -7,7 +7,7 @@ under loads whose checks are open for other causes wherever in its bands the str
 """
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -18,7 +18,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind
-from alula.fea.refine.beyond_meshes import none_decides
+from alula.fea.refine.beyond_meshes import Ends, is_open, mesh_may_decide, none_decides
 from alula.fea.refine.link_series import PeakQuantity
 from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, Told, refine_links
@@ -214,21 +214,32 @@ def _open_anyway(task: LinkTask, hands: Mapping[str, HandBands]) -> frozenset[st
     return frozenset(name for name, hand in hands.items() if task.holding is None and _beyond_meshes(task, name, hand))
 
 
-def _beyond_meshes(task: LinkTask, name: str, hand: HandBands) -> bool:
-    ranges = task.open_ranges.get(name)
-    if ranges is None or hand.outside or _layers_open(task, [hand]):
-        return False
-    bands: dict[PeakQuantity, Band] = {
-        task.measures[0]: hand.deciding(brittle=task.brittle),
-        "displacement": hand.displacement,
+def _open_for_doubts(task: LinkTask, hands: Sequence[HandBands]) -> Reason | None:
+    """Return which limit lies in the band of a stress or displacement once doubts widen it, where a solid may tell."""
+    for loads, hand in zip(task.loads, hands, strict=True):
+        if loads.name in task.open_ranges:
+            for band, limit, what, unit in _limited(task, loads.name, hand):
+                ends = [(band.low, band.high)]
+                if is_open(ends, limit) and mesh_may_decide(ends, limit):
+                    return reason("limit_within", what=what, low=band.low, high=band.high, limit=limit, unit=unit)
+    return None
+
+
+def _limited(task: LinkTask, name: str, hand: HandBands) -> Iterator[tuple[Band, Ends, str, str]]:
+    """Yield the numbers of a link under some loads by hand with the ranges that other causes make of their limits."""
+    limits = task.open_ranges[name].limits
+    bands: dict[PeakQuantity, tuple[Band, str, str]] = {
+        task.measures[0]: (hand.deciding(brittle=task.brittle), "peak stress", "MPa"),
+        "displacement": (hand.displacement, "displacement", "mm"),
     }
-    return none_decides(
-        [
-            ([(band.low, band.high)], limit)
-            for quantity, band in bands.items()
-            for limit in ranges.limits.get(quantity, ())
-        ]
-    )
+    for quantity, (band, what, unit) in bands.items():
+        yield from ((band, limit, what, unit) for limit in limits.get(quantity, ()))
+
+
+def _beyond_meshes(task: LinkTask, name: str, hand: HandBands) -> bool:
+    if name not in task.open_ranges or hand.outside or _layers_open(task, [hand]):
+        return False
+    return none_decides([([(band.low, band.high)], limit) for band, limit, *_ in _limited(task, name, hand)])
 
 
 def left_open(body: Body) -> Decision:
@@ -392,7 +403,7 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     if _layers_open(task, hands):
         return None, reason("layers_open_by_hand")
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
-    open_limit = undecided(task, stresses, [hand.displacement for hand in hands])
+    open_limit = undecided(task, stresses, [hand.displacement for hand in hands]) or _open_for_doubts(task, hands)
     if open_limit:
         return None, reason("open_by_hand", open_limit=open_limit)
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)

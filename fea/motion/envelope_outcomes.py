@@ -24,6 +24,7 @@ from alula.fea.judging.judge import link_outcome
 from alula.fea.judging.layers import CHECK as LAYERS
 from alula.fea.judging.layers import asked_of_layers, layers_judged, no_strength, without_shear
 from alula.fea.judging.line_contact import contact_of, contact_outcome, line_load
+from alula.fea.judging.plastic_collapse import above_first_yield, as_elastic
 from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.judging.walls import wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand
@@ -38,6 +39,7 @@ from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stres
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Material
+from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
     BearingCheck,
     ConnectionCheck,
@@ -46,6 +48,7 @@ from alula.loads.records.check_spec import (
     LimitLoadCheck,
     LineContactCheck,
     PinCheck,
+    PlasticCollapseCheck,
     SafetyFactorCheck,
     WallCheck,
 )
@@ -54,8 +57,9 @@ from alula.loads.statics.joint_reaction import JointReaction
 
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
+COLLAPSE_NOT_FOLLOWED = reason("collapse_not_followed")
 OF_JOINTS = (PinCheck, BearingCheck, LineContactCheck, ConnectionCheck)
-FOLLOWED = (SafetyFactorCheck, *OF_JOINTS, EyeCheck, WallCheck, FatigueCheck, LimitLoadCheck)
+FOLLOWED = (*(SafetyFactorCheck, *OF_JOINTS, EyeCheck, WallCheck, PlasticCollapseCheck, FatigueCheck, LimitLoadCheck),)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
 
@@ -90,13 +94,15 @@ def envelope_outcomes(
         Where neither check nor material states a limit, or a pin has no diameter.
     """
     case, found = moved.case, list[CheckOutcome]()
-    for one in asked(case, SafetyFactorCheck, *OF_JOINTS):
+    for one in asked(case, SafetyFactorCheck, PlasticCollapseCheck, *OF_JOINTS):
         if isinstance(one.check, OF_JOINTS):
             found += _joint(moved, one, evaluated, grown or {})
         elif one.subject.name in links:
+            elastic = as_elastic(one)
             for load_case, over in links[one.subject.name].load_cases.items():
-                outcome = link_outcome(case, load_case, one, over.safety_factor, over.discretisation)
-                found.append(_complete(outcome, evaluated))
+                outcome = link_outcome(case, load_case, elastic, over.safety_factor, over.discretisation)
+                outcome = _complete(outcome, evaluated)
+                found.append(outcome if one == elastic else _above_first_yield(case, one, outcome))
     for link, envelope in links.items():
         found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
@@ -109,6 +115,12 @@ def envelope_outcomes(
         for load_case, layers in envelope.layers.items():
             found += layer_fatigue_outcomes(case.material_of(link), link, load_case, layers)
     return found
+
+
+def _above_first_yield(case: Case, one: Asked, elastic: CheckOutcome) -> CheckOutcome:
+    """Outcome of plastic collapse over the motion, where no path is followed: by its first yield alone."""
+    why = COLLAPSE_NOT_FOLLOWED
+    return above_first_yield(case, one, elastic) or one.outcome(elastic.load_case, Band.unknown(why), why)
 
 
 def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iterator[CheckOutcome]:

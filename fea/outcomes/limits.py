@@ -48,6 +48,8 @@ _ON_LOADS = (
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
     """Return the limits [MPa] of all checks on a link's deciding stress, each with both ends of its stated scatter.
 
+    Plastic collapse is among them: below such a stress no path to it has to be followed.
+
     Parameters
     ----------
     case : Case
@@ -65,8 +67,8 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
         Where a check has no limit.
     """
     material, load, found = case.material_of(link), spread or _widest_load(case), []
-    for one in asked(case, SafetyFactorCheck, SustainedCheck, subject=Subject.link(link)):
-        if one.quantity is Quantity.SAFETY_FACTOR:
+    for one in asked(case, SafetyFactorCheck, PlasticCollapseCheck, SustainedCheck, subject=Subject.link(link)):
+        if one.quantity is not Quantity.SUSTAINED_STRESS:
             strength = strength_scatter(material).times(load.inverse)
             found.append(_spread(material.allowable / one.limit, strength))
         elif not math.isnan(one.limit):

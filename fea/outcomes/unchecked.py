@@ -13,12 +13,19 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.outcomes.limits import layer_caveats, limit_caveats
 from alula.fea.outcomes.pins import shaft_caveats
 from alula.geometry.materials.plausible import untold, unusual
+from alula.loads.case.break_rules import eye_caveats
 from alula.loads.case.case import Case
-from alula.loads.case.eye_rules import eye_caveats
 from alula.loads.case.joint_rules import joint_caveats
 from alula.loads.case.load_rules import load_caveats
 from alula.loads.case.toleranced import tolerance_caveats
-from alula.loads.records.check_spec import FrequencyCheck, PinCheck, SafetyFactorCheck, SustainedCheck
+from alula.loads.records.check_spec import (
+    FrequencyCheck,
+    NotchCheck,
+    PinCheck,
+    PlasticCollapseCheck,
+    SafetyFactorCheck,
+    SustainedCheck,
+)
 from alula.loads.states.case_motion import inertia_caveats, step_caveats
 from alula.loads.states.clearance import collision_caveats
 from alula.loads.states.extent import size_caveats
@@ -71,7 +78,8 @@ def _left_out(case: Case, over_motion: bool) -> Iterator[Caveat]:
     for link in case.linkage.moving:
         if link not in case.checked_links:
             yield Caveat(topic=Topic.PART, what=link, why=reason("no_part"))
-    stressed = asked_of(case, SafetyFactorCheck, *(() if over_motion else (SustainedCheck,)))
+    in_pose = () if over_motion else (SustainedCheck, NotchCheck)
+    stressed = asked_of(case, SafetyFactorCheck, PlasticCollapseCheck, *in_pose)
     pinned = asked_of(case, PinCheck)
     left = [link for link in case.checked_links if link not in stressed]
     if left:

@@ -137,6 +137,7 @@ def _held(first: float, share: Callable[[float], float]) -> float | None:
 def _change(result: CheckResult, check: CheckOutcome) -> VerdictChange:
     case, load_case = result.case, result.load_cases[check.load_case]
     known = 0.0 < check.margin < math.inf and (check.verdict is not Verdict.UNDECIDED or check.margin < 1.0)
+    known = known and not check.value.least_alone
     load = _load(case, load_case, check) if known else None
     width = check.value.high / check.value.low if check.value.low > 0.0 else math.inf
     straddles = check.verdict is Verdict.UNDECIDED and not check.value.unknowable and check.margin < 1.0

@@ -226,6 +226,6 @@ def _next(steps: _Steps, order: Sequence[int], guess: int, holds: "Callable[[Ver
 
 
 def _log_margin(result: VariantResult) -> float:
-    number = nearest(result, worst=False)
-    share = 0.0 if number is None else margin(number, worst=False)
-    return math.log(min(max(share, 1e-9), 1e9))
+    """Logarithm of the least margin that is known; what only a solid tells, such as notches, says nothing of where."""
+    known = [margin(n, worst=False) for n in result.numbers if n.verdict is not None and not math.isnan(n.value)]
+    return math.log(min(max(min(known, default=0.0), 1e-9), 1e9))

@@ -10,10 +10,11 @@ from alula.geometry.materials.directional import directional
 from alula.geometry.materials.material import Material
 from alula.geometry.parts.bar import Bar
 from alula.geometry.parts.part import Body, FilePart
+from alula.geometry.parts.step import ImportedPart
 from alula.geometry.parts.tube import Tube
+from alula.loads.case.break_rules import check_break_check, check_eye_check
 from alula.loads.case.connection_rules import check_connection, check_line_contact
 from alula.loads.case.core import CoreCase
-from alula.loads.case.eye_rules import check_eye_check
 from alula.loads.case.forks import check_fork, check_pair
 from alula.loads.case.heights import layer_of
 from alula.loads.case.joint_rules import check_clamps, check_clearances, check_friction
@@ -275,16 +276,8 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
         check_connection(case, name, check)
     elif isinstance(check, LineContactCheck):
         check_line_contact(case, name, check)
-    elif isinstance(check, PlasticCollapseCheck):
-        for link in check.links:
-            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
-        for link in check.links or case.checked_links:
-            _check_ductile(case, name, link)
-    elif isinstance(check, NotchCheck):
-        for link in check.links:
-            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
-        for link in check.links or case.checked_links:
-            _check_notched(case, name, link)
+    elif isinstance(check, PlasticCollapseCheck | NotchCheck):
+        check_break_check(case, name, check)
     elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck | FatigueCheck):
         if isinstance(check, FatigueCheck) and case.conditions.cycles is None:
             raise CaseError(
@@ -303,49 +296,14 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
                 _check_minimum(name, case.part_of(link).material, case.material_of(link), f"link '{link}'")
 
 
-def _check_ductile(case: CoreCase, name: str, link: str) -> None:
-    """Check that a link is of a material that flows before it breaks, alike in all directions."""
-    material = case.material_of(link)
-    if material.brittle:
-        why = f"'{case.part_of(link).material}' is brittle: it breaks where its stress is largest, before it flows"
-    elif material.strength_across_layers is not None or case.part_of(link).build_direction is not None:
-        why = "it is printed in layers, which come apart before it flows"
-    else:
-        return
-    raise CaseError(
-        f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and name the "
-        "other links in links"
-    )
-
-
-def _check_notched(case: CoreCase, name: str, link: str) -> None:
-    """Check that a card tells how a link bears notches, and that its layers are judged by themselves."""
-    part, material = case.part_of(link), case.material_of(link)
-    entry = f"checks.{name}.links"
-    if not material.brittle:
-        raise CaseError(
-            f"{entry}: '{part.material}', the material of link '{link}', yields at a notch before it breaks; name the "
-            "brittle links alone"
-        )
-    if material.inherent_strength is None and material.weibull_modulus is None:
-        raise CaseError(
-            f"materials.{part.material}: it tells nothing of notches, which '{entry}' asks for in link '{link}'; state "
-            "inherent_strength with fracture_toughness or critical_distance, or weibull_modulus with weibull_volume"
-        )
-    if material.strength_across_layers is not None and part.build_direction is None:
-        raise CaseError(
-            f"parts.{case.links[link].part}.build_direction: it is missing, and '{entry}' judges notches of link "
-            f"'{link}' along its layers alone; state how the part is built"
-        )
-
-
 def _check_thin(case: CoreCase, name: str, link: str) -> None:
     """Check that a link is of a shape whose buckling as a thin one has a formula."""
     part = case.part_of(link)
     slotted = any(pin.slot > 0.0 for pin in case.body(link).pins)
     varying = isinstance(part, Bar) and bool(part.widths)
     if not isinstance(part, Tube | Bar) or slotted or varying:
-        what = "has a slot" if slotted else f"is a {part.shape}{' of varying width' if varying else ''}"
+        kind = "file, whose section is not known" if isinstance(part, ImportedPart) else part.shape
+        what = "has a slot" if slotted else f"is a {kind}{' of varying width' if varying else ''}"
         raise CaseError(
             f"checks.{name}.links: its formulas are those of tubes and of bars of one section, but link '{link}' "
             f"{what}; name the other links alone"

@@ -245,7 +245,8 @@ class PlasticCollapseCheck(CaseModel):
     minimum: Annotated[float, Field(gt=0)]
     """The least plastic-collapse factor of each link."""
     links: tuple[Name, ...] = ()
-    """The links to check; all that have a part when left out. Each is solved as a solid."""
+    """The links to check; all that are ductile and not printed when left out. One whose safety factor is not at or
+    above the minimum is solved as a solid."""
 
 
 class NotchCheck(CaseModel):
@@ -260,7 +261,7 @@ class NotchCheck(CaseModel):
     minimum: Annotated[float, Field(gt=0)]
     """The least factor."""
     links: tuple[Name, ...] = ()
-    """The links to check; all that have a part when left out. Each is solved as a solid."""
+    """The links to check; all that are brittle when left out. Each is solved as a solid."""
 
 
 class FatigueCheck(CaseModel):

@@ -89,6 +89,8 @@ def short(value: float, digits: int) -> str:
 def band(value: Band, digits: int = 3) -> str:
     """Return ``3.21 (2.44 to 3.21)``, the value alone where the band has no visible width, or ``3.21 (no band)``.
 
+    Where only the low end is known it is ``at least 2.44``.
+
     Parameters
     ----------
     value : Band
@@ -102,6 +104,8 @@ def band(value: Band, digits: int = 3) -> str:
     shown = number(value.value, digits)
     if value.without and not value.unknowable:
         return f"{shown} (no band)"
+    if value.least_alone:
+        return f"at least {shown}"
     low, high = number(value.low, digits), number(value.high, digits)
     return shown if low == high else f"{shown} ({low} to {high})"
 

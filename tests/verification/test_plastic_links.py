@@ -23,8 +23,10 @@ from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.refine.link_task import ElasticLink
 from alula.fea.tractions.link_tractions import LinkTractions
 from alula.fea.tractions.pin_pressure import PinPressure
+from alula.fea.tractions.traction import TRANSFERS
 from alula.geometry.meshing.mirror import mirrored
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
+from alula.loads.records.bearing import WIDE
 
 HOLE, WIDTH, HEIGHT, LENGTH = 1.5, 5.0, 3.0, 20.0
 NET = (WIDTH - 2.0 * HOLE) * HEIGHT * YIELD
@@ -196,6 +198,19 @@ def test_paths_on_two_meshes_have_the_same_states(earlier):
     found = follow(loaded(eighth_in_tension(amount=0.1)), like=like)
     wanted = [one.control for one in like.states if one.control > found.states[0].control]
     assert [one.control for one in found.states[1:]][-len(wanted) :] == pytest.approx(wanted)
+
+
+def test_the_first_yield_is_a_lower_bound_of_what_a_path_finds():
+    """Where a check takes a safety factor for a collapse factor, no path followed instead finds less."""
+    space = displacement_space(mesh(1.0))
+    pose = pull(NET).chosen(None)
+    [variant] = LinkTractions.of(space, [pose], density=LINK.density).variants(pose, (WIDE,), TRANSFERS)
+    fixed = isostatic_supports(space.nodes, space.corners)
+    load = ProportionalLoad(PlasticBody.of(space, law()), variant.load, fixed, threads=1)
+    before = load.elastic(0.999 * load.first_yield)
+    assert before.plastic_strain == 0.0
+    assert load.loaded(before, 1.05 * load.first_yield).plastic_strain > 0.0
+    assert load.first_yield < collapse(NET).low
 
 
 def test_without_a_state_in_contact_the_narrower_pressure_stands_in(monkeypatch):

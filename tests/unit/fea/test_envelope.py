@@ -160,6 +160,31 @@ def test_no_link_passes_where_the_linkage_gives_way(result, monkeypatch):
     assert verdicts["push"] <= {Verdict.UNDECIDED, Verdict.FAIL}
 
 
+def test_collapse_over_a_motion_is_told_by_first_yield_alone(path, result):
+    """Where that does not reach its limit, or poses are left out, the check is open and does not fail."""
+    least = {name: over.safety_factor.low for name, over in result.links["rocker"].load_cases.items()}
+    assert len(set(least.values())) == 2
+    between = math.sqrt(math.prod(least.values()))
+    case = edited(path, [f'checks.breaks={{ type = "plastic-collapse", minimum = {between} }}'])
+    moved = replace(result.moved, case=case)
+
+    def collapses(evaluated):
+        found = envelope_outcomes(moved, result.links, evaluated)
+        return {one.load_case: one for one in found if one.quantity is Quantity.PLASTIC_COLLAPSE}
+
+    found = collapses(result.evaluated)
+    assert set(found) == set(least)
+    for name, one in found.items():
+        if least[name] > between:
+            assert (one.verdict, one.value.low, one.value.high) == (Verdict.PASS, least[name], math.inf)
+        else:
+            assert one.verdict is Verdict.UNDECIDED
+            assert "in single poses" in in_words(one.reason)
+    some = result.evaluated.copy()
+    some[0] = False
+    assert {one.verdict for one in collapses(some).values()} == {Verdict.UNDECIDED}
+
+
 def test_loads_at_a_pose_are_those_of_the_statics(path, moved):
     """Weight, inertia, carried masses, forces, moments and spread loads, cut free by the other path of the code."""
     statics = solve_case_statics(read_case(path))

@@ -11,6 +11,7 @@ from alula.fea.beam.calibration import calibrations
 from alula.fea.beam.critical_locations import critical_locations, shoulder_factors
 from alula.fea.check.run import check_case
 from alula.fea.links.fidelity import decide, decided_by_hand, hand_bands
+from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.refinement import START, Effort
 from alula.geometry.parts.part import HoleRow
 from alula.loads.records.bearing import CONTACT_SHORTFALL
@@ -75,6 +76,15 @@ def test_a_limit_within_the_band_is_not_decided_by_hand():
     decision, why = decided_by_hand(task, [hand_bands(task, task.loads[0], eye_link.beam(task))])
     assert decision is None
     assert "the limit, 9 MPa, lies inside" in told(why)
+
+
+@pytest.mark.parametrize(("ends", "by_hand"), [((15.0, 40.0), False), ((4.0, 40.0), True), ((39.0, 41.0), True)])
+def test_what_doubts_leave_open_by_hand_is_left_to_a_solid_that_may_decide(ends, by_hand):
+    """By hand the stress is 4.5 to 19.6 MPa: partly in the first range, wholly in the second, clear of the third."""
+    task = replace(eye_link.task(40.0), open_ranges={"mixed": OpenRanges(limits={"von_mises": (ends,)})})
+    hand = hand_bands(task, task.loads[0], eye_link.beam(task))
+    assert 4.0 < hand.von_mises.low < 15.0 < hand.von_mises.high < 39.0
+    assert (decided_by_hand(task, [hand])[0] is not None) is by_hand
 
 
 @pytest.mark.parametrize(

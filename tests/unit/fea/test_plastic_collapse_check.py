@@ -7,21 +7,26 @@ import pytest
 from edited_cases import edited
 from plastic_problems import FOUND
 
+from alula.fea.asked.asked import asked, asked_of
 from alula.fea.check.run import check_case
-from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import Quantity, Verdict, deciding
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import plastic_collapse
 from alula.fea.judging.link_result import by_hand_shares
-from alula.fea.judging.plastic_collapse import collapse_outcomes
+from alula.fea.judging.plastic_collapse import above_first_yield, as_elastic, collapse_outcomes
 from alula.fea.plastic.load_path import NoPlasticStateError
 from alula.geometry.base.errors import CaseError
+from alula.loads.records.check_spec import PlasticCollapseCheck
 from alula.reports.check.plastic_collapse import collapse_section
 from alula.reports.sections.section import Picture
 from alula.reports.sentences import told
 from alula.reports.turnable.link import collapse_name
 
-CHECK = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5 }'
-FRONT = 'checks.breaks={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
+CHECK = 'checks.collapse={ type = "plastic-collapse", minimum = 1.5 }'
+FRONT = 'checks.collapse={ type = "plastic-collapse", minimum = 1.5, links = ["front"] }'
+BEYOND = FRONT.replace("1.5", "150.0")
+"""A limit that no safety factor of the knee is at."""
 OWN = (
     'materials.own={{ title = "Aluminium", density = "2800 kg/m^3", youngs_modulus = "70 GPa", poissons_ratio = 0.33, '
     'yield_strength = "400 MPa", ultimate_strength = "480 MPa", strength = "yield", '
@@ -33,7 +38,7 @@ def judged(case, found):
     """Return the outcome under the first load case."""
     load_case = next(iter(case.load_cases))
     doubts = Growths(), by_hand_shares(Growths(), "front")
-    [outcome] = collapse_outcomes(case, load_case, found, lambda link: True, lambda link: doubts)
+    [outcome] = collapse_outcomes(case, load_case, found, {}, lambda link: True, lambda link: doubts)
     return outcome
 
 
@@ -62,10 +67,53 @@ def test_the_range_of_the_strength_multiplies_the_band():
     assert outcome.verdict is Verdict.UNDECIDED
 
 
+def collapses(result):
+    """Return the outcomes of plastic collapse under all load cases."""
+    every = [one for load_case in result.load_cases.values() for one in load_case.checks]
+    return [one for one in every if one.quantity is Quantity.PLASTIC_COLLAPSE]
+
+
+def test_what_stays_elastic_is_told_by_hand():
+    case = edited("slider-crank", ['checks.collapse={ type = "plastic-collapse", minimum = 2.4, links = ["crank"] }'])
+    result = check_case(case, fidelity="beam")
+    own = collapses(result)
+    assert {one.load_case for one in own} == {"push forward", "push backward"}
+    for one in own:
+        factor = result.load_cases[one.load_case].links["crank"].safety_factor
+        assert one.verdict is Verdict.PASS
+        assert (one.value.low, one.value.high) == (factor.low, np.inf)
+        assert one.value.sources == factor.sources
+        assert "nothing of it yields" in told(one.reason)
+        checks = [check for check in result.load_cases[one.load_case].checks if check.link == "crank"]
+        assert min(checks, key=lambda check: check.margin) is one
+        assert deciding(checks)[0] is not one
+    assert collapse_section(result).data == {"plastic_collapse": None}
+
+
+@pytest.mark.parametrize(
+    ("low", "without", "card", "tells"),
+    [
+        (1.5, "", "", True),
+        (1.49, "", "", False),
+        (1.5, "beam theory alone", "", False),
+        (1.5, "", ", compression_ratio = 1.2", False),
+        (1.5, "", ", compression_ratio = 1.0, hardening_factors = [[0.04, 1.1]]", True),
+    ],
+)
+def test_when_a_safety_factor_tells(low, without, card, tells):
+    """Not within the band, of no known error, or where a pull from all sides makes it yield before von Mises does."""
+    case = edited("knee", [FRONT, OWN.format(card), 'parts.front.material="own"'])
+    [one] = asked(case, PlasticCollapseCheck)
+    band = Band(value=2.0, low=low, high=3.0, without=without)
+    found = above_first_yield(case, one, as_elastic(one).outcome("heel-strike", band))
+    assert (found is not None) is tells
+    if found is not None:
+        assert (found.quantity, found.limit, found.value) == (Quantity.PLASTIC_COLLAPSE, 1.5, Band.at_least(1.5))
+
+
 def test_without_a_solid_it_is_open_and_names_the_remedy():
-    result = check_case(edited("knee", [CHECK]), fidelity="beam")
-    checks = [one for load_case in result.load_cases.values() for one in load_case.checks]
-    own = [one for one in checks if one.quantity is Quantity.PLASTIC_COLLAPSE]
+    result = check_case(edited("knee", [BEYOND.replace(', links = ["front"]', "")]), fidelity="beam")
+    own = collapses(result)
     assert {one.verdict for one in own} == {Verdict.UNDECIDED}
     assert all("--fidelity solid" in told(one.reason) for one in own)
     assert {one.link for one in own} == {"front", "rear"}
@@ -73,32 +121,32 @@ def test_without_a_solid_it_is_open_and_names_the_remedy():
 
 
 def test_from_the_case_to_the_section(monkeypatch):
-    """One load case is found, of the other the path is lost: it stays open, and never passes."""
-    asked = []
+    """Of one link a path is lost: it stays open, and never passes. What stays elastic up to the limit needs none."""
+    paths = []
 
     def find(link, law, loads, mesh, **more):
-        asked.append((link.E, law.strength, more["until"] < np.inf))
+        paths.append(((link.E, law.strength), loads.name, more["until"] < np.inf))
         if loads.name == "late-stance":
             raise NoPlasticStateError("no equilibrium was found in 40 iterations")
-        return FOUND
+        return replace(FOUND, factor=200.0, low=190.0, high=220.0)
 
     monkeypatch.setattr(plastic_collapse, "collapse_of", find)
-    result = check_case(edited("knee", [FRONT]))
-    assert set(asked) == {(71700.0, 460.0, True)}
-    assert len(asked) == 2
-    checks = {
-        name: next(one for one in load_case.checks if one.quantity is Quantity.PLASTIC_COLLAPSE)
-        for name, load_case in result.load_cases.items()
-    }
-    assert checks["heel-strike"].verdict is Verdict.PASS
-    assert checks["late-stance"].verdict is Verdict.UNDECIDED
-    assert "no equilibrium" in told(checks["late-stance"].reason)
+    result = check_case(edited("knee", [CHECK.replace("1.5", "60.0"), "solid.mesh_size=1.5"]))
+    own = (71700.0, 460.0)
+    assert sorted(paths) == [(own, "heel-strike", True)] * 2 + [(own, "late-stance", True)]
+    checks = {(one.link, one.load_case): one for one in collapses(result)}
+    assert checks["front", "late-stance"].value.least_alone
+    assert checks["front", "heel-strike"].value.low == pytest.approx(190.0, rel=0.05)
+    lost = checks.pop(("rear", "late-stance"))
+    assert {one.verdict for one in checks.values()} == {Verdict.PASS}
+    assert lost.verdict is Verdict.UNDECIDED
+    assert "no equilibrium" in told(lost.reason)
     section = collapse_section(result)
     record = section.data["plastic_collapse"]["load_cases"]
-    assert record["heel-strike"]["links"]["front"]["factor"] == 2.0
+    assert record["heel-strike"]["links"]["front"]["factor"] == 200.0
     assert record["late-stance"]["links"] == {}
-    [picture] = [part for part in section.parts if isinstance(part, Picture)]
-    assert (picture.name, picture.model) == ("plastic-front", collapse_name("front"))
+    pictures = {part.name: part.model for part in section.parts if isinstance(part, Picture)}
+    assert pictures == {f"plastic-{link}": collapse_name(link) for link in ("front", "rear")}
 
 
 @pytest.mark.parametrize(
@@ -110,8 +158,10 @@ def test_from_the_case_to_the_section(monkeypatch):
 )
 def test_brittle_and_layered_links_are_refused(entry, says):
     with pytest.raises(CaseError, match=says) as error:
-        edited("knee", [CHECK, entry])
+        edited("knee", [FRONT, entry])
     assert "front" in str(error.value)
+    case = edited("knee", [CHECK, entry])
+    assert asked_of(case, PlasticCollapseCheck) == ("rear",)
 
 
 @pytest.mark.parametrize(

@@ -144,7 +144,8 @@ def test_a_verdict_comes_at_once_with_a_picture_of_the_whole_part(tmp_path):
     case = written(STEP / "plate.step", tmp_path, "solid.mesh_size=2")
     result = check_case(case, effort=effort_of(case, None, max_unknowns=600_000, time_limit=0.0))
     checks = result.load_cases["load"].checks
-    assert {check.name for check in checks if check.verdict is not Verdict.PASS} == {"collapse"}  # which takes time
+    assert {check.verdict for check in checks} == {Verdict.PASS}
+    assert next(check for check in checks if check.name == "collapse").value.least_alone  # no path, which takes time
     peak = result.load_cases["load"].links["plate"].stress.peak
     assert peak.value == pytest.approx(10.0 * (40.0 - peak.location[0]) * 10.0 / (5.0 * 20.0**3 / 12.0), rel=0.1)
     axes = _Drawing(result, "load").axes

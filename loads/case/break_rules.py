@@ -1,6 +1,6 @@
-"""Of which links the modes of eyes can be told: formulas are of round eyes, of ductile metals that are not printed.
+"""Of which links it can be told whether they break: eyes of ductile metals, collapse of ductile links, brittle notches.
 
-A refusal names the check that judges the link instead.
+Formulas for eyes are of round ones, and not of printed parts. A refusal names the check that judges the link instead.
 """
 
 from collections.abc import Iterator
@@ -13,10 +13,98 @@ from alula.geometry.parts.disc import Disc
 from alula.geometry.parts.plate import Plate
 from alula.geometry.parts.straight import Straight
 from alula.loads.case.core import CoreCase
-from alula.loads.records.check_spec import BTH_1, EyeCheck
+from alula.loads.records.check_spec import BTH_1, EyeCheck, NotchCheck, PlasticCollapseCheck
 from alula.loads.text.caveat import Caveat, Topic
 from alula.loads.text.explain import require
 from alula.loads.text.reason import reason
+
+BreakCheck = PlasticCollapseCheck | NotchCheck
+
+
+def break_links(case: CoreCase, check: BreakCheck) -> tuple[str, ...]:
+    """Return the links that a check judges: those that it names, else all of such materials as it is for.
+
+    Parameters
+    ----------
+    case : CoreCase
+    check : PlasticCollapseCheck or NotchCheck
+
+    Returns
+    -------
+    tuple of str
+    """
+    if check.links:
+        return check.links
+    notches = isinstance(check, NotchCheck)
+    return tuple(
+        link for link in case.checked_links if not (_unlike_brittle if notches else _unlike_ductile)(case, link)
+    )
+
+
+def check_break_check(case: CoreCase, name: str, check: BreakCheck) -> None:
+    """Check that a check of plastic collapse or notches asks for what can be told.
+
+    Parameters
+    ----------
+    case : CoreCase
+    name : str
+        Of the check.
+    check : PlasticCollapseCheck or NotchCheck
+
+    Raises
+    ------
+    CaseError
+        For a link of another material, also where no link is of one that it is for, and for a card without the data.
+    """
+    for link in check.links:
+        require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
+    for link in break_links(case, check) or case.checked_links:
+        (_check_notched if isinstance(check, NotchCheck) else _check_ductile)(case, name, link)
+
+
+def _unlike_ductile(case: CoreCase, link: str) -> str:
+    """Why a link has no plastic collapse; "" of one that flows before it breaks, alike in all directions."""
+    part = case.part_of(link)
+    material = case.all_materials[part.material]
+    if material.brittle:
+        return f"'{part.material}' is brittle: it breaks where its stress is largest, before it flows"
+    if material.strength_across_layers is not None or part.build_direction is not None:
+        return "it is printed in layers, which come apart before it flows"
+    return ""
+
+
+def _unlike_brittle(case: CoreCase, link: str) -> bool:
+    return not case.all_materials[case.part_of(link).material].brittle
+
+
+def _check_ductile(case: CoreCase, name: str, link: str) -> None:
+    if why := _unlike_ductile(case, link):
+        raise CaseError(
+            f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and name the "
+            "other links in links"
+        )
+
+
+def _check_notched(case: CoreCase, name: str, link: str) -> None:
+    """Check that a card tells how a link bears notches, and that its layers are judged by themselves."""
+    part = case.part_of(link)
+    material = case.all_materials[part.material]
+    entry = f"checks.{name}.links"
+    if not material.brittle:
+        raise CaseError(
+            f"{entry}: '{part.material}', the material of link '{link}', yields at a notch before it breaks; name the "
+            "brittle links alone"
+        )
+    if material.inherent_strength is None and material.weibull_modulus is None:
+        raise CaseError(
+            f"materials.{part.material}: it tells nothing of notches, which '{entry}' asks for in link '{link}'; state "
+            "inherent_strength with fracture_toughness or critical_distance, or weibull_modulus with weibull_volume"
+        )
+    if material.strength_across_layers is not None and part.build_direction is None:
+        raise CaseError(
+            f"parts.{case.links[link].part}.build_direction: it is missing, and '{entry}' judges notches of link "
+            f"'{link}' along its layers alone; state how the part is built"
+        )
 
 
 def check_eye_check(case: CoreCase, name: str, check: EyeCheck) -> None:
