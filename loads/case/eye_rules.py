@@ -15,7 +15,6 @@ from alula.geometry.parts.straight import Straight
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import BTH_1, EyeCheck
 from alula.loads.text.caveat import Caveat, Topic
-from alula.loads.text.explain import require
 from alula.loads.text.reason import reason
 
 
@@ -35,8 +34,6 @@ def check_eye_check(case: CoreCase, name: str, check: EyeCheck) -> None:
         For a link of another material or shape, for one without pins, and for a card without the strength.
     """
     entry = f"checks.{name}"
-    for link in check.links:
-        require(f"{entry}.links", link, case.checked_links, "is no link with a part")
     if not case.checked_links:
         raise CaseError(f"{entry}: no link has a part, so there are no eyes; give a link a part")
     for link in eye_links(case, check) or case.checked_links:
