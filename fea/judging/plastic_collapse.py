@@ -2,18 +2,18 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 
-from alula.fea.asked.asked import asked, asked_of
+from alula.fea.asked.asked import Asked, asked_of
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import strength_scatter
 from alula.fea.common.source import Source, SourceKind
-from alula.fea.common.verdict import CheckOutcome
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.link_result import spread
+from alula.fea.judging.loading import Collapse, Judged, SolvedLinks
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
 from alula.fea.plastic.yield_law import YieldLaw
 from alula.fea.refine.link_task import ElasticLink
@@ -28,8 +28,6 @@ from alula.loads.records.check_spec import PlasticCollapseCheck
 NOT_SOLVED = reason("collapse_needs_solid")
 NEGLIGIBLE = 0.005
 """Share of a factor below which what the pins' pressure leaves open is not told."""
-Found = LinkCollapse | Reason | str
-"""Why it is not known, where it is not."""
 
 
 def yield_law(material: Material) -> YieldLaw:
@@ -76,7 +74,7 @@ def find_collapses(
     time_limit: float,
     threads: int | None,
     progress: Callable[[str], None],
-) -> dict[str, dict[str, Found]]:
+) -> dict[str, dict[str, Collapse]]:
     """Return at what factor links collapse of which a check asks for it.
 
     Parameters
@@ -101,7 +99,7 @@ def find_collapses(
         Load case -> link -> what was found, the worse of two plates; or why it is not known.
     """
     until = time.perf_counter() + time_limit
-    found: dict[str, dict[str, Found]] = {load_case: {} for load_case in loaded}
+    found: dict[str, dict[str, Collapse]] = {load_case: {} for load_case in loaded}
     for link in asked_of(case, PlasticCollapseCheck):
         body, material = case.body(link), case.material_of(link)
 
@@ -115,7 +113,7 @@ def find_collapses(
             for loads in links.get(link, ()):
                 progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
                 try:
-                    one: Found = collapse_of(
+                    one: Collapse = collapse_of(
                         ElasticLink.of(body, material),
                         yield_law(material),
                         loads,
@@ -130,51 +128,33 @@ def find_collapses(
     return found
 
 
-def _worse(one: Found | None, other: Found) -> Found:
+def _worse(one: Collapse | None, other: Collapse) -> Collapse:
     """Return the plate that is not known, else the one that collapses first."""
     if one is None or not isinstance(other, LinkCollapse):
         return other
     return other if isinstance(one, LinkCollapse) and other.low < one.low else one
 
 
-def collapse_outcomes(
-    case: Case,
-    load_case: str,
-    found: Mapping[str, Found],
-    acting: Callable[[str], bool],
-    doubts: Callable[[str], tuple[Growths, Shares]],
-) -> Iterator[CheckOutcome]:
-    """Yield the outcome of every check of plastic collapse under a load case.
+def judge_collapse(here: SolvedLinks, one: Asked) -> Judged:
+    """Return at what factor on its loads a link collapses.
 
     Parameters
     ----------
-    case : Case
-    load_case : str
-        Its name.
-    found : mapping of str to (LinkCollapse or Reason or str)
-        By link; of those that are left out no solid was solved.
-    acting : callable
-        Whether anything acts on a link.
-    doubts : callable
-        What leaves the loads of a link open, as ``link_result`` takes it.
+    here : SolvedLinks
+    one : Asked
+        Of a link.
 
-    Yields
-    ------
-    CheckOutcome
+    Returns
+    -------
+    Judged
     """
-    for one in asked(case, PlasticCollapseCheck):
-        link = one.subject.name
-        if not acting(link):
-            yield one.outcome(load_case, Band(value=math.inf, low=math.inf, high=math.inf), reason("idle_link"))
-            continue
-        known = found.get(link, NOT_SOLVED)
-        if not isinstance(known, LinkCollapse):
-            yield one.outcome(load_case, Band.unknown(known), known)
-            continue
-        outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *doubts(link)))
-        yield outcome.because(
-            reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
-        )
+    case, link = here.case, one.subject.name
+    known = here.collapses.get(link, NOT_SOLVED)
+    if not isinstance(known, LinkCollapse):
+        return Judged(outcome=one.outcome(here.load_case, Band.unknown(known), known))
+    outcome = one.outcome(here.load_case, collapse_band(case, link, here.load_case, known, *here.doubts(link)))
+    why = reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
+    return Judged(outcome=outcome.because(why), numbers=(known,))
 
 
 def collapse_band(case: Case, link: str, load_case: str, found: LinkCollapse, uneven: Growths, shares: Shares) -> Band:
