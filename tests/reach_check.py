@@ -33,8 +33,8 @@ class ReachCase(Case):
     checks: dict[str, Annotated[Check | ReachCheck, Field(discriminator="type")]] = {}
 
 
-REACH = Quantity._new_member_(Quantity, "reach", "mm", Sense.AT_MOST, "shape")
-"""As a line ``REACH = "reach", "mm", Sense.AT_MOST, "shape"`` would make it."""
+REACH = Quantity._new_member_(Quantity, "reach", "mm", Sense.AT_MOST, "shape", "reach")
+"""As a line ``REACH = "reach", "mm", Sense.AT_MOST, "shape", "reach"`` would make it."""
 REACH._name_ = "REACH"
 
 

@@ -24,9 +24,7 @@ from alula.loads.records.check_spec import (
     ConnectionCheck,
     DisplacementCheck,
     EyeCheck,
-    FatigueCheck,
     FrequencyCheck,
-    LimitLoadCheck,
     LineContactCheck,
     MassCheck,
     NotchCheck,
@@ -35,28 +33,10 @@ from alula.loads.records.check_spec import (
     SafetyFactorCheck,
     SizeCheck,
     SustainedCheck,
-    WallCheck,
 )
 
 GRAMS = 1e6
 """In a tonne."""
-_QUANTITIES = {
-    SafetyFactorCheck: Quantity.SAFETY_FACTOR,
-    SustainedCheck: Quantity.SUSTAINED_STRESS,
-    PinCheck: Quantity.SAFETY_FACTOR,
-    BearingCheck: Quantity.SAFETY_FACTOR,
-    EyeCheck: Quantity.EYES,
-    WallCheck: Quantity.WALLS,
-    LineContactCheck: Quantity.LINE_CONTACT,
-    ConnectionCheck: Quantity.CONNECTION,
-    LimitLoadCheck: Quantity.LIMIT_LOAD,
-    PlasticCollapseCheck: Quantity.PLASTIC_COLLAPSE,
-    NotchCheck: Quantity.NOTCHES,
-    FatigueCheck: Quantity.FATIGUE_STRESS,
-    ClearanceCheck: Quantity.CLEARANCE,
-    FrequencyCheck: Quantity.FREQUENCY_RATIO,
-    MassCheck: Quantity.MASS,
-}
 K = TypeVar("K", bound=CaseModel)
 
 
@@ -276,7 +256,7 @@ def least_safety_factor(name: str, stated: float | None, material: Material, wha
 
 
 def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
-    """Return what a check is about: the linkage, unless its kind names anything else.
+    """Return what a check is about: the links or pins that it may name, else the linkage.
 
     Parameters
     ----------
@@ -297,32 +277,29 @@ def subjects_of(case: Case, name: str, check: CaseModel) -> tuple[Subject, ...]:
             return tuple(map(Subject.link, eye_links(case, check)))
         case PlasticCollapseCheck() | NotchCheck():
             return tuple(map(Subject.link, break_links(case, check)))
-        case SafetyFactorCheck() | SustainedCheck() | DisplacementCheck() | FatigueCheck():
-            return tuple(map(Subject.link, check.links or case.checked_links))
-        case WallCheck():
-            return tuple(map(Subject.link, check.links or case.checked_links))
         case FrequencyCheck():
             return (LINKAGE, *map(Subject.link, check.links or case.checked_links))
-        case PinCheck():
-            return tuple(map(Subject.pin, check.joints or case.pinned_joints))
         case BearingCheck():
             return tuple(map(Subject.pin, check.joints or case.bearing_joints))
         case LineContactCheck():
             return tuple(map(Subject.pin, check.joints or case.slotted_joints))
         case ConnectionCheck():
             return (Subject.joint(check.joint),)
-    return (LINKAGE,)
+    stated = vars(check)
+    if "links" in stated:
+        return tuple(map(Subject.link, stated["links"] or case.checked_links))
+    return tuple(map(Subject.pin, stated["joints"] or case.pinned_joints)) if "joints" in stated else (LINKAGE,)
 
 
 def _quantities(check: CaseModel, wanted: Quantity | None) -> tuple[Quantity, ...]:
-    """What a check asks for of each subject; of a kind that is not named here, and of clearance, what is wanted."""
+    """What a check asks for of each subject; of the gaps between layers only where that is wanted."""
     match check:
         case DisplacementCheck():
             every: tuple[Quantity, ...] = (Quantity.DEFLECTION if check.at is None else Quantity.DISPLACEMENT,)
         case SizeCheck():
             every = SIZES
         case _:
-            every = (wanted or _QUANTITIES[type(check)],)
+            every = (wanted or Quantity.of_check(str(vars(check)["type"])),)
     return tuple(one for one in every if wanted in (None, one))
 
 

@@ -102,57 +102,76 @@ class Tier(StrEnum):
 
 
 class Quantity(StrEnum):
-    """What is set against a limit: its name, as text, with its unit ("" for a pure number), its sense and origin."""
+    """What is set against a limit: its name, as text, with its unit ("" for a pure number), its sense and origin.
+
+    Last come the types of checks that it stands for, as a case states them.
+    """
 
     unit: str
     sense: Sense
     origin: Origin
+    checks: tuple[str, ...]
 
-    def __new__(cls, name: str, unit: str, sense: Sense, origin: Origin = "loads") -> "Quantity":
+    def __new__(cls, name: str, unit: str, sense: Sense, origin: Origin = "loads", *checks: str) -> "Quantity":
         """Return a member that is its name."""
         found = str.__new__(cls, name)
-        found._value_, found.unit, found.sense, found.origin = name, unit, sense, origin
+        found._value_, found.unit, found.sense, found.origin, found.checks = name, unit, sense, origin, checks
         return found
 
-    SAFETY_FACTOR = "safety factor", "", Sense.AT_LEAST
+    @classmethod
+    def of_check(cls, kind: str) -> "Quantity":
+        """Return the quantity that stands for a type of checks.
+
+        Parameters
+        ----------
+        kind : str
+            As a case states it.
+
+        Returns
+        -------
+        Quantity
+        """
+        return next(one for one in cls if kind in one.checks)
+
+    SAFETY_FACTOR = "safety factor", "", Sense.AT_LEAST, "loads", "safety-factor", "pins", "bearing"
     LAYERS = "safety factor of the layers", "", Sense.AT_LEAST
     """Of a printed part: against tension normal to its layers and shear along them."""
-    EYES = "safety factor of the eyes", "", Sense.AT_LEAST
+    EYES = "safety factor of the eyes", "", Sense.AT_LEAST, "loads", "eye"
     """Of a link: what the weakest mode of its weakest eye bears over the force of the pin."""
-    WALLS = "buckling factor of thin walls", "", Sense.AT_LEAST
+    WALLS = "buckling factor of thin walls", "", Sense.AT_LEAST, "loads", "wall"
     """Of a link: by what its loads may grow until its wall buckles, it flattens, or it turns aside as a deep strip."""
-    LINE_CONTACT = "safety factor of line contact", "", Sense.AT_LEAST
+    LINE_CONTACT = "safety factor of line contact", "", Sense.AT_LEAST, "loads", "line-contact"
     """Of a pin on the flank of its slot: against yield below the line, or on its largest pressure."""
-    CONNECTION = "safety factor of the connection", "", Sense.AT_LEAST
+    CONNECTION = "safety factor of the connection", "", Sense.AT_LEAST, "loads", "connection"
     """Of what fixes a link at a joint: what its weakest mode bears over what goes through it."""
-    SUSTAINED_STRESS = "sustained stress", "MPa", Sense.AT_MOST
+    SUSTAINED_STRESS = "sustained stress", "MPa", Sense.AT_MOST, "loads", "sustained"
     DEFLECTION = "deflection from its pins", "mm", Sense.AT_MOST
     """Of a link by itself: displacement from the line through its own pins, as if these stayed."""
     DISPLACEMENT = "displacement", "mm", Sense.AT_MOST
     """Of a point, with the whole linkage."""
     BUCKLING_FACTOR = "buckling factor", "", Sense.AT_LEAST
     LOAD_SHARE = "share of the load that is held", "", Sense.AT_LEAST
-    LIMIT_LOAD = "limit-load factor", "", Sense.AT_LEAST
+    LIMIT_LOAD = "limit-load factor", "", Sense.AT_LEAST, "loads", "limit-load"
     """By what all loads may grow until the linkage gives way."""
-    PLASTIC_COLLAPSE = "plastic-collapse factor", "", Sense.AT_LEAST
+    PLASTIC_COLLAPSE = "plastic-collapse factor", "", Sense.AT_LEAST, "loads", "plastic-collapse"
     """By what all loads on a link may grow until it flows without end, or to its material's largest strain."""
-    NOTCHES = "safety factor of the notches", "", Sense.AT_LEAST
+    NOTCHES = "safety factor of the notches", "", Sense.AT_LEAST, "loads", "notch"
     """Of a brittle link: by what its loads may grow until it breaks at a notch, by critical distance and by volume."""
-    FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST
+    FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST, "loads", "fatigue"
     """Fatigue strength over stress."""
     FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST
     """Life over the repetitions that are wanted."""
-    CLEARANCE = "clearance", "mm", Sense.AT_LEAST, "shape"
+    CLEARANCE = "clearance", "mm", Sense.AT_LEAST, "shape", "clearance"
     """Least gap between outlines that lie at one height; negative where they lie in each other."""
     LAYER_GAP = "gap between layers", "mm", Sense.AT_LEAST
     """Least gap along the pins that deflection and tilting pins leave between links that pass over each other."""
-    FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST, "vibration"
+    FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST, "vibration", "frequency"
     """The lowest natural frequency over the motion, over that of the drive."""
     DRIVE_POWER = "drive power", "W", Sense.AT_MOST, "motor"
     DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST, "motor"
     DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST, "motor"
     TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST, "motor"
-    MASS = "total mass", "g", Sense.AT_MOST, "shape"
+    MASS = "total mass", "g", Sense.AT_MOST, "shape", "mass"
     SIZE_X = "size along x", "mm", Sense.AT_MOST, "shape"
     """Of the box about the linkage over all poses."""
     SIZE_Y = "size along y", "mm", Sense.AT_MOST, "shape"

@@ -20,6 +20,7 @@ from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
+from alula.fea.judging.loading import ByHand, Judged, Loading
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
@@ -194,3 +195,29 @@ def bearing_outcome(
     return found.because(
         reason("bearing_in_contact", why=why, low=low, high=high, yields=high > yields, strength=yields)
     )
+
+
+def judge_bearing(here: Loading, one: Asked) -> Judged:
+    """Return what the eyes of a joint bear of its pin.
+
+    Parameters
+    ----------
+    here : Loading
+    one : Asked
+        Of the pin.
+
+    Returns
+    -------
+    Judged
+    """
+    joint = one.subject.name
+    growth = here.joint_growth(joint)
+    return Judged(outcome=bearing_outcome(here.case, here.load_case, one, here.wrenches(joint), growth))
+
+
+BEARING = ByHand(
+    judge=judge_bearing,
+    least=lambda over, one: (
+        -np.max([*pressing(over.case, one.subject.name, over.wrenches(one.subject.name)[0]).values()], axis=0)
+    ),
+)

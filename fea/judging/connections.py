@@ -16,6 +16,7 @@ from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.bearing import pressing
+from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.fea.modes.connection_modes import (
     ConnectionFactors,
     ConnectionMode,
@@ -196,9 +197,7 @@ def connection_factors(
             told = distinct(sources, COUPLES if shared else ())
             band = Band(value=value, low=low, high=high, sources=told, without=WITHOUT)
             bands[mode] = spread.on(band)
-    return ConnectionFactors(
-        check=one.name, joint=check.joint, link=connected_link(case, check), load=ways[0], factors=bands
-    )
+    return ConnectionFactors(link=connected_link(case, check), load=ways[0], factors=bands)
 
 
 def _sought(values: Sequence[Sequence[float]]) -> tuple[float, float]:
@@ -210,6 +209,50 @@ def _sought(values: Sequence[Sequence[float]]) -> tuple[float, float]:
 def _not_held(name: str, check: ConnectionCheck) -> Any:
     kinds = {Bond: "bond_is_pulled_open", Flat: "flat_is_pushed_along", Screws: "two_screws_tilt"}
     return reason(kinds[type(check.way)], check=name)
+
+
+def judge_connection(here: Loading, one: Asked) -> Judged:
+    """Return what a connection bears.
+
+    Parameters
+    ----------
+    here : Loading
+    one : Asked
+        Of a joint.
+
+    Returns
+    -------
+    Judged
+    """
+    case, check = here.case, one.check
+    assert isinstance(check, ConnectionCheck)
+
+    def demand(other: Case, wrench: Real, torque: Any) -> Real:
+        return 1.0 / least_factor(other, check, transmitted(other, check, wrench, torque))
+
+    ways = [transmitted(case, check, way.joints[check.joint].wrench, way.driving[0]) for way in here.ways()]
+    growth = here.growth_through(check.joint, demand)
+    found = connection_factors(case, here.load_case, one, ways, growth)
+    return Judged(outcome=connection_outcome(here.load_case, one, found), numbers=(found,))
+
+
+def least_of_connection(over: OverMotion, one: Asked) -> Real:
+    """Return by what a connection bears more than what goes through it at each pose.
+
+    Parameters
+    ----------
+    over : OverMotion
+    one : Asked
+        Of a joint.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    check = one.check
+    assert isinstance(check, ConnectionCheck)
+    [way] = over.ways()
+    return least_factor(over.case, check, transmitted(over.case, check, way.joints[check.joint].wrench, way.driving[0]))
 
 
 def connection_outcome(load_case: str, one: Asked, found: ConnectionFactors) -> CheckOutcome:
@@ -237,3 +280,6 @@ def connection_outcome(load_case: str, one: Asked, found: ConnectionFactors) -> 
     outcome = one.outcome(load_case, replace(worst, without=WITHOUT))
     torque, force = float(found.load.torque), float(found.load.force)
     return outcome.because(reason("mode_of_connection", mode=str(mode), torque=torque, force=force, why=outcome.reason))
+
+
+CONNECTION = ByHand(judge=judge_connection, least=least_of_connection)

@@ -16,6 +16,7 @@ from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.judging.bearing import sharing
+from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.fea.modes.eye_modes import STRAIGHT, EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 from alula.fea.modes.eye_scatter import eye_scatter
 from alula.geometry.bodies.body import Body, extent
@@ -24,7 +25,6 @@ from alula.geometry.parts.plate import Plate
 from alula.geometry.parts.straight import Straight
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import BTH_1, EyeCheck
-from alula.loads.statics.statics import Reactions
 
 RULE = reason("eyes_by_a_rule")
 DISHING = reason("dishing_not_drawn")
@@ -194,42 +194,37 @@ def eye_factors(
                 sources=distinct(*(x.told for x in more)),
             )
         )
-        yield worse_of(one, strength, plates, spread)
+        yield worse_of(strength, plates, spread)
 
 
-def with_sharing(case: Case, link: str, growth: Mapping[str, Scatter], ways: Sequence[Reactions]) -> dict[str, Scatter]:
-    """Return how the forces on the eyes of a link grow, with what the sharing of couples makes of them.
+def judge_eyes(here: Loading, one: Asked) -> Judged:
+    """Return what the eyes of a link bear.
 
     Parameters
     ----------
-    case : Case
-    link : str
-    growth : mapping of str to Scatter
-        Joint -> how its force grows besides; nothing where it is left out.
-    ways : sequence of Reactions
-        Joint forces in all ways of sharing, first those that stand.
+    here : Loading
+    one : Asked
+        Of a link.
 
     Returns
     -------
-    dict of str to Scatter
-        By the joints of the link's eyes.
+    Judged
     """
-    return {
-        joint: growth.get(joint, Scatter()).times(
-            sharing(case, joint, link, [way.joints[joint].wrench for way in ways])
-        )
+    case, link = here.case, one.subject.name
+    growth = {
+        joint: here.joint_growth(joint).times(sharing(case, joint, link, here.wrenches(joint)))
         for joints in eyes_of(case, link).values()
         for joint in joints
     }
+    found = tuple(eye_factors(case, here.load_case, one, here.loads(link), growth))
+    return Judged(outcome=eye_outcome(here.load_case, one, found), numbers=found)
 
 
-def worse_of(one: Asked, strength: EyeStrength, plates: Sequence[LinkLoads], spread: Scatter) -> EyeFactors:
+def worse_of(strength: EyeStrength, plates: Sequence[LinkLoads], spread: Scatter) -> EyeFactors:
     """Return by what an eye bears more than its pin's force on the worse of its plates.
 
     Parameters
     ----------
-    one : Asked
-        Of its link.
     strength : EyeStrength
     plates : sequence of LinkLoads
         As of ``eye_factors``.
@@ -240,11 +235,11 @@ def worse_of(one: Asked, strength: EyeStrength, plates: Sequence[LinkLoads], spr
     -------
     EyeFactors
     """
-    found = [_factors(one, strength, plate, spread) for plate in plates]
+    found = [_factors(strength, plate, spread) for plate in plates]
     return min(found, key=lambda of: math.inf if of.worst is None else of.worst[1].low)
 
 
-def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatter) -> EyeFactors:
+def _factors(strength: EyeStrength, plate: LinkLoads, spread: Scatter) -> EyeFactors:
     force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
     every, angle = strength.factors(force)
     bands = {}
@@ -258,8 +253,6 @@ def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatte
             own = Band(value=float(value), low=float(low), high=float(high), sources=sources, without=why)
             bands[mode] = spread.inverse.on(own)
     return EyeFactors(
-        check=one.name,
-        link=one.subject.name,
         eye=strength.name,
         force=float(np.linalg.norm(force)),
         angle=math.degrees(float(angle)),
@@ -268,31 +261,27 @@ def _factors(one: Asked, strength: EyeStrength, plate: LinkLoads, spread: Scatte
     )
 
 
-def worst_pose(case: Case, one: Asked, plates: Sequence[LinkLoads], evaluated: NDArray[np.bool_]) -> int:
-    """Return the pose of a motion at which the eyes of a link bear least beyond their pins' forces.
+def least_of_eyes(over: OverMotion, one: Asked) -> NDArray[np.float64]:
+    """Return by what the eyes of a link bear more than their pins' forces at each pose.
 
     Parameters
     ----------
-    case : Case
+    over : OverMotion
     one : Asked
         Of a link.
-    plates : sequence of LinkLoads
-        What acts on the link, or on each plate of a pair, at n poses.
-    evaluated : ndarray of bool, shape (n,)
-        The poses that count.
 
     Returns
     -------
-    int
+    ndarray, shape (n,)
     """
     assert isinstance(one.check, EyeCheck)
-    least = np.full(len(evaluated), np.inf)
-    for strength in strengths(case, one.subject.name, one.check):
-        for plate in plates:
+    least = np.full(len(over.evaluated), np.inf)
+    for strength in strengths(over.case, one.subject.name, one.check):
+        for plate in over.loads(one.subject.name):
             force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
-            for _, low, _ in strength.factors(np.broadcast_to(force, (len(evaluated), 2)))[0].values():
+            for _, low, _ in strength.factors(np.broadcast_to(force, (*least.shape, 2)))[0].values():
                 least = np.minimum(least, low)
-    return int(np.argmin(np.where(evaluated, least, np.inf)))
+    return least
 
 
 def eye_outcome(load_case: str, one: Asked, found: Sequence[EyeFactors]) -> CheckOutcome:
@@ -341,3 +330,6 @@ def mode_of_eye(eye: EyeFactors, mode: EyeMode, why: Reason | str) -> Reason:
     Reason
     """
     return reason("mode_of_eye", eye=eye.eye, mode=str(mode), force=eye.force, angle=eye.angle, why=why)
+
+
+EYES = ByHand(judge=judge_eyes, least=least_of_eyes)

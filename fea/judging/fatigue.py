@@ -9,17 +9,18 @@ the least share of a hole's peak that may count.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from alula.fea.asked.asked import Asked, asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
-from alula.fea.common.scatter import fatigue_scatter
+from alula.fea.common.scatter import fatigue_scatter, load_scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.judging.bearing import contact_pressure
+from alula.fea.judging.loading import Judged, SolvedLinks
 from alula.fea.outcomes.fatigue import (
     LIFE_FACTOR,
     NOTCH,
@@ -108,22 +109,26 @@ def fatigue_outcomes(every: Sequence[Asked], load_case: str, found: Lasting, dat
             yield outcome
 
 
-def link_fatigue_outcomes(case: Case, link: str, load_case: str, found: LinkFatigue) -> Iterator[CheckOutcome]:
+def link_fatigue_outcomes(
+    case: Case, every: Sequence[Asked], load_case: str, found: LinkFatigue
+) -> Iterator[CheckOutcome]:
     """Yield the outcomes of a link's fatigue; none passes whose stress is beyond its static strength, hence not linear.
 
     Parameters
     ----------
     case : Case
-    link, load_case : str
+    every : sequence of Asked
+        Of the link.
+    load_case : str
     found : LinkFatigue
 
     Yields
     ------
     CheckOutcome
     """
-    material = case.material_of(link)
+    material = case.material_of(every[0].subject.name)
     assert material.fatigue is not None
-    for outcome in fatigue_outcomes(asked_fatigue(case, link), load_case, found, material.fatigue):
+    for outcome in fatigue_outcomes(every, load_case, found, material.fatigue):
         if outcome.verdict is Verdict.PASS and found.largest > material.allowable:
             outcome = outcome.left_open(reason("yields_in_cycle", stress=found.largest, strength=material.allowable))
         yield outcome
@@ -228,58 +233,46 @@ def _by_hand(case: Case, result: LinkResult, data: Fatigue) -> Extremes:
     return ends, [result.location, result.location], [1.0, 1.0], least < 1.0
 
 
-def pose_outcomes(
-    case: Case,
-    load_case: str,
-    links: Mapping[str, LinkResult],
-    found: Mapping[str, LinkFatigue | Reason],
-    acting: Callable[[str], bool],
-    forces: Mapping[str, float],
-) -> Iterator[CheckOutcome]:
-    """Yield the outcome of every check of fatigue in a pose.
+def judge_fatigue(here: SolvedLinks, one: Asked) -> Judged:
+    """Return how often a link bears its load in a pose.
 
     Where a pin in a loose hole presses harder in the middle of its contact than what is borne so often, that is told:
     peaks of stress leave it out, and S-N lines are not of wear.
 
     Parameters
     ----------
-    case : Case
-    load_case : str
-        Its name.
-    links : mapping of str to LinkResult
-    found : mapping of str to (LinkFatigue or Reason)
-        As ``pulsating`` returns it, by link.
-    acting : callable
-        Whether anything acts on a link.
-    forces : mapping of str to float
-        Of the joints, with all that scatters [N].
+    here : SolvedLinks
+    one : Asked
+        Of a link.
 
-    Yields
-    ------
-    CheckOutcome
+    Returns
+    -------
+    Judged
     """
-    for link, fatigue in found.items():
-        own = asked_fatigue(case, link)
-        if not acting(link):
-            endless = Band(value=math.inf, low=math.inf, high=math.inf)
-            yield from (one.outcome(load_case, endless, reason("idle_link")) for one in own)
-        elif not isinstance(fatigue, LinkFatigue):
-            yield from (one.outcome(load_case, Band.unknown(fatigue), fatigue) for one in own)
-        else:
-            for outcome in link_fatigue_outcomes(case, link, load_case, fatigue):
-                if not links[link].decided_by and outcome.verdict is not Verdict.UNDECIDED:
-                    outcome = outcome.left_open(links[link].why)
-                elif outcome.verdict is Verdict.PASS and case.material_of(link).strength_across_layers is not None:
-                    outcome = outcome.left_open(reason("layers_fatigue_over_motion"))
-                elif outcome.verdict is Verdict.PASS and _presses_elsewhere(case, links[link]):
-                    outcome = outcome.left_open(reason("pins_press_elsewhere"))
-                pressed = _pressed(case, link, forces, fatigue.strength or math.inf)
-                yield outcome.because(together(outcome.reason, pressed)) if pressed else outcome
+    case, load_case, link = here.case, here.load_case, one.subject.name
+    result = here.links[link]
+    fatigue = pulsating(case, link, result)
+    if not isinstance(fatigue, LinkFatigue):
+        return Judged(outcome=one.outcome(load_case, Band.unknown(fatigue), fatigue))
+    [outcome] = link_fatigue_outcomes(case, [one], load_case, fatigue)
+    if not result.decided_by and outcome.verdict is not Verdict.UNDECIDED:
+        outcome = outcome.left_open(result.why)
+    elif outcome.verdict is Verdict.PASS and case.material_of(link).strength_across_layers is not None:
+        outcome = outcome.left_open(reason("layers_fatigue_over_motion"))
+    elif outcome.verdict is Verdict.PASS and _presses_elsewhere(case, result):
+        outcome = outcome.left_open(reason("pins_press_elsewhere"))
+    pressed = _pressed(here, link, fatigue.strength or math.inf)
+    return Judged(
+        outcome=outcome.because(together(outcome.reason, pressed)) if pressed else outcome, numbers=(fatigue,)
+    )
 
 
-def _pressed(case: Case, link: str, forces: Mapping[str, float], strength: float) -> Reason | None:
+def _pressed(here: SolvedLinks, link: str, strength: float) -> Reason | None:
     """Return the pin that presses hardest on an eye of a link, where that is more than a strength [MPa]."""
-    own = [joint for joint in case.bearing_joints if link in case.joints[joint].links]
-    found = {joint: contact_pressure(case, joint, link, forces[joint]) for joint in own}
+    case, found = here.case, {}
+    for joint in case.bearing_joints:
+        if link in case.joints[joint].links:
+            force = load_scatter(case, here.load_case).high * float(np.linalg.norm(here.wrenches(joint)[0][:3]))
+            found[joint] = contact_pressure(case, joint, link, force)
     joint, most = max(((x, p[1]) for x, p in found.items() if p), key=lambda of: of[1], default=("", 0.0))
     return reason("pin_presses_beside", joint=joint, pressure=most) if most > strength else None

@@ -15,6 +15,7 @@ from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, distinct, friction_source
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.bearing import pressing
+from alula.fea.judging.loading import ByHand, Judged, Loading
 from alula.fea.modes.line_contact import LineContact, hertz_pressure, most_equivalent
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
@@ -103,8 +104,6 @@ def contact_of(
     else:
         factors = {what: _against_yield(case, name, card, pressed) for what, card in cards.items()}
     return LineContact(
-        check=one.name,
-        joint=name,
         line_load=loads[0],
         pressure=value,
         half_width=2.0 * loads[0] / (math.pi * value) if value > 0.0 else 0.0,
@@ -127,6 +126,24 @@ def _against_yield(case: Case, joint: str, card: Material, pressed: Band) -> Ban
     return strength_scatter(card).on(stress.inverse(card.allowable))
 
 
+def judge_contact(here: Loading, one: Asked) -> Judged:
+    """Return what a joint's pin and its slot bear.
+
+    Parameters
+    ----------
+    here : Loading
+    one : Asked
+        Of the pin.
+
+    Returns
+    -------
+    Judged
+    """
+    joint = one.subject.name
+    found = contact_of(here.case, here.load_case, one, here.wrenches(joint), here.joint_growth(joint))
+    return Judged(outcome=contact_outcome(here.load_case, one, found), numbers=(found,))
+
+
 def contact_outcome(load_case: str, one: Asked, found: LineContact) -> CheckOutcome:
     """Return the outcome of a contact: that of pin or flank, whichever yields first.
 
@@ -147,3 +164,9 @@ def contact_outcome(load_case: str, one: Asked, found: LineContact) -> CheckOutc
     return outcome.because(
         reason("line_contact", what=weaker, pressure=found.pressure, load=found.line_load, why=outcome.reason)
     )
+
+
+LINE_CONTACT = ByHand(
+    judge=judge_contact,
+    least=lambda over, one: -line_load(over.case, one.subject.name, over.wrenches(one.subject.name)[0]),
+)

@@ -1,40 +1,32 @@
 """Notches of brittle links: judged by critical distance and by volume on the stress of their solids."""
 
-import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from alula.fea.asked.asked import Asked, asked
+from alula.fea.asked.asked import Asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
-from alula.fea.common.verdict import CheckOutcome
-from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.link_result import spread
+from alula.fea.judging.loading import Judged, SolvedLinks
 from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
 from alula.fea.links.clamp_edge import CLAMP, edge_stress
-from alula.fea.links.fidelity import DecidedLink
 from alula.fea.links.link_by_hand import LinkByHand
 from alula.fea.modes.notches import NotchFactor
-from alula.fea.outcomes.result import LinkResult
 from alula.fea.refine.discretisation import discretisation_source, judged
 from alula.fea.refine.link_series import CHORD
 from alula.fea.refine.refinement import RefinedSolid
 from alula.fea.solid.notch_field import NotchField
 from alula.fea.solid.stress import stress_field
-from alula.fea.superposition.solid_shares import Shares
 from alula.geometry.materials.brittle_notch import NotchStrength, notch_strengths
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.records.bearing import CONTACT_SHORTFALL, NARROW
-from alula.loads.records.check_spec import NotchCheck
 
 NOT_SOLVED = reason("notch_needs_solid")
 NO_TENSION = reason("nowhere_in_tension")
-Plates = Sequence[tuple[str, LinkByHand]]
-"""Name of the loads on each plate of a link, and its hand calculation."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,58 +44,36 @@ _Found = tuple[tuple[float, float, float], dict[str, Any]]
 _NOTHING: _Found = (0.0, 0.0, 0.0), {}
 
 
-def notch_outcomes(
-    case: Case,
-    load_case: str,
-    plates: Callable[[str], Plates],
-    decided: Mapping[str, DecidedLink],
-    links: Mapping[str, LinkResult],
-    acting: Callable[[str], bool],
-    doubts: Callable[[str], tuple[Growths, Shares]],
-) -> Iterator[tuple[CheckOutcome, NotchFactor | None]]:
-    """Yield the outcome of every check of notches under a load case, and what it stands on.
+def judge_notches(here: SolvedLinks, one: Asked) -> Judged:
+    """Return how near a link comes to breaking at a notch.
 
     Parameters
     ----------
-    case : Case
-    load_case : str
-        Its name.
-    plates : callable
+    here : SolvedLinks
+    one : Asked
         Of a link.
-    decided : mapping of str to DecidedLink
-        With the solids.
-    links : mapping of str to LinkResult
-        The results of all links.
-    acting : callable
-        Whether anything acts on a link.
-    doubts : callable
-        What leaves the loads of a link open, as ``link_result`` takes it.
 
-    Yields
-    ------
-    tuple of (CheckOutcome, NotchFactor or None)
+    Returns
+    -------
+    Judged
     """
-    for one in asked(case, NotchCheck):
-        link = one.subject.name
-        if not acting(link):
-            yield one.outcome(load_case, Band.exact(math.inf), reason("idle_link")), None
-            continue
-        solid = decided[link].solid if link in decided else None
-        names = {found.load for found in solid.solution.cases} if solid else set()
-        if solid is None or not all(name in names for name, _ in plates(link)):
-            yield one.outcome(load_case, Band.unknown(NOT_SOLVED), NOT_SOLVED), None
-            continue
-        every = [notch_factor(case, one, name, hand, solid) for name, hand in plates(link)]
-        lost = next((found for found in every if isinstance(found, Reason)), None)
-        if lost is not None:
-            yield one.outcome(load_case, Band.unknown(lost), lost), None
-            continue
-        worst = min((found for found in every if isinstance(found, NotchFactor)), key=lambda found: found.factor.low)
-        grown = solid_growth(solid_buckling(links[link]))
-        loads = spread(case, link, load_case, "principal", *doubts(link), grown)
-        worst = replace(worst, factor=loads.inverse.on(worst.factor))
-        outcome = one.outcome(load_case, worst.factor)
-        yield outcome.because(reason("notch_judged", found=notch_said(worst), judgement=outcome.reason)), worst
+    case, load_case, link = here.case, here.load_case, one.subject.name
+    solid = here.decided[link].solid if link in here.decided else None
+    names = {found.load for found in solid.solution.cases} if solid else set()
+    plates = [*zip((loads.name for loads in here.loads(link)), here.hands(link), strict=True)]
+    if solid is None or not all(name in names for name, _ in plates):
+        return Judged(outcome=one.outcome(load_case, Band.unknown(NOT_SOLVED), NOT_SOLVED))
+    every = [notch_factor(case, one, name, hand, solid) for name, hand in plates]
+    lost = next((found for found in every if isinstance(found, Reason)), None)
+    if lost is not None:
+        return Judged(outcome=one.outcome(load_case, Band.unknown(lost), lost))
+    worst = min((found for found in every if isinstance(found, NotchFactor)), key=lambda found: found.factor.low)
+    grown = solid_growth(solid_buckling(here.links[link]))
+    loads = spread(case, link, load_case, "principal", *here.doubts(link), grown)
+    worst = replace(worst, factor=loads.inverse.on(worst.factor))
+    outcome = one.outcome(load_case, worst.factor)
+    why = reason("notch_judged", found=notch_said(worst), judgement=outcome.reason)
+    return Judged(outcome=outcome.because(why), numbers=(worst,))
 
 
 def notch_factor(case: Case, one: Asked, loads: str, hand: LinkByHand, refined: RefinedSolid) -> NotchFactor | Reason:
@@ -134,7 +104,7 @@ def notch_factor(case: Case, one: Asked, loads: str, hand: LinkByHand, refined: 
         if not refined.precision[number].known("principal"):
             return judged(refined, number, "principal").reason
     plates = case.links[one.subject.name].count
-    uses = {number: _use(one, refined, number, material, plates) for number in solved}
+    uses = {number: _use(refined, number, material, plates) for number in solved}
     own = [number for number in solved if solid.cases[number].transfer in (None, case.torque_transfer)]
     governing = max(own, key=lambda number: uses[number].value)
     value, told = uses[governing].value, uses[governing].told
@@ -158,7 +128,7 @@ def _ranges(material: Material) -> tuple[Source, ...]:
     return (*strength_scatter(material).told, Source(kind=SourceKind.STRENGTH, detail=reason("ranges_of_notches")))
 
 
-def _use(one: Asked, refined: RefinedSolid, number: int, material: Material, plates: int) -> _Use:
+def _use(refined: RefinedSolid, number: int, material: Material, plates: int) -> _Use:
     """Return what a link uses up of its strength in one case of its solid, which is that of one of its plates."""
     solid = refined.solution
     variant = solid.cases[number]
@@ -174,7 +144,7 @@ def _use(one: Asked, refined: RefinedSolid, number: int, material: Material, pla
         facts |= more
     contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
     value, low, high = map(max, zip(*found, strict=True))
-    told = NotchFactor(check=one.name, link=one.subject.name, factor=Band.unknown(), **facts)
+    told = NotchFactor(factor=Band.unknown(), **facts)
     return _Use(value=value, low=low, high=high / contact, told=told)
 
 

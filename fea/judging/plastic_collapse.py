@@ -6,7 +6,7 @@ or above what is asked for, no path is followed: the factor is at least the low 
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -20,6 +20,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.judge import of_link
 from alula.fea.judging.link_result import spread
+from alula.fea.judging.loading import Collapse, Judged, SolvedLinks
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
 from alula.fea.plastic.yield_law import YieldLaw
@@ -35,8 +36,6 @@ from alula.loads.records.check_spec import PlasticCollapseCheck
 NOT_SOLVED = reason("collapse_needs_solid")
 NEGLIGIBLE = 0.005
 """Share of a factor below which what the pins' pressure leaves open is not told."""
-Found = LinkCollapse | Reason | str
-"""Why it is not known, where it is not."""
 
 
 def yield_law(material: Material) -> YieldLaw:
@@ -83,7 +82,7 @@ def find_collapses(
     time_limit: float,
     threads: int | None,
     progress: Callable[[str], None],
-) -> dict[str, dict[str, Found]]:
+) -> dict[str, dict[str, Collapse]]:
     """Return at what factor links collapse of which a check asks for it.
 
     Parameters
@@ -108,7 +107,7 @@ def find_collapses(
         Load case -> link -> what was found, the worse of two plates; or why it is not known.
     """
     until = time.perf_counter() + time_limit
-    found: dict[str, dict[str, Found]] = {load_case: {} for load_case in loaded}
+    found: dict[str, dict[str, Collapse]] = {load_case: {} for load_case in loaded}
     for link in asked_of(case, PlasticCollapseCheck):
         body, material = case.body(link), case.material_of(link)
 
@@ -122,7 +121,7 @@ def find_collapses(
             for loads in links.get(link, ()):
                 progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
                 try:
-                    one: Found = collapse_of(
+                    one: Collapse = collapse_of(
                         ElasticLink.of(body, material),
                         yield_law(material),
                         loads,
@@ -199,57 +198,36 @@ def needs_path(case: Case, load_case: str, link: str, result: LinkResult) -> boo
     return any(above_first_yield(case, one, of_link(case, load_case, as_elastic(one), result)) is None for one in every)
 
 
-def _worse(one: Found | None, other: Found) -> Found:
+def _worse(one: Collapse | None, other: Collapse) -> Collapse:
     """Return the plate that is not known, else the one that collapses first."""
     if one is None or not isinstance(other, LinkCollapse):
         return other
     return other if isinstance(one, LinkCollapse) and other.low < one.low else one
 
 
-def collapse_outcomes(
-    case: Case,
-    load_case: str,
-    found: Mapping[str, Found],
-    links: Mapping[str, LinkResult],
-    acting: Callable[[str], bool],
-    doubts: Callable[[str], tuple[Growths, Shares]],
-) -> Iterator[CheckOutcome]:
-    """Yield the outcome of every check of plastic collapse under a load case.
+def judge_collapse(here: SolvedLinks, one: Asked) -> Judged:
+    """Return at what factor on its loads a link collapses.
 
     Parameters
     ----------
-    case : Case
-    load_case : str
-        Its name.
-    found : mapping of str to (LinkCollapse or Reason or str)
-        By link; of those that are left out no path was followed.
-    links : mapping of str to LinkResult
-    acting : callable
-        Whether anything acts on a link.
-    doubts : callable
-        What leaves the loads of a link open, as ``link_result`` takes it.
+    here : SolvedLinks
+    one : Asked
+        Of a link.
 
-    Yields
-    ------
-    CheckOutcome
+    Returns
+    -------
+    Judged
     """
-    for one in asked(case, PlasticCollapseCheck):
-        link = one.subject.name
-        if not acting(link):
-            yield one.outcome(load_case, Band(value=math.inf, low=math.inf, high=math.inf), reason("idle_link"))
-            continue
-        if link not in found:
-            elastic = of_link(case, load_case, as_elastic(one), links[link])
-            yield above_first_yield(case, one, elastic) or one.outcome(load_case, Band.unknown(NOT_SOLVED), NOT_SOLVED)
-            continue
-        known = found[link]
-        if not isinstance(known, LinkCollapse):
-            yield one.outcome(load_case, Band.unknown(known), known)
-            continue
-        outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *doubts(link)))
-        yield outcome.because(
-            reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
-        )
+    case, load_case, link = here.case, here.load_case, one.subject.name
+    if link not in here.collapses:
+        elastic = above_first_yield(case, one, of_link(case, load_case, as_elastic(one), here.links[link]))
+        return Judged(outcome=elastic or one.outcome(load_case, Band.unknown(NOT_SOLVED), NOT_SOLVED))
+    known = here.collapses[link]
+    if not isinstance(known, LinkCollapse):
+        return Judged(outcome=one.outcome(load_case, Band.unknown(known), known))
+    outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *here.doubts(link)))
+    why = reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
+    return Judged(outcome=outcome.because(why), numbers=(known,))
 
 
 def collapse_band(case: Case, link: str, load_case: str, found: LinkCollapse, uneven: Growths, shares: Shares) -> Band:

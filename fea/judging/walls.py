@@ -30,6 +30,7 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome
+from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
@@ -73,14 +74,12 @@ def wall_factors(
     more = load_scatter(case, load_case).times(growth).inverse
     for beam in plates:
         if wall := wall_of(case, one.subject.name):
-            yield from _of_tube(case.material_of(one.subject.name), one, beam, wall, more)
+            yield from _of_tube(case.material_of(one.subject.name), beam, wall, more)
         elif not beam.section.round:
             yield from _of_strip(case, load_case, one, beam, growth)
 
 
-def _of_tube(
-    material: Material, one: Asked, beam: BeamCheck, wall: tuple[float, float], more: Scatter
-) -> Iterator[WallFactor]:
+def _of_tube(material: Material, beam: BeamCheck, wall: tuple[float, float], more: Scatter) -> Iterator[WallFactor]:
     (radius, thickness), section, own = wall, beam.section, compliance_scatter(material)
     young, ratio = material.youngs_modulus, material.poissons_ratio
     perfect = perfect_stress(*wall, young, ratio)
@@ -99,8 +98,6 @@ def _of_tube(
         forces = beam.forces.at(x, side)
         pressed, bent = (float(one) > NOTHING * largest for one in np.squeeze(stresses(forces[None])))
         return WallFactor(
-            check=one.name,
-            link=one.subject.name,
             mode=mode,
             x=x,
             compression=-float(forces[0]) if pressed else 0.0,
@@ -176,8 +173,6 @@ def _of_strip(case: Case, load_case: str, one: Asked, beam: BeamCheck, growth: S
         bent = math.sqrt((1.0 - weak / stiff) * (1.0 - twisting / (young * stiff)))
         most = lateral_factor(beam.forces, about, stiffness, where.across, kept=True) / bent
     yield WallFactor(
-        check=one.name,
-        link=link,
         mode=WallMode.LATERAL,
         x=x,
         compression=max(0.0, -float(beam.forces.at(x, side)[0])),
@@ -186,6 +181,48 @@ def _of_strip(case: Case, load_case: str, one: Asked, beam: BeamCheck, growth: S
         ratio=math.sqrt(stiff / weak),
         factor=growth.inverse.on(factor_band(case, load_case, link, value, (least, max(most, value)))),
     )
+
+
+def judge_walls(here: Loading, one: Asked) -> Judged:
+    """Return what the thin walls and deep strips of a link bear.
+
+    Parameters
+    ----------
+    here : Loading
+    one : Asked
+        Of a link.
+
+    Returns
+    -------
+    Judged
+    """
+    found = _modes(here, one)
+    return Judged(outcome=wall_outcome(here.load_case, one, found), numbers=found)
+
+
+def _modes(here: Loading, one: Asked) -> tuple[WallFactor, ...]:
+    link = one.subject.name
+    beams = [hand.check for hand in here.hands(link)]
+    return tuple(wall_factors(here.case, here.load_case, one, beams, here.link_growth(link)))
+
+
+def least_of_walls(over: OverMotion, one: Asked) -> Floats:
+    """Return by what all loads on a link may grow until it buckles at each pose.
+
+    Parameters
+    ----------
+    over : OverMotion
+    one : Asked
+        Of a link.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    least = np.full(len(over.evaluated), np.inf)
+    for pose in np.flatnonzero(over.evaluated).tolist():
+        least[pose] = min((mode.factor.low for mode in _modes(over.at(pose), one)), default=math.inf)
+    return least
 
 
 def wall_outcome(load_case: str, one: Asked, found: Sequence[WallFactor]) -> CheckOutcome:
@@ -212,3 +249,6 @@ def wall_outcome(load_case: str, one: Asked, found: Sequence[WallFactor]) -> Che
     why = together(outcome.reason, worst.told)
     acting = {"moment": worst.moment or None, "compression": worst.compression or None}
     return outcome.because(reason("mode_of_wall", mode=str(worst.mode), bears=worst.bears, **acting, why=why))
+
+
+WALLS = ByHand(judge=judge_walls, least=least_of_walls)

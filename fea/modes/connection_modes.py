@@ -75,15 +75,14 @@ class ConnectionFactors:
 
     Attributes
     ----------
-    check, joint, link : str
+    link : str
+        That is fixed.
     load : Transmitted
         In one pose.
     factors : mapping of ConnectionMode to Band
         Of the modes that arise; none where nothing goes through it.
     """
 
-    check: str
-    joint: str
     link: str
     load: Transmitted
     factors: Mapping[ConnectionMode, Band]

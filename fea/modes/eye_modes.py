@@ -234,8 +234,8 @@ class EyeFactors:
 
     Attributes
     ----------
-    check, link, eye : str
-        Names of the check, the link and its point.
+    eye : str
+        Name of its point.
     force : float
         Of the pin [N].
     angle : float
@@ -246,8 +246,6 @@ class EyeFactors:
         As of ``EyeStrength``.
     """
 
-    check: str
-    link: str
     eye: str
     force: float
     angle: float

@@ -24,7 +24,6 @@ class LineContact:
 
     Attributes
     ----------
-    check, joint : str
     line_load : float
         Force over length, where it is largest [N/mm].
     pressure, half_width : float
@@ -33,8 +32,6 @@ class LineContact:
         Safety factor of ``pin`` and ``flank``, or of both together as ``pressure`` where a limit on it is stated.
     """
 
-    check: str
-    joint: str
     line_load: float
     pressure: float
     half_width: float

@@ -14,8 +14,6 @@ class NotchFactor:
 
     Attributes
     ----------
-    check, link : str
-        Names.
     factor : Band
         The lower of those by critical distance and by volume, with all that leaves it open.
     location : ndarray of float, shape (3,)
@@ -36,8 +34,6 @@ class NotchFactor:
         That would break as often evenly under the largest stress [mm³].
     """
 
-    check: str
-    link: str
     factor: Band
     location: NDArray[np.float64]
     surface: float

@@ -21,8 +21,6 @@ class WallFactor:
 
     Attributes
     ----------
-    check, link : str
-        Names.
     mode : WallMode
     x : float
         Station that bears most in this mode; of lateral buckling that of the largest moment [mm].
@@ -39,8 +37,6 @@ class WallFactor:
         What the reader must know about it; "" where there is nothing.
     """
 
-    check: str
-    link: str
     mode: WallMode
     x: float
     compression: float

@@ -26,7 +26,7 @@ from alula.fea.links.clamp_edge import CLAMP_SCATTER
 from alula.fea.links.link_by_hand import numbers_by_hand
 from alula.fea.links.solid_result import link_task
 from alula.fea.motion.buckling_history import with_second_order
-from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes, eye_outcomes, wall_outcomes
+from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from alula.fea.motion.layer_envelope import built_in_any_direction, layer_envelopes
 from alula.fea.motion.layered import with_couples
@@ -184,10 +184,10 @@ class _Envelope:
     def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool = False) -> list[CheckOutcome]:
         """Return the outcome of every check; undecided under load cases that load no link."""
         moved, evaluated = self.moved, self.evaluated
-        checks = envelope_outcomes(moved, links, evaluated, self.grown, lasting=lasting)
+        checks = envelope_outcomes(
+            moved, links, evaluated, self.grown, loaded=self.loaded, stressed=self._growth, lasting=lasting
+        )
         checks += column_outcomes(moved, self.loaded, evaluated, self.grown)
-        checks += eye_outcomes(moved, self.loaded, evaluated, self.grown)
-        checks += wall_outcomes(moved, self.loaded, evaluated, self._growth)
         checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
         for load_case in self.idle:
             joints = moved.forces[load_case].forces

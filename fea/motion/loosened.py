@@ -175,38 +175,14 @@ def _hand(moved: CaseMotion, load_case: str, link: str, pose: int) -> float:
     return float(numbers_by_hand(case, link, [on_plates(case, link, found)])[0, 0])
 
 
-def joint_growth(moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_]) -> Scatter:
-    """Return what play, C_N and friction make of a joint's greatest force over a motion, play to first order.
-
-    Parameters
-    ----------
-    moved : CaseMotion
-    load_case, joint : str
-        Their names.
-    evaluated : ndarray of bool, shape (n,)
-        The poses that count.
-
-    Returns
-    -------
-    Scatter
-        On its force without play, at the stated C_N.
-    """
-
-    def sizes(one: CaseMotion) -> NDArray[np.float64]:
-        return np.asarray(np.linalg.norm(one.forces[load_case].forces[joint], axis=1)[evaluated])
-
-    found = _spread(moved, load_case, evaluated, lambda one: float(sizes(one).max()))
-    return _slack_of(moved, load_case, f"force {joint}", sizes(moved), evaluated).times(found)
-
-
-def connection_growth(
+def joint_growth(
     moved: CaseMotion,
     load_case: str,
     joint: str,
     evaluated: NDArray[np.bool_],
-    demand: Callable[[CaseMotion], NDArray[np.float64]],
+    demand: Callable[[CaseMotion], NDArray[np.float64]] | None = None,
 ) -> Scatter:
-    """Return what play, C_N and friction make of the most that a connection has to bear over a motion.
+    """Return what play, C_N and friction make of the most that a joint has to bear over a motion.
 
     Parameters
     ----------
@@ -215,22 +191,25 @@ def connection_growth(
         Their names.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    demand : callable
-        Returns what goes through it over what it bears, at n poses.
+    demand : callable, optional
+        Returns what goes through it over what it bears, at n poses; by default its force alone.
 
     Returns
     -------
     Scatter
-        Play counts by what it makes of the joint's force and, where that drives, of the torque, to first order.
+        On what it bears without play, at the stated C_N. Play counts to first order, by what it makes of the joint's
+        force and, of a demand where that drives, of the torque.
     """
-    forces = moved.forces[load_case]
-    play = _slack_of(
-        moved, load_case, f"force {joint}", np.linalg.norm(forces.forces[joint], axis=1)[evaluated], evaluated
-    )
-    if turned_by_drive(moved.case, joint):
-        torque = np.abs(np.broadcast_to(forces.driving[0], evaluated.shape))[evaluated]
+
+    def force(one: CaseMotion) -> NDArray[np.float64]:
+        return np.asarray(np.linalg.norm(one.forces[load_case].forces[joint], axis=1))
+
+    play = _slack_of(moved, load_case, f"force {joint}", force(moved)[evaluated], evaluated)
+    if demand is not None and turned_by_drive(moved.case, joint):
+        torque = np.abs(np.broadcast_to(moved.forces[load_case].driving[0], evaluated.shape))[evaluated]
         play = play.either(_slack_of(moved, load_case, "effort", torque, evaluated))
-    return play.times(_spread(moved, load_case, evaluated, lambda one: float(demand(one)[evaluated].max())))
+    bears = demand or force
+    return play.times(_spread(moved, load_case, evaluated, lambda one: float(bears(one)[evaluated].max())))
 
 
 def _slack_of(

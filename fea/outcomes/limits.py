@@ -13,36 +13,27 @@ from alula.fea.common.scatter import (
     load_scatter,
     strength_scatter,
 )
-from alula.fea.common.verdict import Quantity, Subject
+from alula.fea.common.verdict import Quantity, Sense, Subject
 from alula.fea.outcomes.fatigue import borne_pulsating
 from alula.fea.solid.layers import Layers
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed, is_solid_stock
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
-    BearingCheck,
-    ConnectionCheck,
     DisplacementCheck,
-    EyeCheck,
     FatigueCheck,
     FrequencyCheck,
-    LimitLoadCheck,
-    LineContactCheck,
     NotchCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
     SustainedCheck,
-    WallCheck,
 )
 from alula.loads.text.caveat import Caveat, Heading, Topic
 
 Ends = tuple[float, float]
-_ON_LOADS = (
-    *(SafetyFactorCheck, PinCheck, BearingCheck, EyeCheck, LineContactCheck, ConnectionCheck),
-    *(WallCheck, LimitLoadCheck, PlasticCollapseCheck, NotchCheck, FatigueCheck),
-)
-"""Checks whose least factor is one on loads or stress."""
+_ON_LOADS = {kind for one in Quantity if one.origin == "loads" and one.sense is Sense.AT_LEAST for kind in one.checks}
+"""Types of the checks whose least factor is one on loads or stress."""
 
 
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
@@ -192,8 +183,8 @@ def limit_caveats(case: Case) -> Iterator[Caveat]:
     for name, check in case.checks.items():
         if isinstance(check, FrequencyCheck):
             least[f"checks.{name}.minimum"] = (check.minimum, rings)
-        elif isinstance(check, _ON_LOADS):
-            least[f"checks.{name}.minimum"] = (check.minimum, breaks)
+        elif check.type in _ON_LOADS:
+            least[f"checks.{name}.minimum"] = (vars(check)["minimum"], breaks)
         if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:
             for card in (x for one in subjects_of(case, name, check) for x in cards_of(case, check, one)):
                 own = case.all_materials[card].minimum_safety_factor

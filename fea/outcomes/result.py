@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,18 +14,12 @@ from alula.fea.common.band import Band
 from alula.fea.common.change import VerdictChange
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.modes.connection_modes import ConnectionFactors
-from alula.fea.modes.eye_modes import EyeFactors
-from alula.fea.modes.line_contact import LineContact
-from alula.fea.modes.notches import NotchFactor
-from alula.fea.modes.wall_modes import WallFactor
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
-from alula.fea.outcomes.fatigue import LinkFatigue
+from alula.fea.outcomes.found import Found
 from alula.fea.outcomes.layer_stress import LayerStress
 from alula.fea.outcomes.opinion import SecondOpinion
 from alula.fea.outcomes.pins import PinStress
 from alula.fea.outcomes.unchecked import caveats
-from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.refine.discretisation import Discretisation
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.fea.solid.solution import SolidCase, SolidSolution
@@ -46,6 +40,8 @@ from alula.loads.states.standing import Standing
 from alula.loads.states.weighed import Weighed
 from alula.loads.statics.statics import Reactions
 from alula.loads.text.caveat import Caveat
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -295,20 +291,8 @@ class LoadCaseResult:
         The drive with and without friction; None where no joint has any.
     loads : tuple of Load
         All that acts on the links, friction included.
-    eyes : tuple of EyeFactors
-        Of every eye of the links whose eyes a check asks for.
-    notches : tuple of NotchFactor
-        Of every link whose notches a check asks for and whose solid was solved.
-    walls : tuple of WallFactor
-        Of every mode of the links whose walls a check asks for.
-    contacts : tuple of LineContact
-        Of every pin in a slot that a check asks for.
-    connections : tuple of ConnectionFactors
-        Of every connection that a check asks for.
-    collapses : mapping of str to LinkCollapse
-        Link -> at what factor it collapses, where a check asks for it and it was found.
-    fatigue : mapping of str to LinkFatigue
-        Link -> how often it bears its load, where a check asks for it and it is known.
+    found : tuple of Found
+        What checks of eyes, notches, walls, contacts, connections, fatigue and collapse found besides what they judge.
     """
 
     name: str
@@ -322,13 +306,36 @@ class LoadCaseResult:
     checks: tuple[CheckOutcome, ...]
     work: DriveWork | None = None
     loads: tuple[Load, ...] = ()
-    eyes: tuple[EyeFactors, ...] = ()
-    notches: tuple[NotchFactor, ...] = ()
-    walls: tuple[WallFactor, ...] = ()
-    contacts: tuple[LineContact, ...] = ()
-    connections: tuple[ConnectionFactors, ...] = ()
-    collapses: Mapping[str, LinkCollapse] = field(default_factory=dict)
-    fatigue: Mapping[str, LinkFatigue] = field(default_factory=dict)
+    found: tuple[Found[Any], ...] = ()
+
+    def found_of(self, kind: type[T]) -> tuple[Found[T], ...]:
+        """Return what checks found of one kind.
+
+        Parameters
+        ----------
+        kind : type
+            Of the numbers.
+
+        Returns
+        -------
+        tuple of Found
+        """
+        return tuple(one for one in self.found if isinstance(one.numbers, kind))
+
+    def of_links(self, kind: type[T]) -> dict[str, T]:
+        """Return what checks found of one kind, where that is one for each link.
+
+        Parameters
+        ----------
+        kind : type
+            Of the numbers.
+
+        Returns
+        -------
+        dict of str to object
+            By link.
+        """
+        return {one.subject.name: one.numbers for one in self.found_of(kind)}
 
     @property
     def reactions(self) -> Reactions:

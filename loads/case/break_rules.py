@@ -15,7 +15,6 @@ from alula.geometry.parts.straight import Straight
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import BTH_1, EyeCheck, NotchCheck, PlasticCollapseCheck
 from alula.loads.text.caveat import Caveat, Topic
-from alula.loads.text.explain import require
 from alula.loads.text.reason import reason
 
 BreakCheck = PlasticCollapseCheck | NotchCheck
@@ -56,8 +55,6 @@ def check_break_check(case: CoreCase, name: str, check: BreakCheck) -> None:
     CaseError
         For a link of another material, also where no link is of one that it is for, and for a card without the data.
     """
-    for link in check.links:
-        require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
     for link in break_links(case, check) or case.checked_links:
         (_check_notched if isinstance(check, NotchCheck) else _check_ductile)(case, name, link)
 
@@ -123,8 +120,6 @@ def check_eye_check(case: CoreCase, name: str, check: EyeCheck) -> None:
         For a link of another material or shape, for one without pins, and for a card without the strength.
     """
     entry = f"checks.{name}"
-    for link in check.links:
-        require(f"{entry}.links", link, case.checked_links, "is no link with a part")
     if not case.checked_links:
         raise CaseError(f"{entry}: no link has a part, so there are no eyes; give a link a part")
     for link in eye_links(case, check) or case.checked_links:

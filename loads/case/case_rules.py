@@ -242,6 +242,8 @@ def _check_body(entry: str, body: Body, *, moves: bool) -> None:
 
 def _check_check(case: CoreCase, name: str, check: Check) -> None:
     """Check what a check refers to."""
+    for link in vars(check).get("links", ()):
+        require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
     if isinstance(check, PinCheck | BearingCheck):
         _check_pins(case, name, check)
     elif isinstance(check, MotorCheck):
@@ -268,8 +270,6 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, EyeCheck):
         check_eye_check(case, name, check)
     elif isinstance(check, WallCheck):
-        for link in check.links:
-            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
         for link in check.links or case.checked_links:
             _check_thin(case, name, link)
     elif isinstance(check, ConnectionCheck):
@@ -278,22 +278,19 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
         check_line_contact(case, name, check)
     elif isinstance(check, PlasticCollapseCheck | NotchCheck):
         check_break_check(case, name, check)
-    elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck | FatigueCheck):
-        if isinstance(check, FatigueCheck) and case.conditions.cycles is None:
-            raise CaseError(
-                f"checks.{name}: a check of fatigue needs the number of cycles; add [conditions] with cycles, for "
-                "example 1e6"
-            )
-        if isinstance(check, SustainedCheck) and case.conditions.duration is None:
-            raise CaseError(
-                f"checks.{name}: a check of sustained load needs the duration of the load; "
-                'add [conditions] with its duration, for example "10 year"'
-            )
-        for link in check.links:
-            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
-        if isinstance(check, SafetyFactorCheck) and check.minimum is None:
-            for link in check.links or case.checked_links:
-                _check_minimum(name, case.part_of(link).material, case.material_of(link), f"link '{link}'")
+    elif isinstance(check, FatigueCheck) and case.conditions.cycles is None:
+        raise CaseError(
+            f"checks.{name}: a check of fatigue needs the number of cycles; add [conditions] with cycles, for example "
+            "1e6"
+        )
+    elif isinstance(check, SustainedCheck) and case.conditions.duration is None:
+        raise CaseError(
+            f"checks.{name}: a check of sustained load needs the duration of the load; "
+            'add [conditions] with its duration, for example "10 year"'
+        )
+    elif isinstance(check, SafetyFactorCheck) and check.minimum is None:
+        for link in check.links or case.checked_links:
+            _check_minimum(name, case.part_of(link).material, case.material_of(link), f"link '{link}'")
 
 
 def _check_thin(case: CoreCase, name: str, link: str) -> None:

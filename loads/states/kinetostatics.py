@@ -4,7 +4,7 @@ Inertia is among the loads, after D'Alembert (Norton, Design of Machinery, 5th e
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -80,6 +80,28 @@ class Kinetostatics(Equilibrium):
         """Slider or bonded joint -> moment (n,) of its first link on its second about the joint's point [N mm]."""
         bearing = (name for name, joint in self.motion.linkage.joints.items() if joint.bears_moment)
         return {name: self.joints[name].wrench[:, 5] for name in bearing}
+
+    def at(self, pose: int) -> Equilibrium:
+        """Return joint forces and drive torque of one pose.
+
+        Parameters
+        ----------
+        pose : int
+            Its number.
+
+        Returns
+        -------
+        Equilibrium
+        """
+        poses = self.leverage.shape
+        joints = {
+            name: replace(one, wrench=one.wrench[pose], arm=np.broadcast_to(one.arm, (*poses, 3))[pose])
+            for name, one in self.joints.items()
+        }
+        torque, force, residual = (
+            np.broadcast_to(of, poses)[pose] for of in (self.drive_torque, self.drive_force, self.residual)
+        )
+        return Equilibrium(drive=self.drive, joints=joints, drive_torque=torque, drive_force=force, residual=residual)
 
     @cached_property
     def dead_points(self) -> tuple[float, ...]:

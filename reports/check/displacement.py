@@ -10,8 +10,8 @@ from alula.fea.solid.buckling_factor import MOST
 from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import size_of, without_rounding
-from alula.reports.check.modes import eye_parts, eye_record, notch_parts, notch_record, wall_parts, wall_record
-from alula.reports.check.pins import connection_parts, connection_record, contact_record, pin_parts, pin_record
+from alula.reports.check.modes import mode_parts, mode_records
+from alula.reports.check.pins import pin_parts, pin_record
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.fatigue import fatigue_parts, link_fatigue_record
 from alula.reports.sections.markup import bold
@@ -60,11 +60,8 @@ def _parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     yield from _deformed(case)
     yield from _ways_to_hold(result, case)
     yield from pin_parts(result.case, case)
-    yield from eye_parts(case)
-    yield from notch_parts(case)
+    yield from mode_parts(case)
     yield from fatigue_parts(result, case)
-    yield from wall_parts(case)
-    yield from connection_parts(case)
 
 
 def linkage_text(case: LoadCaseResult) -> Text:
@@ -185,12 +182,8 @@ def _data(result: CheckResult, case: LoadCaseResult) -> dict[str, Any]:
         "thrust": [{"joint": joint, "force": data(thrust)} for joint, thrust in thrusts(case.forces, deformed).items()],
         "pins": pin_record(case),
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
-        **({"eyes": eye_record(case)} if case.eyes else {}),
-        **({"notches": notch_record(case)} if case.notches else {}),
-        **({"fatigue": link_fatigue_record(result, case)} if case.fatigue else {}),
-        **({"walls": wall_record(case)} if case.walls else {}),
-        **({"contacts": contact_record(case)} if case.contacts else {}),
-        **({"connections": connection_record(case)} if case.connections else {}),
+        **mode_records(case),
+        **({"fatigue": fatigue} if (fatigue := link_fatigue_record(result, case)) else {}),
     }
 
 

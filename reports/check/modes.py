@@ -1,17 +1,148 @@
-"""In which modes eyes, walls, strips and notches end: by what each bears more than what acts."""
+"""What checks found besides the numbers that they judge: a table and entries of ``result.json`` for each kind."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from alula.fea.modes.wall_modes import WallMode
+from alula.fea.common.band import Band
+from alula.fea.modes.connection_modes import ConnectionFactors
+from alula.fea.modes.eye_modes import EyeFactors
+from alula.fea.modes.line_contact import LineContact
+from alula.fea.modes.notches import NotchFactor
+from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import Part
-from alula.reports.sections.table import Column, Number, Table, words
+from alula.reports.sections.table import Cell, Column, Number, Table, words
+
+Row = Sequence[Cell]
 
 
-def eye_parts(case: LoadCaseResult) -> Iterator[Part]:
-    """Yield the factors of every mode of every checked eye under a load case.
+@dataclass(frozen=True, kw_only=True)
+class Telling:
+    """How one kind of numbers is told.
+
+    Attributes
+    ----------
+    of : type
+        Of the numbers.
+    columns : tuple of Column
+        After those of the check and its subject.
+    rows : callable
+        The cells of one record in them, in one row or several.
+    entries : callable
+        Its entries of ``result.json``, after those of the check and its subject.
+    caption : str
+    ordered : bool
+        True where the records are ordered by the low ends of their factors.
+    """
+
+    of: type[Any]
+    columns: tuple[Column, ...]
+    rows: Callable[[Any], Sequence[Row]]
+    entries: Callable[[Any], dict[str, Any]]
+    caption: str
+    ordered: bool = False
+
+
+def _modes(head: Row, factors: Mapping[Any, Band]) -> list[Row]:
+    """Return a row for each mode, ordered by low ends; first those that are not known."""
+    every = sorted(factors.items(), key=lambda of: (not of[1].unknowable, of[1].low))
+    return [(*head, str(mode), Number(factor)) for mode, factor in every]
+
+
+def _listed(mode: str, factors: Mapping[Any, Band]) -> list[dict[str, Any]]:
+    return [{mode: str(one), "factor": data(factor)} for one, factor in factors.items()]
+
+
+KINDS = {
+    "eyes": Telling(
+        of=EyeFactors,
+        columns=(words("eye"), Column("force", "N"), Column("angle", "°"), words("mode"), Column("factor")),
+        rows=lambda eye: _modes((eye.eye, Number(eye.force), Number(eye.angle, decimals=0)), eye.factors),
+        entries=lambda eye: entries(eye, "eye force angle") | {"modes": _listed("mode", eye.factors)},
+        caption="Eyes: what each mode bears over the force of the pin, ordered by low ends; the angle is that from the "
+        "pull straight off the shank, 180° where the pin presses into it, so that bearing alone is left",
+    ),
+    "notches": Telling(
+        of=NotchFactor,
+        columns=(
+            Column("surface", "MPa"),
+            Column("at L/2", "MPa"),
+            Column("mean over 2 L", "MPa"),
+            *(Column(title) for title in ("by point", "by line", "by volume", "factor")),
+        ),
+        rows=lambda one: [
+            [
+                Number(size)
+                for size in (one.surface, one.point, one.line, one.by_point, one.by_line, one.by_volume, one.factor)
+            ]
+        ],
+        entries=lambda one: entries(
+            one,
+            "location surface distance point line relieved by_point by_line by_volume effective_volume factor",
+        ),
+        caption="Notches: largest principal stress of the surface where the link comes nearest to breaking, and ahead "
+        "of it by the critical distance L; the factor holds both methods and all that leaves it open, and the lower of "
+        "distance and volume counts",
+    ),
+    "walls": Telling(
+        of=WallFactor,
+        columns=(
+            words("mode"),
+            Column("R/t"),
+            Column("compression", "N"),
+            Column("moment", "N·mm"),
+            Column("moment that it bears alone", "N·mm"),
+            Column("factor"),
+        ),
+        rows=lambda of: [
+            (str(of.mode), *map(Number, (of.ratio, of.compression, of.moment, of.bears)), Number(of.factor))
+        ],
+        entries=lambda of: entries(of, "mode x compression moment bears ratio factor"),
+        caption="Thin walls and deep strips: by what loads may grow until a link buckles, ordered by low ends; of a "
+        "strip R/t is its depth over its thickness",
+        ordered=True,
+    ),
+    "contacts": Telling(
+        of=LineContact,
+        columns=(
+            Column("load", "N/mm"),
+            Column("pressure", "MPa"),
+            Column("half width", "mm"),
+            words("against"),
+            Column("factor"),
+        ),
+        rows=lambda one: [
+            (*map(Number, (one.line_load, one.pressure, one.half_width)), what, Number(factor))
+            for what, factor in one.factors.items()
+        ],
+        entries=lambda one: entries(one, "line_load pressure half_width") | {"against": _listed("what", one.factors)},
+        caption="Pins in slots, along their line of contact: force over length, largest pressure by Hertz, half the "
+        "width of contact, and the safety factor against yield of pin and flank, or on a stated pressure",
+    ),
+    "connections": Telling(
+        of=ConnectionFactors,
+        columns=(words("link"), Column("torque", "N·mm"), Column("force", "N"), words("mode"), Column("factor")),
+        rows=lambda one: _modes((one.link, Number(float(one.load.torque)), Number(float(one.load.force))), one.factors),
+        entries=lambda one: (
+            {"link": one.link}
+            | {name: float(size) for name, size in vars(one.load).items()}
+            | {"modes": _listed("mode", one.factors)}
+        ),
+        caption="Connections: what each mode bears over what goes through the joint, ordered by low ends",
+    ),
+}
+"""Key of the table and of the entries -> how what was found is told; a new kind of numbers is an entry here."""
+
+
+def _subject(kind: str) -> str:
+    """Return what the column of subjects is called: a pin is named by its joint."""
+    return "link" if kind == "link" else "joint"
+
+
+def mode_parts(case: LoadCaseResult) -> Iterator[Part]:
+    """Yield a table of what checks found under a load case, for each kind.
 
     Parameters
     ----------
@@ -21,85 +152,30 @@ def eye_parts(case: LoadCaseResult) -> Iterator[Part]:
     ------
     Part
     """
-    rows = [
-        (eye.check, eye.link, eye.eye, Number(eye.force), Number(eye.angle, decimals=0), str(mode), Number(factor))
-        for eye in case.eyes
-        for mode, factor in sorted(eye.factors.items(), key=lambda of: of[1].low)
-    ]
-    if rows:
-        yield Table.of(
-            (
-                *map(words, ("check", "link", "eye")),
-                Column("force", "N"),
-                Column("angle", "°"),
-                words("mode"),
-                Column("factor"),
-            ),
-            rows,
-            key="eyes",
-            caption="Eyes: what each mode bears over the force of the pin, ordered by low ends; the angle is that from "
-            "the pull straight off the shank, 180° where the pin presses into it, so that bearing alone is left",
-            under=(("load case", case.name),),
-        )
+    for key, how in KINDS.items():
+        found = case.found_of(how.of)
+        if how.ordered:
+            found = tuple(sorted(found, key=lambda one: one.numbers.factor.low))
+        rows = [(one.check, one.subject.name, *row) for one in found for row in how.rows(one.numbers)]
+        if rows:
+            yield Table.of(
+                (words("check"), words(_subject(found[0].subject.kind)), *how.columns),
+                rows,
+                key=key,
+                caption=f"{how.caption}{_beside(case) if key == 'walls' else ''}",
+                under=(("load case", case.name),),
+            )
 
 
-def eye_record(case: LoadCaseResult) -> list[dict[str, Any]]:
-    """Return the factors of eyes as entries of ``result.json``.
-
-    Parameters
-    ----------
-    case : LoadCaseResult
-
-    Returns
-    -------
-    list of dict
-    """
-    return [
-        entries(eye, "check link eye force angle")
-        | {"modes": [{"mode": str(mode), "factor": data(factor)} for mode, factor in eye.factors.items()]}
-        for eye in case.eyes
-    ]
+def _beside(case: LoadCaseResult) -> str:
+    known = case.large_displacement.buckling
+    if known is None or not any(of.numbers.mode is WallMode.LATERAL for of in case.found_of(WallFactor)):
+        return ""
+    return f"; the frame of the linkage turns aside and twists as well: it buckles at {known:.3g} times its load"
 
 
-def wall_parts(case: LoadCaseResult) -> Iterator[Part]:
-    """Yield the factors of every mode of every checked link under a load case.
-
-    Parameters
-    ----------
-    case : LoadCaseResult
-
-    Yields
-    ------
-    Part
-    """
-    rows = [
-        (of.check, of.link, str(of.mode), Number(of.ratio), Number(of.compression), Number(of.moment),
-         Number(of.bears), Number(of.factor))
-        for of in sorted(case.walls, key=lambda of: of.factor.low)
-    ]  # fmt: skip
-    known, beside = case.large_displacement.buckling, ""
-    if known is not None and any(of.mode is WallMode.LATERAL for of in case.walls):
-        beside = f"; the frame of the linkage turns aside and twists as well: it buckles at {known:.3g} times its load"
-    if rows:
-        yield Table.of(
-            (
-                *map(words, ("check", "link", "mode")),
-                Column("R/t"),
-                Column("compression", "N"),
-                Column("moment", "N·mm"),
-                Column("moment that it bears alone", "N·mm"),
-                Column("factor"),
-            ),
-            rows,
-            key="walls",
-            caption="Thin walls and deep strips: by what loads may grow until a link buckles, ordered by "
-            f"low ends; of a strip R/t is its depth over its thickness{beside}",
-            under=(("load case", case.name),),
-        )
-
-
-def wall_record(case: LoadCaseResult) -> list[dict[str, Any]]:
-    """Return the factors of thin walls as entries of ``result.json``.
+def mode_records(case: LoadCaseResult) -> dict[str, list[dict[str, Any]]]:
+    """Return what checks found as entries of ``result.json``.
 
     Parameters
     ----------
@@ -107,70 +183,14 @@ def wall_record(case: LoadCaseResult) -> list[dict[str, Any]]:
 
     Returns
     -------
-    list of dict
+    dict of str to list of dict
+        Without kinds of which nothing was found.
     """
-    return [
-        entries(of, "check link mode x compression moment bears ratio") | {"factor": data(of.factor)}
-        for of in case.walls
-    ]
-
-
-def notch_parts(case: LoadCaseResult) -> Iterator[Part]:
-    """Yield what was found of the notches of every checked link under a load case.
-
-    Parameters
-    ----------
-    case : LoadCaseResult
-
-    Yields
-    ------
-    Part
-    """
-    rows = [
-        (
-            one.check,
-            one.link,
-            Number(one.surface),
-            Number(one.point),
-            Number(one.line),
-            Number(one.by_point),
-            Number(one.by_line),
-            Number(one.by_volume),
-            Number(one.factor),
-        )
-        for one in case.notches
-    ]
-    if rows:
-        yield Table.of(
-            (
-                *map(words, ("check", "link")),
-                Column("surface", "MPa"),
-                Column("at L/2", "MPa"),
-                Column("mean over 2 L", "MPa"),
-                Column("by point"),
-                Column("by line"),
-                Column("by volume"),
-                Column("factor"),
-            ),
-            rows,
-            key="notches",
-            caption="Notches: largest principal stress of the surface where the link comes nearest to breaking, and "
-            "ahead of it by the critical distance L; the factor holds both methods and all that leaves it open, and "
-            "the lower of distance and volume counts",
-            under=(("load case", case.name),),
-        )
-
-
-def notch_record(case: LoadCaseResult) -> list[dict[str, Any]]:
-    """Return what was found of notches as entries of ``result.json``.
-
-    Parameters
-    ----------
-    case : LoadCaseResult
-
-    Returns
-    -------
-    list of dict
-    """
-    every = "check link surface distance point line relieved by_point by_line by_volume effective_volume factor"
-    return [entries(one, every) | {"location": data(one.location)} for one in case.notches]
+    return {
+        key: [
+            {"check": one.check, _subject(one.subject.kind): one.subject.name} | how.entries(one.numbers)
+            for one in found
+        ]
+        for key, how in KINDS.items()
+        if (found := case.found_of(how.of))
+    }

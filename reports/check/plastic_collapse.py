@@ -33,7 +33,7 @@ def collapse_section(result: CheckResult) -> Section:
     Section
         Without parts where no check asks for it.
     """
-    every = {name: one.collapses for name, one in result.load_cases.items()}
+    every = {name: one.of_links(LinkCollapse) for name, one in result.load_cases.items()}
     record: dict[str, Any] | None = None
     if any(every.values()):
         record = {"load_cases": {name: {"links": _links(found)} for name, found in every.items()}}
@@ -63,7 +63,7 @@ def governing_collapses(result: CheckResult) -> dict[str, LinkCollapse]:
     """
     found: dict[str, LinkCollapse] = {}
     for load_case in result.load_cases.values():
-        for link, one in load_case.collapses.items():
+        for link, one in load_case.of_links(LinkCollapse).items():
             if link not in found or one.low < found[link].low:
                 found[link] = one
     return found
@@ -71,7 +71,9 @@ def governing_collapses(result: CheckResult) -> dict[str, LinkCollapse]:
 
 def _parts(result: CheckResult) -> Iterator[Part]:
     several = len(result.load_cases) > 1
-    rows = [(x, link, one) for x, case in result.load_cases.items() for link, one in case.collapses.items()]
+    rows = [
+        (x, link, one) for x, case in result.load_cases.items() for link, one in case.of_links(LinkCollapse).items()
+    ]
     bands = {
         (check.load_case, check.link): check.value
         for case in result.load_cases.values()

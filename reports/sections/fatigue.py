@@ -97,7 +97,8 @@ def fatigue_parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
     ------
     Part
     """
-    if not case.fatigue:
+    every = case.of_links(LinkFatigue)
+    if not every:
         return
     columns = (
         words("link"),
@@ -107,12 +108,12 @@ def fatigue_parts(result: CheckResult, case: LoadCaseResult) -> Iterator[Part]:
         Column("borne so often", "MPa"),
         Column("cycles to failure (band)"),
     )
-    materials = {result.case.part_of(link).material: result.case.material_of(link) for link in case.fatigue}
+    materials = {result.case.part_of(link).material: result.case.material_of(link) for link in every}
     told = "; ".join(f"{one.title}: {measure_of(one)}, {scatter_of(one)}" for one in materials.values())
     yield Table(
         key="fatigue",
         columns=columns,
-        rows=tuple((link, *_cells(found)) for link, found in case.fatigue.items()),
+        rows=tuple((link, *_cells(found)) for link, found in every.items()),
         caption=f"Fatigue of links for {result.case.conditions.cycles:g} cycles. {told}",
         under=(("load case", case.name),),
     )
@@ -137,4 +138,5 @@ def link_fatigue_record(result: CheckResult, case: LoadCaseResult) -> dict[str, 
     dict
         By link.
     """
-    return {link: fatigue_record(found, result.case.material_of(link)) for link, found in case.fatigue.items()}
+    every = case.of_links(LinkFatigue)
+    return {link: fatigue_record(found, result.case.material_of(link)) for link, found in every.items()}

@@ -229,7 +229,7 @@ def test_contact_against_limit_analysis(eye, width, ratio):
         tables["parts"]["bar"] |= {"eye_diameter": f"{eye} mm", "width": f"{width} mm", "fillet_radius": "0.5 mm"}
         tables["checks"] = {"collapse": {"type": "plastic-collapse", "minimum": 1.0, "links": ["level"]}}
 
-    found = check_case(eyes(sized), fidelity="auto").load_cases["pull"].collapses["level"]
+    found = check_case(eyes(sized), fidelity="auto").load_cases["pull"].of_links(LinkCollapse)["level"]
     assert found.pressure == pytest.approx(ratio, abs=0.05)
 
 

@@ -19,7 +19,7 @@ from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.play_doubt import play_at_joint
 from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
-from alula.fea.modes.connection_modes import ConnectionMode
+from alula.fea.modes.connection_modes import ConnectionFactors, ConnectionMode
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.loosened import motion_growth
@@ -43,7 +43,7 @@ SLEEVE = {"shear_strength": "20 MPa", "shear_strength_range": ["15 MPa", "22 MPa
 
 def only(case, load_case="pull"):
     result, [outcome] = checked(case, load_case)
-    return result.connections[0], outcome
+    return result.found_of(ConnectionFactors)[0].numbers, outcome
 
 
 def test_the_torque_of_the_drive_goes_through_its_joint():

@@ -20,11 +20,14 @@ from alula.fea.asked.asked import Asked, asked
 from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import check_beam
 from alula.fea.buckling.buckling import buckling_outcomes
+from alula.fea.check.kinds import BY_HAND
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Subject, Verdict
+from alula.fea.doubts.load_growth import Growths
 from alula.fea.elements.space import displacement_space
+from alula.fea.judging import bearing
 from alula.fea.judging.bearing import bearing_outcome
 from alula.fea.motion import envelope
 from alula.fea.motion import envelope_outcomes as outcomes_over_motion
@@ -33,6 +36,7 @@ from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.link_envelope import LinkMotion, _balanced, _scattered
 from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.loading import loading_over
 from alula.fea.motion.mesh_factors import MeshFactors
 from alula.fea.outcomes.fatigue import closed_history, missing_data, signed_stress
 from alula.fea.outcomes.pins import stress_at, stress_of
@@ -418,24 +422,22 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
 @pytest.mark.parametrize("second", [False, True])
 def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, second):
     """Not where the joint force is largest, nor at a pose that was left out."""
-    told, wrenches = [], np.arange(4.0)[:, None] * np.ones(6)
     eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
-    monkeypatch.setattr(outcomes_over_motion, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
-    monkeypatch.setattr(outcomes_over_motion, "joint_growth", lambda *_: None)
-    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[3]))
+    monkeypatch.setattr(bearing, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
+    told, joint = [], SimpleNamespace(wrench=np.zeros((4, 6)))
+    judge = SimpleNamespace(least=BY_HAND[BearingCheck].least, judge=lambda here, one: told.append(here) or one)
+    monkeypatch.setitem(BY_HAND, BearingCheck, judge)
     monkeypatch.setattr(
-        outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(reason="", because=lambda _: None)
+        outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(because=lambda why: why, reason="")
     )
-    forces = {"B": np.array([[9.0, 0.0], [8.0, 0.0], [7.0, 0.0], [6.0, 0.0]])}
-    solved = SimpleNamespace(joints={"B": SimpleNamespace(wrench=wrenches)}, forces=forces)
-    case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
+    solved = SimpleNamespace(joints={"B": joint}, forces={"B": np.zeros((4, 2))})
     motion = SimpleNamespace(coordinate=Coordinate("crank"), angles=np.zeros(4))
+    moved = SimpleNamespace(case=None, forces={"push": solved}, motion=motion)
     check = BearingCheck.model_validate({"type": "bearing"})
     eyes_asked = Asked(name="eyes", subject=Subject.pin("B"), quantity=Quantity.SAFETY_FACTOR, limit=3.33, check=check)
-    moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
-    list(outcomes_over_motion._joint(moved, eyes_asked, np.arange(4) < 3, {}))
-    [[wrench]] = told
-    assert wrench[0] == 2.0
+    over = replace(loading_over(moved, "push", np.arange(4) < 3, {}, Growths()), at=lambda pose: pose)
+    outcomes_over_motion._at_worst_pose(moved, over, SimpleNamespace(**vars(eyes_asked), outcome=None))
+    assert told == [2]
 
 
 def test_no_joint_passes_where_poses_were_left_out(path):

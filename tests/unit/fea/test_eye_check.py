@@ -16,12 +16,15 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.sought import LEFT
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
+from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.bearing import sharing
-from alula.fea.judging.eyes import eye_factors, strengths, worse_of, worst_pose
-from alula.fea.modes.eye_modes import EyeMode
+from alula.fea.judging.eyes import EYES, eye_factors, strengths, worse_of
+from alula.fea.modes.eye_modes import EyeFactors, EyeMode
 from alula.fea.modes.eye_scatter import eye_scatter
-from alula.fea.motion.envelope_outcomes import eye_outcomes
+from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.linkage_history import when
+from alula.fea.motion.loading import loading_over
 from alula.fea.outcomes.unchecked import caveats
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import EyeCheck
@@ -35,6 +38,11 @@ NET = 2.0 * 3.5 * 0.6 * (260.0 / 240.0) * math.sqrt(5.0 / 3.5) * 2.0 * 260.0
 SCATTER = eye_scatter()
 
 
+def eyes_of_level(result, point=None):
+    every = [one.numbers for one in result.found_of(EyeFactors) if one.subject.name == "level"]
+    return [eye for eye in every if point in (None, eye.eye)]
+
+
 def level(result):
     (found,) = (check for check in result.checks if check.quantity is Quantity.EYES and check.link == "level")
     return found
@@ -45,7 +53,7 @@ def test_a_pulled_bar_by_hand():
     outcome = level(found)
     assert outcome.value.value == pytest.approx(NET / 500.0)
     assert (outcome.limit, outcome.verdict) == (2.4, Verdict.PASS)
-    [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
+    [eye] = eyes_of_level(found, "O")
     assert eye.force == pytest.approx(500.0)
     assert eye.angle == pytest.approx(0.0, abs=1e-6)
     assert set(eye.factors) == {
@@ -69,7 +77,7 @@ def test_play_of_another_joint_widens_an_eye_by_what_it_makes_of_its_force():
     found = checked(eyes(loose))
     force = found.forces.play.forces["O"]
     assert force.high > 1.005 * force.value
-    [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
+    [eye] = eyes_of_level(found, "O")
     net = eye.factors[EyeMode.NET_SECTION]
     low, high = SCATTER.modes[EyeMode.NET_SECTION]
     across = 1.0 - SCATTER.across * math.sin(math.radians(eye.angle))
@@ -93,7 +101,7 @@ def test_each_load_case_has_its_worst_eye(narrow, thin):
     effective = 2.0 * min(0.6 * (260.0 / 240.0) * math.sqrt(5.0 / 2.0), 1.0)
     fracture = (1.13 * 2.0 + 0.92 * 2.0 / 1.4) * 3.0 * 260.0
     assert 2.0 * effective * 3.0 * 260.0 > fracture
-    found = {eye.eye: eye for eye in result["pull"].eyes if eye.link == "level"}
+    found = {eye.eye: eye for eye in eyes_of_level(result["pull"])}
     assert pulled.value.value == pytest.approx(min(band.value for band in found[narrow].factors.values()))
     assert found[narrow].factors[EyeMode.FRACTURE].value == pytest.approx(fracture / 500.0)
     assert found[thin].worst[1].low > pulled.value.low
@@ -111,7 +119,7 @@ def test_the_band_holds_loads_strength_and_clearance():
     case, name = eyes(scattered), "aluminium-6061-t6"
     card = case.all_materials[name].model_copy(update={"strength_range": (220.0, 300.0)})
     found = checked(case.model_copy(update={"materials": {**case.materials, name: card}}))
-    [eye] = [eye for eye in found.eyes if (eye.link, eye.eye) == ("level", "O")]
+    [eye] = eyes_of_level(found, "O")
 
     def bears(strength, hole):
         return 2.0 * 2.0 * strength * ((12.0 - hole) / 2.0 - hole / 3.0) / 500.0
@@ -136,7 +144,7 @@ def test_a_fork_bears_on_both_cheeks_and_dishes_as_one_of_them():
         tables["parts"]["bar"] |= {"thickness": "4 mm", "eye_thickness": "4 mm"}
         tables["links"]["level"]["eyes"] = {"O": {"fork": "2 mm", "fork_depth": "8 mm"}}
 
-    [eye] = [eye for eye in checked(eyes(forked)).eyes if (eye.link, eye.eye) == ("level", "O")]
+    [eye] = eyes_of_level(checked(eyes(forked)), "O")
     assert eye.factors[EyeMode.NET_SECTION].value == pytest.approx(NET / 500.0)
     assert eye.factors[EyeMode.DISHING].value == pytest.approx(2.0 * 4.0 * 1.0 * 2.0 * 260.0 / 500.0)
 
@@ -156,7 +164,7 @@ def test_the_worse_of_two_plates_counts_and_the_direction_of_its_force(order):
     plates = [plate((500.0, 0.0)), plate((600.0 * math.cos(math.pi / 6.0), 300.0))]
     spread = Scatter(low=0.9, high=1.25, sources=(Source(kind=SourceKind.PLAY),))
     [strength] = [eye for eye in strengths(case, "level", one.check) if eye.name == "B"]
-    found = worse_of(one, strength, plates[::order], spread)
+    found = worse_of(strength, plates[::order], spread)
     net = found.factors[EyeMode.NET_SECTION]
     assert (found.force, found.angle) == pytest.approx((600.0, 30.0))
     assert net.value == pytest.approx(NET / 600.0)
@@ -194,7 +202,8 @@ def test_over_a_motion_the_worst_pose_counts():
     [load_case], moved = case.load_cases, solve_case_motion(case)
     loaded = {link: link_histories(moved, link) for link in case.checked_links}
     evaluated = np.ones(len(moved.motion.angles), dtype=bool)
-    found = {outcome.link: outcome for outcome in eye_outcomes(moved, loaded, evaluated)}
+    every = envelope_outcomes(moved, {}, evaluated, loaded=loaded)
+    found = {outcome.link: outcome for outcome in every if outcome.quantity is Quantity.EYES}
     assert set(found) == set(case.checked_links)
     for one in asked(case, EyeCheck):
         plates = loaded[one.subject.name]
@@ -202,12 +211,21 @@ def test_over_a_motion_the_worst_pose_counts():
             min(eye.worst[1].low for eye in eye_factors(case, load_case, one, [x.chosen(pose) for x in plates], {}))
             for pose in range(len(evaluated))
         ]
-        pose = worst_pose(case, one, plates, evaluated)
-        assert singly[pose] == min(singly) < max(singly)
+        least = EYES.least(loading_over(moved, load_case, evaluated, loaded, Growths()), one)
+        assert least == pytest.approx(singly)
+        pose = int(np.argmin(singly))
+        assert singly[pose] < max(singly)
         assert found[one.subject.name].value.low <= singly[pose] <= found[one.subject.name].value.value
         left = evaluated.copy()
         left[pose] = False
-        assert singly[worst_pose(case, one, plates, left)] == min(np.array(singly)[left])
+        [again] = [
+            other
+            for other in envelope_outcomes(moved, {}, left, loaded=loaded)
+            if (other.name, other.subject) == (one.name, one.subject)
+        ]
+        second = int(np.argmin(np.where(left, singly, np.inf)))
+        assert again.value.low <= singly[second] <= again.value.value
+        assert told(when(moved, second)) in told(again.reason)
 
 
 def refused(*changes):
@@ -287,7 +305,7 @@ def test_a_hole_in_a_plate_is_an_eye_as_wide_as_its_nearest_edge(shape, radius):
         tables["load_cases"]["pull"]["forces"][0]["force"] = ["-500 N", "0 N"]
 
     for change, angle in ((lambda _: None, 0.0), (pushed, 180.0)):
-        [eye] = [eye for eye in checked(eyes(shape, change)).eyes if (eye.link, eye.eye) == ("level", "B")]
+        [eye] = eyes_of_level(checked(eyes(shape, change)), "B")
         beside = radius - 2.5
         net = 2.0 * min(beside, 0.6 * (260.0 / 240.0) * math.sqrt(5.0 * beside)) * 2.0 * 260.0
         assert eye.angle == pytest.approx(angle, abs=1e-6)
@@ -308,7 +326,7 @@ def test_an_eye_unlike_those_that_were_drawn_has_no_band_and_never_passes():
         return checked(eyes(change))
 
     drawn, undrawn, failed = loose("0.88 mm", 1.0), loose("0.89 mm", 1.0), loose("0.89 mm", 50.0)
-    found = {eye.eye: eye for eye in undrawn.eyes if eye.link == "level"}
+    found = {eye.eye: eye for eye in eyes_of_level(undrawn)}
     assert all("pin over hole is 0.849" in told(band.without) for band in found["O"].factors.values())
     assert {mode for mode, band in found["B"].factors.items() if band.without} == {EyeMode.DISHING}
     assert math.isnan(level(undrawn).value.told.low)

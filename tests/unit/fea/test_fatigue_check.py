@@ -3,27 +3,30 @@
 import math
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from eye_case import EYES
 from rocker_case import TOML as ROCKER
 
+from alula.fea.asked.asked import asked
 from alula.fea.asked.lasting import fatigue_caveats
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.source import SourceKind
-from alula.fea.common.verdict import Quantity, Verdict
-from alula.fea.judging.fatigue import link_fatigue_outcomes, pose_outcomes, pulsating
+from alula.fea.common.verdict import Quantity, Subject, Verdict
+from alula.fea.judging.fatigue import asked_fatigue, judge_fatigue, link_fatigue_outcomes, pulsating
 from alula.fea.links.link_by_hand import cut_link
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.link_envelope import LinkMotion
-from alula.fea.outcomes.fatigue import borne_pulsating, notch_factors, signed_stress
+from alula.fea.outcomes.fatigue import LinkFatigue, borne_pulsating, notch_factors, signed_stress
 from alula.fea.outcomes.limits import stress_limits
 from alula.fea.refine.refinement import Effort
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.material import Fatigue
 from alula.loads.case.case_file import validate
+from alula.loads.records.check_spec import FatigueCheck
 from alula.reports.check.displacement import displacement_section
 from alula.reports.sentences import told
 
@@ -83,7 +86,7 @@ def test_each_load_case_has_its_worst_link(by_hand):
 
 
 def test_it_tells_how_often_the_load_is_borne(by_hand):
-    life = by_hand.load_cases["pull"].fatigue["level"]
+    life = by_hand.load_cases["pull"].of_links(LinkFatigue)["level"]
     assert life.wanted == 1e5
     assert life.repetitions.value == pytest.approx(1e5 * found(by_hand, "pull", "level").value.value ** 6.0)
     assert "of 1.00·10⁵ cycles" in told(found(by_hand, "pull", "level").reason)
@@ -106,7 +109,7 @@ def test_the_band_holds_load_and_strength():
     assert outcome.value.low == pytest.approx(factor(1.25 * stress.high) * 60.0 / 90.0, rel=5e-3)
     assert outcome.value.high >= 1.5 * factor(0.8 * stress.low)
     assert {SourceKind.LOAD, SourceKind.STRENGTH} <= {source.kind for source in outcome.value.sources}
-    life = result.load_cases["pull"].fatigue["level"].repetitions
+    life = result.load_cases["pull"].of_links(LinkFatigue)["level"].repetitions
     assert life.low == pytest.approx(1e5 * outcome.value.low**6.0)
 
 
@@ -275,7 +278,7 @@ def test_a_motion_whose_load_comes_and_goes_agrees(solved, load_case, link):
     """The same link on the same mesh: loads of 0, 1 and ½ over an envelope are one cycle of the load of the pose."""
     over, pose = (
         followed(solved, load_case, link, 0.0, 1.0, 0.5, 0.0),
-        solved.load_cases[load_case].fatigue[link],
+        solved.load_cases[load_case].of_links(LinkFatigue)[link],
     )
     assert pose.stress.value == pytest.approx(over.stress.value, rel=5e-3)
     assert pose.strength == over.strength
@@ -297,7 +300,7 @@ def test_two_cycles_of_one_repetition_leave_the_strength_at_twice_the_cycles(sol
 
 def test_the_solid_counts_the_hole_by_its_radius(solved):
     of = solved.load_cases["pull"]
-    life, result = of.fatigue["level"], of.links["level"]
+    life, result = of.of_links(LinkFatigue)["level"], of.links["level"]
     q = 1.0 / (1.0 + 0.51 / 2.5)
     largest = float(result.stress.von_mises.max())
     assert life.life.largest == pytest.approx((q + 0.6 * (1.0 - q)) * largest, rel=1e-6)
@@ -307,19 +310,19 @@ def test_the_solid_counts_the_hole_by_its_radius(solved):
 
 
 def test_a_solid_whose_peak_yields_does_not_pass_for_its_notch(solved):
-    life = replace(solved.load_cases["pull"].fatigue["level"], strength=1e4)
+    life = replace(solved.load_cases["pull"].of_links(LinkFatigue)["level"], strength=1e4)
     raw = float(solved.load_cases["pull"].links["level"].stress.von_mises.max())
     assert life.largest == pytest.approx(raw * life.stress.high / life.life.stress)
     for share, verdict in ((0.97, Verdict.UNDECIDED), (1.01, Verdict.PASS)):
         card = solved.case.material_of("level").model_copy(update={"yield_strength": share * life.largest})
         case = solved.case.model_copy(update={"materials": {"aluminium-6061-t6": card}})
-        [outcome] = link_fatigue_outcomes(case, "level", "pull", life)
+        [outcome] = link_fatigue_outcomes(case, asked_fatigue(case, "level"), "pull", life)
         assert outcome.verdict is verdict
 
 
 def test_what_reverses_on_a_solid_with_pins_does_not_pass(solved):
     """Its pins press on the other side then; no less than the cycle from nothing is there."""
-    once = solved.load_cases["pull"].fatigue["level"]
+    once = solved.load_cases["pull"].of_links(LinkFatigue)["level"]
 
     def lax(tables):
         tables["checks"]["fatigue"]["minimum"] = 0.1
@@ -329,13 +332,17 @@ def test_what_reverses_on_a_solid_with_pins_does_not_pass(solved):
     life = pulsating(case, "level", links["level"])
     assert life.stress.low == pytest.approx(once.stress.low)
     assert life.stress.value > 1.5 * once.stress.value
-    forces = dict.fromkeys(case.joints, 0.0)
-    [outcome] = pose_outcomes(case, "pull", links, {"level": life}, lambda link: True, forces)
+    outcome = judged(case, links)
     assert outcome.verdict is Verdict.UNDECIDED
     assert "on the other side of their holes" in told(outcome.reason)
     case = repeated({"notch_length": "0.51 mm"}, change=lax)
-    [outcome] = pose_outcomes(case, "pull", links, {"level": once}, lambda link: True, forces)
-    assert outcome.verdict is Verdict.PASS
+    assert judged(case, links).verdict is Verdict.PASS
+
+
+def judged(case, links):
+    here = SimpleNamespace(case=case, load_case="pull", links=links, wrenches=lambda joint: [np.zeros(6)])
+    [one] = asked(case, FatigueCheck, subject=Subject.link("level"))
+    return judge_fatigue(here, one).outcome
 
 
 def test_a_pressed_brittle_solid_counts_every_variant_and_the_wider_band(solved):
@@ -363,6 +370,6 @@ def test_report_and_record_tell_it(by_hand):
     record = section.data["load_cases"]["pull"]["fatigue"]["level"]
     assert record["wanted_repetitions"] == 1e5
     assert record["repetitions"]["value"] == pytest.approx(
-        by_hand.load_cases["pull"].fatigue["level"].repetitions.value
+        by_hand.load_cases["pull"].of_links(LinkFatigue)["level"].repetitions.value
     )
     assert "fatigue" in str(section.parts)

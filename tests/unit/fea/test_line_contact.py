@@ -18,7 +18,7 @@ from alula.fea.common.sought import LEFT
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.judging.line_contact import contact_of, line_load
-from alula.fea.modes.line_contact import hertz_pressure, most_equivalent, stress_below
+from alula.fea.modes.line_contact import LineContact, hertz_pressure, most_equivalent, stress_below
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
@@ -92,7 +92,7 @@ def pressed(case, load=40.0 * 80.0 / 31.0 / 5.0, *, stiff=1.0):
 def test_a_slotted_lever_by_hand():
     case = lever()
     result, [outcome] = checked(case, "tip", Quantity.LINE_CONTACT)
-    card, [contact] = case.material_of("lever"), result.contacts
+    card, contact = case.material_of("lever"), result.found_of(LineContact)[0].numbers
     assert contact.pressure == pytest.approx(pressed(case))
     assert contact.half_width == pytest.approx(2.0 * contact.line_load / (math.pi * contact.pressure))
     assert contact.line_load == pytest.approx(40.0 * 80.0 / 31.0 / 5.0)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
+from alula.fea.asked.asked import asked
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
@@ -19,7 +20,8 @@ from alula.fea.outcomes.limits import layer_limit, layers_of
 from alula.fea.refine.refinement import Effort
 from alula.fea.solid.notch_field import NotchStress
 from alula.geometry.base.errors import CaseError
-from alula.reports.check.modes import notch_parts, notch_record
+from alula.loads.records.check_spec import NotchCheck
+from alula.reports.check.modes import mode_parts, mode_records
 from alula.reports.sentences import told
 
 CHECK = 'checks.cracks={ type = "notch", minimum = 1.5, links = ["front"] }'
@@ -32,8 +34,6 @@ OWN = (
 TOUGH = ', inherent_strength = "50 MPa", critical_distance = "0.2 mm"'
 BY_VOLUME = ', weibull_modulus = 10.0, weibull_volume = "1000 mm^3"'
 FOUND = NotchFactor(
-    check="cracks",
-    link="front",
     factor=Band(value=2.0, low=1.6, high=2.4),
     location=np.array([1.0, 2.0, 3.0]),
     surface=30.0,
@@ -87,7 +87,7 @@ class Solved:
         )
 
     def factor(self, case):
-        [one] = notches.asked(case, notches.NotchCheck)
+        [one] = asked(case, NotchCheck)
         return notches.notch_factor(case, one, "loads", SimpleNamespace(check=None), self)
 
 
@@ -182,15 +182,23 @@ def judged(monkeypatch, found, case=None, growth=None):
     factors = iter(found)
     monkeypatch.setattr(notches, "notch_factor", lambda *of: next(factors))
     monkeypatch.setattr(notches, "solid_buckling", lambda result: None)
-    plates = [(f"plate {n}", None) for n in range(len(found))]
-    cases = [SimpleNamespace(load=name) for name, _ in plates]
+    plates = [SimpleNamespace(name=f"plate {n}") for n in range(len(found))]
+    cases = [SimpleNamespace(load=plate.name) for plate in plates]
     decided = {"front": SimpleNamespace(solid=SimpleNamespace(solution=SimpleNamespace(cases=cases)))}
     doubts = growth or Growths(), by_hand_shares(Growths(), "front")
     load_case = next(iter(case.load_cases))
-    [(outcome, told_of)] = notches.notch_outcomes(
-        case, load_case, lambda x: plates, decided, {"front": None}, lambda x: True, lambda x: doubts
+    here = SimpleNamespace(
+        case=case,
+        load_case=load_case,
+        loads=lambda link: plates,
+        hands=lambda link: [None for _ in plates],
+        decided=decided,
+        links={"front": None},
+        doubts=lambda link: doubts,
     )
-    return outcome, told_of
+    [one] = asked(case, NotchCheck)
+    judged = notches.judge_notches(here, one)
+    return judged.outcome, judged.numbers[0] if judged.numbers else None
 
 
 @pytest.mark.parametrize(
@@ -255,15 +263,15 @@ def test_from_the_case_to_the_page():
     entries = CHECK, RESIN, "checks.strength.minimum=0.1", "solid.mesh_size=1.6"
     result = check_case(edited("knee", entries), effort=Effort(max_meshes=1))
     for case in result.load_cases.values():
-        [found] = case.notches
+        [found] = case.of_links(NotchFactor).values()
         assert found.relieved
         assert found.point < found.surface
         assert found.distance == pytest.approx(0.226, abs=0.002)
         safety = case.links["front"].safety_factor
         assert safety.value < found.by_point < 1.5 * safety.value
-        [record] = notch_record(case)
+        [record] = mode_records(case)["notches"]
         assert record["by_line"] == found.by_line
-        [table] = notch_parts(case)
+        [table] = [part for part in mode_parts(case) if part.key == "notches"]
         assert len(table.rows) == 1
 
 

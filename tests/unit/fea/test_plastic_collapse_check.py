@@ -1,6 +1,7 @@
 """A check of plastic collapse: which links it is asked of, what is refused, and how its band is judged and told."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from alula.fea.common.verdict import Quantity, Verdict, deciding
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import plastic_collapse
 from alula.fea.judging.link_result import by_hand_shares
-from alula.fea.judging.plastic_collapse import above_first_yield, as_elastic, collapse_outcomes
+from alula.fea.judging.plastic_collapse import above_first_yield, as_elastic, judge_collapse
 from alula.fea.plastic.load_path import NoPlasticStateError
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import PlasticCollapseCheck
@@ -38,8 +39,9 @@ def judged(case, found):
     """Return the outcome under the first load case."""
     load_case = next(iter(case.load_cases))
     doubts = Growths(), by_hand_shares(Growths(), "front")
-    [outcome] = collapse_outcomes(case, load_case, found, {}, lambda link: True, lambda link: doubts)
-    return outcome
+    here = SimpleNamespace(case=case, load_case=load_case, collapses=found, doubts=lambda link: doubts)
+    [one] = asked(case, PlasticCollapseCheck)
+    return judge_collapse(here, one).outcome
 
 
 @pytest.mark.parametrize(

@@ -21,9 +21,9 @@ from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.judging.walls import EXACT, ROUND, wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import link_by_hand, numbers_by_hand
-from alula.fea.modes.wall_modes import WallMode
+from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.fea.motion.envelope import _Envelope
-from alula.fea.motion.envelope_outcomes import wall_outcomes
+from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.link_history import link_histories
 from alula.fea.superposition.link_answers import LinkAnswers, widest
 from alula.geometry.base.errors import CaseError
@@ -45,7 +45,8 @@ def outcome_of(result, link):
 
 
 def modes_of(result, link):
-    return {found.mode: found for found in result.walls if found.link == link}
+    found = [one.numbers for one in result.found_of(WallFactor) if one.subject.name == link]
+    return {one.mode: one for one in found}
 
 
 def ring(radius, thickness):
@@ -195,8 +196,8 @@ fillet_radius = "1 mm"
 def test_the_frame_turns_aside_as_the_strip_does():
     """Eight elements of the frame bend and twist apart from one another: 0.9 % above Prandtl's cantilever."""
     result = check_case(validate(tomllib.loads(CRANK)), fidelity="beam")
-    [lateral], frame = result.load_cases["tip"].walls, result.load_cases["tip"].large_displacement.buckling
-    assert lateral.factor.value == pytest.approx(frame, rel=0.015)
+    [lateral], frame = result.load_cases["tip"].found, result.load_cases["tip"].large_displacement.buckling
+    assert lateral.numbers.factor.value == pytest.approx(frame, rel=0.015)
     parts = [part for section in check_sections(result) for part in section.parts]
     [table] = [part for part in parts if isinstance(part, Table) and part.key == "walls"]
     assert f"buckles at {frame:.3g} times its load" in table.caption
@@ -206,7 +207,7 @@ def test_a_driven_strip_may_be_held_at_its_drive_alone():
     """A crank of a four-bar: at its least it is a cantilever, at its best both pins keep its slope."""
     case = edited("four-bar", ['checks.wall={type="wall", minimum=1, links=["crank"]}'])
     result = check(case)
-    [lateral], beam = [one for one in result.walls if one.link == "crank"], result.links["crank"].beam
+    [lateral], beam = modes_of(result, "crank").values(), result.links["crank"].beam
     pins = beam.forces.breaks[[0, -1]].tolist()
     both, alone, best = (
         lateral_factor(beam.forces, ABOUT_Z, 1.0, held, kept=kept)
@@ -264,7 +265,12 @@ def test_over_a_motion_the_worst_pose_counts():
     moved = solve_case_motion(case)
     loaded = {link: link_histories(moved, link) for link in case.checked_links}
     grown = Scatter(low=0.8, high=1.25, sources=(Source(kind=SourceKind.PLAY),))
-    found = {one.link: one for one in wall_outcomes(moved, loaded, evaluated, lambda *_: grown)}
+
+    def over(counted):
+        every = envelope_outcomes(moved, {}, counted, loaded=loaded, stressed=lambda *_: grown)
+        return {one.link: one for one in every if one.quantity is Quantity.WALLS}
+
+    found = over(evaluated)
     assert set(found) == set(case.checked_links)
     for one in asked(case, WallCheck):
         link = one.subject.name
@@ -277,7 +283,7 @@ def test_over_a_motion_the_worst_pose_counts():
         assert found[link].value.low == singly[pose]
         left = evaluated.copy()
         left[pose] = False
-        again = {outcome.link: outcome for outcome in wall_outcomes(moved, loaded, left, lambda *_: grown)}
+        again = over(left)
         assert again[link].value.low == min(np.array(singly)[left])
         assert again[link].verdict is not Verdict.PASS
 

@@ -1,0 +1,87 @@
+"""What acts on links and joints over a motion under a load case, and at each of its poses."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.scatter import Scatter
+from alula.fea.doubts.load_growth import Growths
+from alula.fea.judging.loading import Demand, OverMotion, Real
+from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
+from alula.fea.motion.layered import forces_at
+from alula.fea.motion.loosened import joint_growth
+from alula.loads.states.case_motion import CaseMotion
+from alula.loads.statics.statics import Equilibrium
+
+
+def loading_over(
+    moved: CaseMotion,
+    load_case: str,
+    evaluated: NDArray[np.bool_],
+    loaded: Mapping[str, Sequence[LinkLoads]],
+    grown: Growths,
+    stressed: Callable[[str, str], Scatter] | None = None,
+) -> OverMotion:
+    """Return what acts over a motion; growth is that of what is worst over all poses.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case : str
+        Its name.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    loaded : mapping of str to sequence of LinkLoads
+        Link -> what acts on it, one record per load case and plate.
+    grown : Growths
+        What the deformed shape makes of joint forces.
+    stressed : callable, optional
+        Of load case and link, to what else than the scatter of loads makes of its stress by hand.
+
+    Returns
+    -------
+    OverMotion
+    """
+    case, solved = moved.case, moved.forces[load_case]
+
+    def loads(link: str) -> list[LinkLoads]:
+        return [one for one in loaded.get(link, ()) if one.name == load_case]
+
+    def force(joint: str) -> Scatter:
+        return joint_growth(moved, load_case, joint, evaluated).times(grown.joints.get(joint, Scatter()))
+
+    def through(joint: str, demand: Demand) -> Scatter:
+        def of(other: CaseMotion) -> Real:
+            forces = other.forces[load_case]
+            return demand(other.case, forces.joints[joint].wrench, forces.driving[0])
+
+        return joint_growth(moved, load_case, joint, evaluated, of).times(grown.through(joint))
+
+    def ways(pose: int) -> tuple[Equilibrium, ...]:
+        return (solved.at(pose), *(forces_at(moved, load_case, pose).sharings if case.layered else ()))
+
+    def at(pose: int) -> OverMotion:
+        def here(link: str) -> list[LinkLoads]:
+            return [one.chosen(pose) for one in loads(link)]
+
+        def hands(link: str) -> list[LinkByHand]:
+            return [link_by_hand(case, link, one) for one in here(link)]
+
+        return replace(over, ways=lambda: ways(pose), loads=here, hands=hands)
+
+    over = OverMotion(
+        case=case,
+        load_case=load_case,
+        ways=lambda: (solved,),
+        loads=loads,
+        hands=lambda link: (),
+        joint_growth=force,
+        link_growth=lambda link: Scatter() if stressed is None else stressed(load_case, link),
+        growth_through=through,
+        evaluated=evaluated,
+        at=at,
+    )
+    return over
