@@ -191,9 +191,13 @@ def test_a_checkout_brings_its_own_packages(environment, installed, tmp_path):
     assert str(checkout) not in elsewhere
 
 
-def test_the_command_line_and_the_face_import_late(installed, tmp_path):
-    slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
-    script = f"import sys, alula, alula.reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
+@pytest.mark.parametrize(
+    ("modules", "taken"),
+    [("alula.reports.commands.cli", set()), ("alula.fea.check.run", {"numpy", "pydantic"})],
+)
+def test_the_command_line_the_face_and_a_check_import_late(installed, modules, taken, tmp_path):
+    slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"} - taken
+    script = f"import sys, alula, {modules}\nprint(*sorted({slow!r} & sys.modules.keys()))"
     assert run(installed / "bin" / "python", "-c", script, cwd=tmp_path).split() == []
 
 

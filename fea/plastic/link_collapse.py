@@ -20,7 +20,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.elements.space import DisplacementSpace, UpperHalf, displacement_space, upper_half
@@ -285,6 +284,8 @@ def _ratio_in_flow(fine: PlasticBody, state: PlasticState, coarse: PlasticBody) 
     Shanks that bear more, and have the same elements in both meshes, say nothing of the error. It is as long as was
     asked for at most, and ``LEAST_RATIO`` at least.
     """
+    from scipy.spatial import cKDTree
+
     work = (fine.weights.reshape(-1) * state.response.past.equivalent).reshape(len(fine.space.cells), -1).sum(axis=1)
     (own, at), (other, centres) = map(_sizes, (fine, coarse))
     flows = work > 0.0

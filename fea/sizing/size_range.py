@@ -1,11 +1,13 @@
 """Which size to seek with ``alula size``, in a range with a value that passes by hand calculation.
 
 A pass keeps its size at one end, and the range goes down from it. Else values above are tried, twice the size and then
-up to four times it, or what the case's own rules take of that. The check must pass there, and all else that loads make.
+up to four times it, or what the case's own rules take of that. The check must pass there, and all else that loads make:
+so nothing is tried where a link leaves what hand calculation was calibrated for.
 """
 
 import math
 from collections.abc import Iterable, Iterator
+from itertools import takewhile
 
 from alula.fea.common.change import SizeRange
 from alula.fea.common.verdict import MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
@@ -49,19 +51,19 @@ def size_range(trials: Trials, check: CheckOutcome) -> SizeRange | None:
     margin, value = check.margin, check.value
     if check.quantity.margins(value.value, value.low, value.high, check.limit)[0] < _FARTHEST:
         return None
-    for step in REACHES:
-        stated = next(_taken(case, path, [size * reach for reach in step]), None)
-        if stated is None:
-            return None
-        larger = Resized(entry=path, value=stated)
-        now = trials.expected(check, larger)
-        if now >= 1.0 and trials.holds(larger):
-            return SizeRange(entry=path, first=_text(size), last=stated)
+    stated = (next(_taken(case, path, [size * reach for reach in step]), "") for step in REACHES)
+    larger = [Resized(entry=path, value=text) for text in takewhile(bool, stated)]
+    while larger and trials.beyond(check.load_case, larger[-1]):
+        larger.pop()
+    for step in larger:
+        now = trials.expected(check, step)
+        if now >= 1.0 and trials.holds(step):
+            return SizeRange(entry=path, first=_text(size), last=step.value)
         # By the power law of this step, doubled again.
         if (
             now < 1.0
             and margin > 0.0
-            and now * (now / margin) ** (_DOUBLED / math.log(_number(stated) / size)) < HOPELESS
+            and now * (now / margin) ** (_DOUBLED / math.log(_number(step.value) / size)) < HOPELESS
         ):
             return None
     return None

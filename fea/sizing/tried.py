@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from alula.fea.beam.calibration import uncalibrated
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import (
     LINKAGE,
@@ -255,6 +256,37 @@ class Trials:
         """
         return all(self._holds(load_case, change) for load_case in self.result.load_cases)
 
+    def beyond(self, load_case: str, size: Resized) -> bool:
+        """Return whether a size takes a link out of what hand calculation was calibrated for: then it does not hold.
+
+        It is told by the link alone, whatever acts on it, so that nothing is solved.
+
+        Parameters
+        ----------
+        load_case : str
+            Its name.
+        size : Resized
+            That the rules of the case take.
+
+        Returns
+        -------
+        bool
+            Of a link that hand calculation decides as it is; False where a solid was taken for any.
+        """
+        found, case = self.result.load_cases[load_case], self.result.case
+        if not _by_hand(found):
+            return False
+        changed = size.on(case)
+        decided = {
+            one.subject.name
+            for one in found.checks
+            if one.subject.kind == "link"
+            and one.quantity in (Quantity.SAFETY_FACTOR, Quantity.DEFLECTION)
+            and 0.0 < one.margin < math.inf
+            and not _left_open(one)
+        }
+        return any(_uncalibrated(changed, link) and not _uncalibrated(case, link) for link in decided)
+
     def _holds(self, load_case: str, change: Change) -> bool:
         plain, found = self._plain(load_case), self._checked(load_case, change)
         if plain is None or found is None or found.gives_way:
@@ -266,8 +298,7 @@ class Trials:
     def _plain(self, load_case: str) -> LoadCaseResult | None:
         """The case as it is, by hand."""
         case = self.result.load_cases[load_case]
-        by_hand = all(isinstance(link, HandResult) for link in case.links.values())
-        return case if by_hand else self._checked(load_case, Scaled())
+        return case if _by_hand(case) else self._checked(load_case, Scaled())
 
     def _checked(self, load_case: str, change: Change, wanted: tuple[str, ...] | None = None) -> LoadCaseResult | None:
         """A load case with a change, with the whole bands of some links, or of all."""
@@ -288,6 +319,14 @@ class Trials:
         except (CaseError, CannotRunError):
             return None
         return found.load_cases[load_case]
+
+
+def _by_hand(result: LoadCaseResult) -> bool:
+    return all(isinstance(link, HandResult) for link in result.links.values())
+
+
+def _uncalibrated(case: Case, link: str) -> bool:
+    return bool(uncalibrated(case.body(link), case.material_of(link).poissons_ratio))
 
 
 def _links(compared: Sequence[CheckOutcome]) -> tuple[str, ...] | None:

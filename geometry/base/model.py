@@ -19,7 +19,13 @@ Record = TypeVar("Record", bound="CaseModel")
 class CaseModel(BaseModel):
     """A frozen record of the case file: unknown keys, NaN and infinity are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        validate_default=False,
+        defer_build=True,  # a case is read by one validator of all its records: most need none of their own
+    )
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> dict[str, Any]:

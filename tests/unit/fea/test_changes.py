@@ -16,7 +16,7 @@ from alula.fea.frame.displacement_band import shares_of_work
 from alula.fea.links.solid_result import _width
 from alula.fea.sizing.changes import _change, changes
 from alula.fea.sizing.size_range import _entry, _taken, size_range
-from alula.fea.sizing.tried import Trials
+from alula.fea.sizing.tried import Resized, Trials
 from alula.geometry.materials.family import most_of_family
 from alula.geometry.materials.material import library
 from alula.loads.case.case_file import read_case
@@ -139,6 +139,18 @@ def test_the_softest_link_is_sized(thick):
     assert (entry, size) == ("parts.tube.outer_diameter", 5.0)
     assert list(_taken(owl.case, entry, [2.0 * size, 1.8 * size])) == ["9 mm"]  # at 10 mm eyes keep no distance
     assert told.size is None  # no value up to there holds the load
+
+
+def test_a_size_out_of_calibration_is_refuted_without_solving_anything():
+    """Fillets are smaller to a tube of 9 mm than any that was measured; a whole check finds that it does not hold."""
+    owl = by_hand("owl-wing-static", PLANAR)
+    trials, [check] = Trials(result=owl), [one for one in owl.load_cases["weight"].checks if one.gives_way]
+    far, near = (Resized(entry="parts.tube.outer_diameter", value=value) for value in ("9 mm", "5.1 mm"))
+    assert trials.beyond("weight", far)
+    assert not trials.beyond("weight", near)
+    assert size_range(trials, check) is None
+    assert not trials._done
+    assert not trials.holds(far)
 
 
 def test_nothing_is_told_of_what_does_not_go_with_the_loads(thick):
