@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
-from solved import by_hand
+from solved import by_hand, told
 from told import print_result, print_screen
 
 from alula.fea.common.band import Band
@@ -25,7 +25,7 @@ def printed(show, result, *, terminal=True, width=80):
 @pytest.mark.parametrize("terminal", [True, False])
 @pytest.mark.parametrize("name", CASES)
 def test_it_has_one_screen_whatever_the_case(name, terminal):
-    result = by_hand(name)
+    result = told(name)
     lines = printed(print_screen, result, terminal=terminal)
     assert len(lines) <= SCREEN
     assert lines[0].startswith(f" {result.verdict.upper()} ")
@@ -42,9 +42,9 @@ def test_it_has_one_screen_whatever_the_case(name, terminal):
     assert first.quantity.split()[0] in lines[rule + 1]
     assert first.link in lines[rule + 1]
     assert lines[-1].endswith("ll numbers: --verbose")
-    told = [line for line in lines if line.startswith("Warning: ")]
-    left = len(result.warnings) - len(told)
-    assert len(told) <= MATTER
+    warned = [line for line in lines if line.startswith("Warning: ")]
+    left = len(result.warnings) - len(warned)
+    assert len(warned) <= MATTER
     assert (f"{left} more warning" in lines[-1]) == (left > 0)
 
 
@@ -79,8 +79,8 @@ def test_checks_of_two_names_and_links_stand_for_themselves_and_what_does_not_ap
 
 def test_many_names_are_counted_alone():
     result = by_hand("ornithopter")
-    told = brief(result.verdict, checks_of(result), several=True)
-    assert told.startswith("Undecided: 42 of 84 checks are open. ")
+    text = brief(result.verdict, checks_of(result), several=True)
+    assert text.startswith("Undecided: 42 of 84 checks are open. ")
     assert len(decision(result.verdict, checks_of(result), several=True)) > BRIEF
     assert printed(print_screen, result)[-1] == "79 more checks and all numbers: --verbose"
 
