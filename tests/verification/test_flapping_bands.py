@@ -24,7 +24,7 @@ from alula.reports.sentences import told as in_words
 WINGS = [
     f'{{ link = "lever-{side}", at = "W", span = ["6 mm", "66 mm"], chord = "30 mm" }}' for side in ("right", "left")
 ]
-RANDOM = np.random.default_rng(3).uniform(1.2, 5.0, 5)
+RANDOM = np.random.default_rng(3).uniform(1.2, 5.0, 3)
 
 
 @cache
