@@ -13,7 +13,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, d
 from alula.reports.check.screen import MATTER, SCREEN
 from alula.reports.sentences.verdicts import BRIEF, brief, checks_of, decision
 
-CASES = ("owl-wing-static", "owl-wing-braking", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
+CASES = ("owl-wing-static", "owl-wing-flight", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
 
 
 def printed(show, result, *, terminal=True, width=80):
@@ -50,7 +50,7 @@ def test_it_has_one_screen_whatever_the_case(name, terminal):
 
 def test_a_check_under_several_load_cases_stands_once_with_the_worst():
     """Of either order of the load cases."""
-    result = by_hand("owl-wing-braking")
+    result = by_hand("owl-wing-flight")
     for cases in (result.load_cases, dict(reversed(result.load_cases.items()))):
         shown = replace(result, load_cases=cases, warnings=())
         every = [check for check in checks_of(shown) if check.applies]

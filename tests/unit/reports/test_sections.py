@@ -18,7 +18,7 @@ from alula.reports.sections.markup import as_html, as_plain, bold, code, link, s
 from alula.reports.sections.section import Section, Series, Text, merged, parts_of, say
 from alula.reports.sections.table import Column, Number, Table, words
 
-LARGE = ("owl-wing-braking", "flapping-wing-chosen")
+LARGE = ("owl-wing-flight", "flapping-wing-chosen")
 """Cases whose trials of what would change them take as long as all checks of the others."""
 
 
