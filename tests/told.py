@@ -2,11 +2,12 @@
 
 import io
 import math
+from unittest.mock import patch
 
 from rich.console import Console
 
 from alula.fea.common.band import Band
-from alula.fea.findings.of_check import with_findings
+from alula.fea.findings import of_check
 from alula.reports.check import screen
 from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
 from alula.reports.renderers.page import as_page
@@ -18,11 +19,15 @@ _FOUND = {}
 
 
 def found(result):
-    """The result with what a report tells besides; one that has it already stays as it is."""
+    """The result with what a report tells besides, but for what would change it, which takes checks of its own.
+
+    One that has it already stays as it is: ``solved.told`` has all.
+    """
     if result.changes or result.motion is not None:
         return result
     if id(result) not in _FOUND:
-        _FOUND[id(result)] = result, with_findings(result)
+        with patch.object(of_check, "changes", lambda result: ()):
+            _FOUND[id(result)] = result, of_check.with_findings(result)
     return _FOUND[id(result)][1]
 
 

@@ -25,7 +25,7 @@ def test_walls_meet_where_they_touch_and_nowhere_else(alpha):
     theta = (np.arange(40_000) + 0.5) * 2.0 * np.pi / 40_000 - np.pi
     n = np.arange(2, 4_000)
     p = pressure(theta, alpha)
-    coefficient = 2.0 * np.array([np.mean(p * np.cos(k * theta)) for k in n])
+    coefficient = 2.0 * (np.exp(-1j * n * theta[0]) * np.fft.fft(p)[n]).real / len(theta)
 
     def gap(angle):
         own = (4.0 * n / (n**2 - 1.0) * coefficient * np.cos(np.multiply.outer(angle, n))).sum(axis=-1)

@@ -157,9 +157,13 @@ def test_a_check_of_many_poses_holds_every_cause(causes: tuple[str, ...], draw: 
 def compare(causes: tuple[str, ...], draw: int) -> None:
     """In linear theory in every other draw, else on the deformed shape as well."""
     of = FourBar(draw, off=draw % 2 == 0)
-    stated = checked(of.stated(causes))
+    stated, done = checked(of.stated(causes)), []
     for inputs, load_case in itertools.product(ends(of, causes, swapped=of.backwards), LOAD_CASES):
-        direct = checked(of.direct(causes, load_case, inputs))
+        case = of.direct(causes, load_case, inputs)
+        if case in done:  # crosswise is one of the ends, but for what has two members
+            continue
+        done.append(case)
+        direct = checked(case)
         assert_holds(stated, direct, lambda key: slack_of(key, causes, off=of.off), inputs)
         if "air" in causes:
             continue

@@ -50,7 +50,15 @@ def test_in_one_plane_a_collar_is_a_slider_up_to_the_verdict() -> None:
         for kind in ("slider", "collar")
     )
     assert collar.verdict == slider.verdict
-    found, expected = (report.frame("checks").select_dtypes("number") for report in (collar, slider))
+    found, expected = (
+        [
+            (check.value.value, check.value.low, check.value.high)
+            for load_case in report.result.load_cases.values()
+            for check in load_case.checks
+        ]
+        for report in (collar, slider)
+    )
+    assert len(found) > 10
     np.testing.assert_allclose(found, expected, rtol=1e-7)  # of the factors to buckling, which iterations find
     for name, load_case in slider.result.load_cases.items():
         own = collar.result.load_cases[name].reactions.joints

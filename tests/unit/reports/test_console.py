@@ -3,7 +3,7 @@ import shlex
 
 import pytest
 from rich.console import Console
-from solved import by_hand
+from solved import told
 from told import print_result, printed, section, tables
 
 from alula.reports.renderers.console import print_sections
@@ -55,12 +55,12 @@ def test_a_table_of_the_worst_is_not_told_where_that_of_all_is(result):
 def test_a_command_is_one_line_that_a_shell_takes_and_nothing_is_told_twice():
     """The command was broken at 80 columns, so that its copy ran half; the reason stood in two paragraphs."""
     changes = ("parts.bar.material=aluminium-6061-t6", "links.rocker.end_patch=8 mm")
-    text = printed(by_hand("four-bar", *changes))
+    text = printed(told("four-bar", *changes))
     [line] = [line for line in text.splitlines() if line.startswith("  alula size")]
     assert len(line) > 80
     words = shlex.split(line)
     assert words[:3] == ["alula", "size", "four-bar"]
     assert words[words.index("--set") + 1 :: 2] == list(changes)
-    aluminium = " ".join(printed(by_hand("four-bar", "parts.bar.material=aluminium-6061-t6")).split())
+    aluminium = " ".join(printed(told("four-bar", "parts.bar.material=aluminium-6061-t6")).split())
     assert aluminium.lower().count("hand calculation is not calibrated for this link: its patch") == 1
     assert "What would change it Safety factor of rocker (undecided): as told above." in aluminium

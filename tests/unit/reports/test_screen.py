@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
-from solved import by_hand
+from solved import by_hand, told
 from told import print_result, print_screen
 
 from alula.fea.common.band import Band
@@ -13,7 +13,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, d
 from alula.reports.check.screen import MATTER, SCREEN
 from alula.reports.sentences.verdicts import BRIEF, brief, checks_of, decision
 
-CASES = ("owl-wing-static", "owl-wing-braking", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
+CASES = ("owl-wing-static", "owl-wing-flight", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
 
 
 def printed(show, result, *, terminal=True, width=80):
@@ -25,7 +25,7 @@ def printed(show, result, *, terminal=True, width=80):
 @pytest.mark.parametrize("terminal", [True, False])
 @pytest.mark.parametrize("name", CASES)
 def test_it_has_one_screen_whatever_the_case(name, terminal):
-    result = by_hand(name)
+    result = told(name)
     lines = printed(print_screen, result, terminal=terminal)
     assert len(lines) <= SCREEN
     assert lines[0].startswith(f" {result.verdict.upper()} ")
@@ -42,15 +42,15 @@ def test_it_has_one_screen_whatever_the_case(name, terminal):
     assert first.quantity.split()[0] in lines[rule + 1]
     assert first.link in lines[rule + 1]
     assert lines[-1].endswith("ll numbers: --verbose")
-    told = [line for line in lines if line.startswith("Warning: ")]
-    left = len(result.warnings) - len(told)
-    assert len(told) <= MATTER
+    warned = [line for line in lines if line.startswith("Warning: ")]
+    left = len(result.warnings) - len(warned)
+    assert len(warned) <= MATTER
     assert (f"{left} more warning" in lines[-1]) == (left > 0)
 
 
 def test_a_check_under_several_load_cases_stands_once_with_the_worst():
     """Of either order of the load cases."""
-    result = by_hand("owl-wing-braking")
+    result = by_hand("owl-wing-flight")
     for cases in (result.load_cases, dict(reversed(result.load_cases.items()))):
         shown = replace(result, load_cases=cases, warnings=())
         every = [check for check in checks_of(shown) if check.applies]
@@ -79,8 +79,8 @@ def test_checks_of_two_names_and_links_stand_for_themselves_and_what_does_not_ap
 
 def test_many_names_are_counted_alone():
     result = by_hand("ornithopter")
-    told = brief(result.verdict, checks_of(result), several=True)
-    assert told.startswith("Undecided: 42 of 84 checks are open. ")
+    text = brief(result.verdict, checks_of(result), several=True)
+    assert text.startswith("Undecided: 42 of 84 checks are open. ")
     assert len(decision(result.verdict, checks_of(result), several=True)) > BRIEF
     assert printed(print_screen, result)[-1] == "79 more checks and all numbers: --verbose"
 
