@@ -82,13 +82,32 @@ def internal_forces(loads: BeamLoads) -> Piecewise:
             if line.start <= x < line.end:
                 slope = (line.last - line.first) / (line.end - line.start)
                 q += np.column_stack([line.first + slope * (x - line.start), slope])
-        c = coefficients[i]
-        c[:3, :3] = -integral(q, -state[:3])
-        c[3, 0] = state[3]
-        c[4] = integral(c[2, :3], state[4])
-        c[5] = -integral(c[1, :3], -state[5])
-        state = values(c, h)
+        coefficients[i] = between_loads(state, q)
+        state = values(coefficients[i], h)
     return Piecewise(breaks=breaks, coefficients=coefficients)
+
+
+def between_loads(start: Floats, line: Floats) -> Floats:
+    """Return the internal forces along a stretch with no load but a spread one.
+
+    Parameters
+    ----------
+    start : ndarray, shape (..., 6)
+        N, V_y, V_z [N], T, M_y, M_z [N·mm] at its start.
+    line : ndarray, shape (..., 3, 2)
+        Force per length at its start [N/mm], and by how much it grows along it [N/mm²].
+
+    Returns
+    -------
+    ndarray, shape (..., 6, 4)
+        In powers 0 to 3 of the distance from its start.
+    """
+    c = np.zeros((*start.shape, 4))
+    c[..., :3, :3] = -integral(line, -start[..., :3])
+    c[..., 3, 0] = start[..., 3]
+    c[..., 4, :] = integral(c[..., 2, :3], start[..., 4])
+    c[..., 5, :] = -integral(c[..., 1, :3], -start[..., 5])
+    return c
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.deflection import flexibility
+from alula.fea.beam.piecewise import values
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
@@ -202,16 +203,80 @@ def bounds(
     Band
         The frame's displacement, the least and the largest [mm].
     """
-    ends = np.zeros(3)
-    for i in range(len(loaded.model.elements)):
-        if i not in without:
-            terms = np.array(_terms(loaded, unit, i, beams.get(i)))
-            ends += [terms[0].sum(), terms.min(axis=0).sum(), terms.max(axis=0).sum()]
+    found = works(loaded, unit, beams, bores, pins=pins)
+    return found.band([i for i in range(len(loaded.model.elements)) if i not in without], range(len(bores)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Works:
+    """Work of a frame's internal forces under a unit load on its strains under loads, term by term.
+
+    Attributes
+    ----------
+    beams : ndarray, shape (m, 3, 6)
+        Of every element and internal force: of the frame, with the least flexibility, with the largest.
+    bores : ndarray, shape (b, 6)
+        Of every pin in its bore, at most.
+    """
+
+    beams: Real
+    bores: Real
+
+    def band(self, elements: Sequence[int], bores: Sequence[int]) -> Band:
+        """Return the work of some elements and bores between its bounds, each term at its worst.
+
+        Parameters
+        ----------
+        elements, bores : sequence of int
+            Their numbers.
+
+        Returns
+        -------
+        Band
+        """
+        terms, sunk = self.beams[list(elements)], self.bores[list(bores)]
+        low = terms.min(axis=1).sum() + np.minimum(sunk, 0.0).sum()
+        high = terms.max(axis=1).sum() + np.maximum(sunk, 0.0).sum()
+        return Band(value=float(terms[:, 0].sum()), low=float(low), high=float(high))
+
+
+def works(
+    loaded: FrameSolution,
+    unit: FrameSolution,
+    beams: Mapping[int, Sequence[Zone]],
+    bores: Sequence[tuple[int, Real]],
+    *,
+    pins: Container[int] = (),
+) -> Works:
+    """Return the work of internal forces, term by term.
+
+    Parameters
+    ----------
+    loaded, unit, beams, bores, pins
+        As of ``bounds``.
+
+    Returns
+    -------
+    Works
+    """
+    model, terms = loaded.model, np.zeros((len(loaded.model.elements), 3, 6))
+    lengths = [model.length(i) for i in range(len(model.elements))]
+    plain = Zone(start=0.0, end=np.inf, least=np.ones(6), most=np.ones(6))
+    every = [(i, zone) for i in range(len(lengths)) for zone in beams.get(i) or (plain,)]
+    numbers = np.array([i for i, _ in every], dtype=np.int64)
+    start, end = (
+        np.minimum([getattr(zone, name) for _, zone in every], np.take(lengths, numbers)) for name in ("start", "end")
+    )
+    half = (end - start)[:, None] / 2.0
+    xs, dx = (start + end)[:, None] / 2.0 + half * _NODES, half * _WEIGHTS
+    flexible = np.array([flexibility(one.section, one.young, one.poisson) for one in model.elements])
+    real, virtual = (values(one.forces_along[numbers, None], xs[..., None]) for one in (loaded, unit))
+    each = flexible[numbers] * np.einsum("zq,zqi->zi", dx, real * virtual)
+    least, most = (np.array([getattr(zone, name) for _, zone in every]) for name in ("least", "most"))
+    np.add.at(terms, numbers, np.stack([each, least * each, most * each], axis=1))
     acting = [_on_links(solution, pins) for solution in (loaded, unit)]
-    for node, give in bores:
-        sunk = give * acting[0][node] * acting[1][node]
-        ends[1:] += np.minimum(sunk, 0.0).sum(), np.maximum(sunk, 0.0).sum()
-    return Band(value=float(ends[0]), low=float(ends[1]), high=float(ends[2]))
+    sunk = [give * acting[0][node] * acting[1][node] for node, give in bores]
+    return Works(beams=terms, bores=np.array(sunk).reshape(-1, 6))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -300,16 +365,20 @@ def _along_axes(
     of_link = {i: beam.link for i, beam in frame.beams.items()}
     others = {"", *of_link.values(), *solids, *(link for link, _, _ in bores)}
     others -= {link for one in moduli for link in one.links}
-    numbers = range(len(frame.model.elements))
+    own_of = [of_link.get(i, "") for i in range(len(frame.model.elements))]
+    sinking = [(node, give) for _, node, give in bores]
     planar = not np.any(solution.displacements[:, 2:5])
     found = []
     for axis in range(2 if planar else 3):
         unit = _under_unit_force(frame.model, node, axis)
 
-        def share(own: Collection[str], low: float, high: float, unit: FrameSolution = unit, axis: int = axis) -> Real:
-            without = left_out | {i for i in numbers if of_link.get(i, "") not in own}
-            sunk = [(node, give) for link, node, give in bores if link in own]
-            plain = bounds(solution, unit, beams, sunk, without=without, pins=frame.pin_beams.values())
+        found_works = works(solution, unit, beams, sinking, pins=frame.pin_beams.values())
+
+        def share(own: Collection[str], low: float, high: float, terms: Works = found_works, axis: int = axis) -> Real:
+            plain = terms.band(
+                [i for i, link in enumerate(own_of) if link in own and i not in left_out],
+                [i for i, (link, _, _) in enumerate(bores) if link in own],
+            )
             every = [plain, *(bands[axis] for link, bands in solids.items() if link in own)]
             taken = sum(works[axis] for link, works in carried.items() if link in own)
             value, least, most = (sum(getattr(one, end) for one in every) - taken for end in ("value", "low", "high"))
@@ -429,11 +498,13 @@ def works_of_links(case: Case, frame: LinkageFrame, solution: FrameSolution) -> 
         Work of what acts on the link, on its deformation [N mm].
     """
     beams, bores = _links(case, frame, ())
+    found = works(solution, solution, beams, bores, pins=frame.pin_beams.values())
     for link in dict.fromkeys(beam.link for beam in frame.beams.values()):
-        others = {i for i in range(len(frame.model.elements)) if i not in frame.beams or frame.beams[i].link != link}
         nodes = {node for (name, _), node in frame.points.items() if name == link}
-        own = [(node, give) for node, give in bores if node in nodes]
-        band = bounds(solution, solution, beams, own, without=others, pins=frame.pin_beams.values())
+        band = found.band(
+            [i for i, beam in frame.beams.items() if beam.link == link],
+            [i for i, (node, _) in enumerate(bores) if node in nodes],
+        )
         if band.value > 0.0:
             yield link, band
 
@@ -483,21 +554,6 @@ def _links(
     """Zones of every element that is part of a link without solid, and these links' bores with the nodes in them."""
     beams, bores = give_of_links(case, frame, solids)
     return beams, [(node, give) for _, node, give in bores]
-
-
-def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Zone] | None) -> tuple[Real, Real, Real]:
-    """Virtual work (6,) of one element's internal forces: nominal, with the least and with the largest flexibility."""
-    element, length = loaded.model.elements[i], loaded.model.length(i)
-    real, virtual = loaded.internal_forces(i), unit.internal_forces(i)
-    flexible = flexibility(element.section, element.young, element.poisson)
-    every = zones or (Zone(start=0.0, end=length, least=np.ones(6), most=np.ones(6)),)
-    start, end = (np.minimum([getattr(zone, name) for zone in every], length)[:, None] for name in ("start", "end"))
-    xs, dx = (start + end) / 2.0 + (end - start) / 2.0 * _NODES, (end - start) / 2.0 * _WEIGHTS
-    terms = flexible * np.einsum("zq,zqi->zi", dx, real.along(xs) * virtual.along(xs))
-    nominal, least, most = np.zeros(6), np.zeros(6), np.zeros(6)
-    for zone, term in zip(every, terms, strict=True):
-        nominal, least, most = nominal + term, least + zone.least * term, most + zone.most * term
-    return nominal, least, most
 
 
 def _on_links(solution: FrameSolution, pins: Container[int]) -> Real:

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.deflection import deflection
 from alula.fea.beam.loads import BeamLoads, LineLoad, PointLoad
-from alula.fea.beam.piecewise import Piecewise
-from alula.fea.beam.theory import internal_forces
+from alula.fea.beam.piecewise import Piecewise, values
+from alula.fea.beam.theory import LARGEST_IMBALANCE, between_loads, internal_forces
 from alula.fea.frame.equations import equations_of
 from alula.fea.frame.model import DOFS, FrameModel
 from alula.fea.frame.system import FrameSystem, line_load_effect
@@ -108,14 +108,30 @@ class FrameSolution:
         Piecewise
             Signs and axes as in ``alula.fea.beam.theory``.
         """
-        if i not in self._internal:
-            self._internal[i] = internal_forces(self.beam_loads(i))
-        return self._internal[i]
+        breaks = np.array([0.0, self.model.length(i)])
+        return Piecewise(breaks=breaks, coefficients=self.forces_along[i][None])
 
     @cached_property
-    def _internal(self) -> dict[int, Piecewise]:
-        """Internal forces of elements that were asked for already: of the work at every point of a linkage, again."""
-        return {}
+    def forces_along(self) -> Floats:
+        """N, V_y, V_z, T, M_y, M_z (m, 6, 4) along every element, in powers 0 to 3 of the place from its first end.
+
+        Raises ``CannotRunError`` where what acts on an element does not balance.
+        """
+        numbers = range(len(self.model.elements))
+        lengths, lines = np.array([self.model.length(i) for i in numbers]), np.zeros((len(numbers), 3, 2))
+        for i, element in enumerate(self.model.elements):
+            if element.load_first.any() or element.load_last.any():
+                first, last = self.model.line_load(i)
+                lines[i] = np.column_stack([first, (last - first) / lengths[i]])
+        found = between_loads(-self.end_forces[:, 0], lines)
+        # What does not meet the other end's forces is out of balance, or rounding of a far larger load elsewhere.
+        left = np.abs(values(found, lengths[:, None]) - self.end_forces[:, 1])
+        size = np.abs(self.end_forces).sum(axis=1)
+        scale = size[:, :3].sum(axis=1) + size[:, 3:].sum(axis=1) / lengths
+        bad = np.maximum(left[:, :3].max(axis=1), left[:, 3:].max(axis=1) / lengths) > LARGEST_IMBALANCE / 2.0 * scale
+        for number in np.flatnonzero(bad).tolist():
+            internal_forces(self.beam_loads(number))
+        return found
 
     def axis_displacements(self, i: int, stations: Floats) -> Floats:
         """Return the displacements of the axis of an element.
