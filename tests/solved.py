@@ -59,9 +59,14 @@ def share_masses() -> None:
 @cache
 def by_hand(name: str, *overrides: str) -> CheckResult:
     """Check a built-in case by hand calculation, with entries set anew."""
-    return shared(
-        f"by hand {name} {overrides}", lambda: check_case(read_case(name, overrides), name=name, fidelity="beam")
-    )
+
+    def solve() -> CheckResult:
+        found = check_case(read_case(name, overrides), name=name, fidelity="beam")
+        for case in found.load_cases.values():  # what reports ask for, so that no other process finds it again
+            _ = case.linkage.displacement_and_place, case.linkage.limit_load
+        return found
+
+    return shared(f"by hand {name} {overrides}", solve)
 
 
 @cache
