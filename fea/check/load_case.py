@@ -9,10 +9,10 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.doubts.force_doubt import sharing_answers, sharing_doubt, stiffness_answers, stiffness_doubt
+from alula.fea.doubts.causes import COUPLES, Cause, Stated, causes_of
 from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, OtherCase, Plates, widened
-from alula.fea.doubts.play_doubt import play_answers, play_at_joint, play_doubt
+from alula.fea.doubts.play_doubt import play_at_joint
 from alula.fea.doubts.tight_pins import SharedCouples
 from alula.fea.judging.link_result import by_hand_shares, link_result, open_ranges, together_shares, worse_plate
 from alula.fea.judging.linkage import linkage_outcomes
@@ -58,10 +58,10 @@ class LoadCaseByHand:
         One of every link; of a pair whose plates bear differently both, first the worse one by hand.
     size : float
         Of all that acts [N], beside which a load is none.
-    growth, grown, uneven : Growths
-        What grows beyond the load alone; with the stiffness of solids; with play and ``doubts`` as well.
-    shared : Growths
-        What the ways of sharing couples between layers make by hand.
+    growth : Growths
+        What grows beyond the load alone.
+    causes : sequence of Cause
+        What leaves the loads on links open, ``doubts`` among them.
     doubts : sequence of Doubt
         Of its air and friction.
     """
@@ -73,9 +73,7 @@ class LoadCaseByHand:
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
     size: float
     growth: Growths = field(default_factory=Growths)
-    grown: Growths = field(default_factory=Growths)
-    uneven: Growths = field(default_factory=Growths)
-    shared: Growths = field(default_factory=Growths)
+    causes: Sequence[Cause] = ()
     doubts: Sequence[Doubt] = ()
 
     @classmethod
@@ -139,20 +137,30 @@ class LoadCaseByHand:
         found = cls.as_stated(statics, load_case, moved)
         case, loads, moved = found.case, statics.loads[load_case], found.moved
         hands = {link: plates[0][1] for link, plates in found.plates.items()}
-        forces = found.forces
         growth = growths(case, load_case, statics.pose, loads, moved, statics.reactions[load_case], hands)
-        grown = growth.times(stiffness_doubt(case, load_case, forces, loads))
-        uneven = grown.times(play_doubt(case, load_case, forces, loads, told))
-        for doubt in doubts:
-            uneven = uneven.times(doubt.growths)
-        return replace(
-            found,
-            growth=growth,
-            grown=grown,
-            uneven=uneven,
-            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved), links=told),
-            doubts=doubts,
-        )
+        stated = Stated(case=case, load_case=load_case, forces=found.forces, loads=loads, grown=found.bent, links=told)
+        return replace(found, growth=growth, causes=(*causes_of(stated), *doubts), doubts=doubts)
+
+    @property
+    def bent(self) -> bool:
+        """True where what acts on links holds their bending on free pins already, which ``cut_link`` adds."""
+        return self.moved.state in ("off", "unknown")
+
+    @cached_property
+    def shared(self) -> Growths:
+        """What the ways of sharing couples between layers make by hand."""
+        return next((cause.growths for cause in self.causes if cause.name == COUPLES), Growths())
+
+    @cached_property
+    def uneven(self) -> Growths:
+        """What grows beyond the load alone, with all causes but the sharing of couples."""
+        return reduce(Growths.times, (one.growths for one in self.causes if one.name != COUPLES), self.growth)
+
+    @cached_property
+    def grown(self) -> Growths:
+        """The same of causes that do not tell of columns themselves."""
+        others = (one for one in self.causes if one.name != COUPLES and not one.of_columns)
+        return reduce(Growths.times, (one.growths for one in others), self.growth)
 
     def acts_on(self, link: str) -> bool:
         """Return True if anything acts on a link.
@@ -334,15 +342,7 @@ class LoadCaseByHand:
         dict of str to LinkAnswers
             By the name of the cause.
         """
-        case, load_case, forces, loads = self.case, self.load_case, self.forces, self.statics.loads[self.load_case]
-        own = case, load_case, link, forces, loads
-        found = {"couples": sharing_answers(*own, grown=_grown(self.moved))} if forces.sharings else {}
-        if forces.open_by:
-            found["stiffness"] = stiffness_answers(*own)
-        play = play_answers(*own)
-        if play is not None:
-            found["play"] = play
-        return found | {str(doubt.cause.source.kind): doubt.answers(link) for doubt in self.doubts}
+        return {cause.name: cause.answers(link) for cause in self.causes}
 
     def solid_answers(self, link: str, solid: RefinedSolid, threads: int | None) -> SolvedAnswers | None:
         """Return what causes make of a link on its solid, each answer by itself.
@@ -385,7 +385,7 @@ class LoadCaseByHand:
             load_case=self.load_case,
             forces=self.forces,
             loads=self.statics.loads[self.load_case],
-            grown=_grown(self.moved),
+            grown=self.bent,
             by_hand=self.shared.stress,
             told={**self.shared.stress, **{link: shares[decisive[link]] for link, shares in known.items()}},
             checks=checks,
@@ -407,8 +407,3 @@ class LoadCaseByHand:
         if known is None:
             return self.uneven, by_hand_shares(self.shared, link)
         return self.growth, together_shares(known)
-
-
-def _grown(moved: LargeDisplacement) -> bool:
-    """Return whether what acts on links holds their bending on free pins already, which ``cut_link`` adds."""
-    return moved.state in ("off", "unknown")

@@ -52,7 +52,7 @@ def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequ
         return Growths()
     answers = {link: stiffness_answers(case, load_case, link, forces, loads) for link in case.checked_links}
     changed = [one.reactions for one in forces.open_by]
-    return _growths(case, forces.on_tight_pins, changed, _summed(forces.sources), answers)
+    return growths_by_hand(case, forces.on_tight_pins, changed, _summed(forces.sources), answers)
 
 
 def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> LinkAnswers:
@@ -105,7 +105,7 @@ def sharing_doubt(
         return Growths()
     links = case.checked_links if links is None else links
     answers = {link: sharing_answers(case, load_case, link, forces, loads, grown=grown) for link in links}
-    return _growths(case, forces.reactions, forces.sharings, widest(COUPLES), answers)
+    return growths_by_hand(case, forces.reactions, forces.sharings, widest(COUPLES), answers)
 
 
 def sharing_answers(
@@ -143,14 +143,26 @@ def sharing_answers(
     return LinkAnswers(stated=stated, others=tuple(tilted), stress=rule, displacement=rule)
 
 
-def _growths(
-    case: Case,
-    stated: Reactions,
-    changes: Sequence[Reactions],
-    rule: Rule,
-    answers: Mapping[str, LinkAnswers],
+def growths_by_hand(
+    case: Case, stated: Reactions, changes: Sequence[Reactions], rule: Rule, answers: Mapping[str, LinkAnswers]
 ) -> Growths:
-    """What a cause makes of links by hand, and of joint forces."""
+    """Return what a cause makes of links by hand, and of joint forces.
+
+    Parameters
+    ----------
+    case : Case
+    stated : Reactions
+    changes : sequence of Reactions
+        In the other answers.
+    rule : callable
+        Of joint forces.
+    answers : mapping of str to LinkAnswers
+        By link.
+
+    Returns
+    -------
+    Growths
+    """
     stress, displacement = {}, {}
     for link, one in answers.items():
         stresses, moved = numbers_by_hand(case, link, one.every).tolist()

@@ -201,6 +201,16 @@ class Doubt:
         return cls(stated=OtherCase.of(statics, load_case, moved), cause=cause)
 
     @property
+    def name(self) -> str:
+        """The kind of its source."""
+        return str(self.cause.source.kind)
+
+    @property
+    def of_columns(self) -> bool:
+        """True: buckling is that of the other conditions (``on_buckling``)."""
+        return True
+
+    @property
     def growths(self) -> Growths:
         """By how much stress, displacement of links and joint forces may differ."""
 

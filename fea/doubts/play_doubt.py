@@ -94,9 +94,7 @@ def play_at_joint(play: Play | None, joint: str, *, driven: bool) -> Scatter:
     return force.either(_scatter(Span(value=abs(effort.value), low=least, high=high), source))
 
 
-def play_answers(
-    case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]
-) -> LinkAnswers | None:
+def play_answers(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> LinkAnswers:
     """Return what acts on a link as pins stand otherwise in their holes.
 
     Every joint with play stands at its ends in x and in y, then all joints stand where the link's stress, displacement
@@ -106,16 +104,13 @@ def play_answers(
     Parameters
     ----------
     case, load_case, forces, loads
-        As of ``play_doubt``.
+        As of ``play_doubt``; with play.
     link : str
 
     Returns
     -------
-    LinkAnswers or None
-        None without play.
+    LinkAnswers
     """
-    if forces.play is None:
-        return None
     told = _play_on_link(case, load_case, link, forces, loads)
     stated, *others = told.answers
     return LinkAnswers(stated=stated, others=tuple(others), stress=told.rules[0], displacement=told.rules[1])
