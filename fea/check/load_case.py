@@ -150,7 +150,7 @@ class LoadCaseByHand:
             growth=growth,
             grown=grown,
             uneven=uneven,
-            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved), links=told),
+            shared=sharing_doubt(case, load_case, found.shared_forces, loads, grown=_grown(moved), links=told),
             doubts=doubts,
         )
 
@@ -248,6 +248,11 @@ class LoadCaseByHand:
         """Joint forces."""
         return self.statics.forces[self.load_case]
 
+    @property
+    def shared_forces(self) -> JointForces:
+        """Joint forces of the numbers that the ways of sharing couples change: on the deformed shape of tight pins."""
+        return self.forces if self.moved.reactions is None else self.forces.beside_tight_pins
+
     def links(
         self, decided: Mapping[str, DecidedLink], solved: Mapping[str, SolvedAnswers] | None = None
     ) -> dict[str, LinkResult]:
@@ -336,7 +341,8 @@ class LoadCaseByHand:
         """
         case, load_case, forces, loads = self.case, self.load_case, self.forces, self.statics.loads[self.load_case]
         own = case, load_case, link, forces, loads
-        found = {"couples": sharing_answers(*own, grown=_grown(self.moved))} if forces.sharings else {}
+        shared = case, load_case, link, self.shared_forces, loads
+        found = {"couples": sharing_answers(*shared, grown=_grown(self.moved))} if forces.sharings else {}
         if forces.open_by:
             found["stiffness"] = stiffness_answers(*own)
         play = play_answers(*own)
@@ -383,7 +389,7 @@ class LoadCaseByHand:
         return SharedCouples(
             case=self.case,
             load_case=self.load_case,
-            forces=self.forces,
+            forces=self.shared_forces,
             loads=self.statics.loads[self.load_case],
             grown=_grown(self.moved),
             by_hand=self.shared.stress,
