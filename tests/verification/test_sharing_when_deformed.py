@@ -22,7 +22,7 @@ def leaning(*clearance):
     data = four_bar(tight={})
     data["materials"]["m"]["youngs_modulus"] = "7000 MPa"
     for joint in data["joints"].values():
-        joint["clearance"] = dict.fromkeys(joint["links"], list(clearance))
+        joint["clearance"] = {link: list(clearance) for link in joint["links"]}
     data["load_cases"]["l"]["forces"][0]["force"] = ["60 N", "0 N"]
     case = checked(data)
     statics = solve_case_statics(case)
