@@ -61,7 +61,7 @@ def judged(
     links = hand.links(decided, solved)
     moved = with_known_stiffness(case, hand.moved, forces, links, hand.cut)
     reactions = moved.reactions or statics.reactions[load_case]
-    pins = _pins(case, reactions, forces)
+    pins = _pins(case, reactions, hand.shared_forces)
     in_plane = {x: one for x, one in hand.shared.joints.items() if case.linkage.rise(x) == 0.0}
     pinned = hand.uneven.times(Growths(joints=in_plane)).joints  # ``pins`` and bearing hold the sharing of others
     linkage = linkage_numbers(case, load_case, moved, forces, links, hand.free)

@@ -138,7 +138,15 @@ class LoadCaseByHand:
         case, loads, moved = found.case, statics.loads[load_case], found.moved
         hands = {link: plates[0][1] for link, plates in found.plates.items()}
         growth = growths(case, load_case, statics.pose, loads, moved, statics.reactions[load_case], hands)
-        stated = Stated(case=case, load_case=load_case, forces=found.forces, loads=loads, grown=found.bent, links=told)
+        stated = Stated(
+            case=case,
+            load_case=load_case,
+            forces=found.forces,
+            shared=found.shared_forces,
+            loads=loads,
+            grown=found.bent,
+            links=told,
+        )
         return replace(found, growth=growth, causes=(*causes_of(stated), *doubts), doubts=doubts)
 
     @property
@@ -255,6 +263,11 @@ class LoadCaseByHand:
     def forces(self) -> JointForces:
         """Joint forces."""
         return self.statics.forces[self.load_case]
+
+    @property
+    def shared_forces(self) -> JointForces:
+        """Joint forces of the numbers that the ways of sharing couples change: on the deformed shape of tight pins."""
+        return self.forces if self.moved.reactions is None else self.forces.beside_tight_pins
 
     def links(
         self, decided: Mapping[str, DecidedLink], solved: Mapping[str, SolvedAnswers] | None = None
@@ -383,7 +396,7 @@ class LoadCaseByHand:
         return SharedCouples(
             case=self.case,
             load_case=self.load_case,
-            forces=self.forces,
+            forces=self.shared_forces,
             loads=self.statics.loads[self.load_case],
             grown=self.bent,
             by_hand=self.shared.stress,

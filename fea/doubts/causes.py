@@ -6,7 +6,7 @@ cases first (``alula.fea.doubts.other_case.Doubt``), and are causes here as well
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -55,6 +55,8 @@ class Stated:
     load_case : str
         Its name.
     forces : JointForces
+    shared : JointForces
+        Those of the numbers that the ways of sharing couples change: on the deformed shape of tight pins.
     loads : sequence of Load
         That act on the links.
     grown : bool
@@ -66,6 +68,7 @@ class Stated:
     case: Case
     load_case: str
     forces: JointForces
+    shared: JointForces
     loads: Sequence[Load]
     grown: bool
     links: Sequence[str] | None
@@ -104,14 +107,11 @@ class OnLinks:
 
 def _couples(stated: Stated) -> OnLinks | None:
     """How pins share couples between layers."""
-    own = stated.case, stated.load_case, stated.forces, stated.loads
-    if not stated.forces.sharings:
+    if not stated.shared.sharings:
         return None
-    return OnLinks(
-        name=COUPLES,
-        growths=sharing_doubt(*own, grown=stated.grown, links=stated.links),
-        on_link=partial(_on, sharing_answers, stated, grown=stated.grown),
-    )
+    own = replace(stated, forces=stated.shared)
+    growths = sharing_doubt(own.case, own.load_case, own.forces, own.loads, grown=own.grown, links=own.links)
+    return OnLinks(name=COUPLES, growths=growths, on_link=partial(_on, sharing_answers, own, grown=own.grown))
 
 
 def _stiffness(stated: Stated) -> OnLinks | None:

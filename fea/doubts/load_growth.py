@@ -198,6 +198,7 @@ def beyond_undeformed(
         return stated.of_small(moved, plain, high)
     if moved.gives_way:
         return _told([dict.fromkeys(kind, (1.0, math.inf)) for kind in plain])
+    plain = plain if moved.reactions is None else stated.on_tight_pins(moved, plain)
     every: list[Numbers | None] = [stated.by_hand(moved)]
     if high > 1.0:
         every.append(stated.at(pose, high))
@@ -253,22 +254,29 @@ class _Stated:
             return _told([dict.fromkeys(kind, (1.0 / (1.0 + most), 1.0 + most)) for kind in plain])
         rise = max(most / nominal if nominal > 0.0 else high, 1.0)
         found = []
-        for before, after in zip(self._undeformed(moved, plain), self.by_hand(moved.grown), strict=True):
+        for before, after in zip(self.on_tight_pins(moved, plain), self.by_hand(moved.grown), strict=True):
             least = NOTHING * max(before.values(), default=0.0)
             over = {n: rise * (after[n] / value - 1.0) if value > least else 0.0 for n, value in before.items()}
             found.append({name: (max(1.0 + min(x, 0.0), 0.0), 1.0 + max(x, 0.0)) for name, x in over.items()})
         return _told(found)
 
-    def _undeformed(self, moved: LargeDisplacement, plain: Numbers) -> Numbers:
-        """Numbers on the undeformed shape, with pins as they are on the deformed one.
+    def on_tight_pins(self, moved: LargeDisplacement, plain: Numbers) -> Numbers:
+        """Numbers on the undeformed shape with pins as they are on the deformed one.
 
         Frames that deform have tight pins. What pins that run make of couples between layers is no growth, and has a
-        band of its own (``alula.fea.doubts.force_doubt``).
+        band of its own (``alula.fea.doubts.force_doubt``). Numbers of a motion hold no bending that grows.
         """
-        if not self.case.layered or moved.frame is None or moved.solution is None:
+        if moved.pins is None or moved.frame is None or moved.solution is None:
             return plain
-        tight = moved.frame.reactions(moved.solution.joint_wrenches, moved.solution.residual)
-        return replace(self, reactions=tight).by_hand(moved)
+        found = moved.frame.reactions(moved.solution.joint_wrenches, moved.solution.residual)
+        flat = replace(moved, state="small", links={}, reactions=None)
+        tight, running = (replace(self, reactions=one).by_hand(flat) for one in (found, self.reactions))
+        numbers = zip(plain, tight, running, strict=True)
+        stress, displacement, joints, torques = (
+            {name: value * (one[name] / two[name] if two[name] > 0.0 else 1.0) for name, value in own.items()}
+            for own, one, two in numbers
+        )
+        return stress, displacement, joints, torques
 
     def by_hand(self, moved: LargeDisplacement) -> Numbers:
         """Numbers of the load case on a shape."""

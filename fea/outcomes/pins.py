@@ -37,9 +37,10 @@ adds to the shear where nothing bends, and at the extreme fibre to the bending b
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -55,6 +56,7 @@ from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CaseError
+from alula.geometry.bodies.eyes import ROUNDING
 from alula.geometry.bodies.features import Ring
 from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import connected_joints, turned_by_drive
@@ -383,31 +385,43 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
 
     _, most = sought([one.shear / (plain.shear or math.inf) for one in (plain, *others)])
     shear = found.shear * most
-    equivalent = widened("equivalent", crossing(case, joint, reaction))
+    equivalent = widened(
+        "equivalent", crossing(case, joint, [reaction, *(one.joints[joint] for one in forces.sharings)])
+    )
     return replace(found, moment=widened("moment"), bending=widened("bending"), shear=shear, equivalent=equivalent)
 
 
-def crossing(case: Case, joint: str, reaction: JointReaction) -> float:
+def crossing(case: Case, joint: str, reactions: Sequence[JointReaction]) -> float:
     """Return the least stress of a pin between layers: that of its force in shear, which crosses between the eyes.
+
+    All of it crosses at once between two eyes that lie side by side. Else, as of a bar between the plates of a pair,
+    its parts cross at several places, at one of them an equal part or more.
 
     Parameters
     ----------
     case : Case
     joint : str
-    reaction : JointReaction
+    reactions : sequence of JointReaction
+        In all states of the pins.
 
     Returns
     -------
     float
-        Von Mises stress at the neutral axis [MPa], however the pin stands in its holes.
+        Von Mises stress at the neutral axis [MPa], however the pin stands in its holes; 0 where eyes lie in each other.
 
     Raises
     ------
     CaseError
         For a pin without diameter.
     """
-    diameter, poisson = _pin_of(case, joint)
-    return math.sqrt(3.0) * _shear_stress(float(np.hypot(*reaction.wrench[:2])), diameter, poisson)
+    (diameter, poisson), (first, second), rise = _pin_of(case, joint), eyes(case, joint), case.linkage.rise(joint)
+    walls = [(low, high, 0) for low, high in first.walls]
+    walls = sorted([*walls, *((rise + low, rise + high, 1) for low, high in second.walls)])
+    if any(one[1] > other[0] + ROUNDING * first.height for one, other in pairwise(walls)):
+        return 0.0
+    places = sum(one[2] != other[2] for one, other in pairwise(walls))
+    force = min(float(np.hypot(*one.wrench[:2])) for one in reactions)
+    return math.sqrt(3.0) * _shear_stress(force / places, diameter, poisson)
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:

@@ -110,6 +110,11 @@ class JointForces:
         return self.frame.reactions(self.solution.joint_wrenches, self.solution.residual)
 
     @property
+    def beside_tight_pins(self) -> "JointForces":
+        """The same, told as what pins that run change of tight ones: numbers on the deformed shape have tight pins."""
+        return replace(self, reactions=self.on_tight_pins)
+
+    @property
     def by_equilibrium(self) -> bool:
         """True where equilibrium alone gave them, or all of them that acts in the plane."""
         return self.frame is None or self.model == LAYERED_FRAME

@@ -31,7 +31,8 @@ def thrusts(forces: JointForces, deformed: Reactions | None = None) -> dict[str,
         Revolute joint that is not bonded -> size of the force along z [N]; none where there is no thrust beyond
         rounding.
     """
-    plain, tight, linkage = forces.reactions.joints, forces.on_tight_pins.joints, forces.reactions.pose.linkage
+    tight, linkage = forces.on_tight_pins.joints, forces.reactions.pose.linkage
+    plain = forces.reactions.joints if deformed is None else tight
     shown = forces.reactions.joints if deformed is None else deformed.joints
     largest = max((joint.magnitude for joint in shown.values()), default=0.0)
     sources = distinct(forces.sources, COUPLES if forces.sharings else ())

@@ -15,7 +15,8 @@ from alula.fea.common.plates import pair_forces, plates
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.linear import solve_frame
 from alula.fea.judging.bearing import pressing
-from alula.fea.outcomes.pins import stress_at
+from alula.fea.outcomes.pins import crossing, shared_stress, stress_at, stresses_between
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.case.layers import slab
@@ -270,6 +271,17 @@ def test_bars_off_the_middle_of_a_pair_between_layers():
     pressure += force / 6.0 * (np.abs(z - middle) < 3.0)
     bending = np.abs(np.cumsum(np.cumsum(pressure)) * step**2).max()
     assert stress_at(case, "C", tilts.joints["C"]).moment.value == pytest.approx(bending, rel=0.02)
+
+
+def test_between_the_plates_of_a_pair_no_place_of_the_pin_need_bear_the_whole_force():
+    """Half of it crosses each gap: a short thick pin bears less than the whole in shear, in every state."""
+    case = off_the_middle(0.05, apart="12.2 mm")
+    forces = solve_case_statics(case).forces["lift"]
+    found, every = shared_stress(case, "C", forces.reactions.joints["C"], forces), (forces.reactions, *forces.sharings)
+    states = stresses_between(case, "C", np.array([one.joints["C"].wrench for one in every]))
+    assert found.equivalent.low < min(one.equivalent.value for one in states)
+    least = np.sqrt(3.0) * min(one.shear for one in states)
+    assert 0.9 * least < crossing(case, "C", [forces.reactions.joints["C"]]) <= least
 
 
 @pytest.mark.parametrize(
