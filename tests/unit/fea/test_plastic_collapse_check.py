@@ -42,9 +42,7 @@ def judged(case, found):
     load_case = next(iter(case.load_cases))
     doubts = Growths(), by_hand_shares(Growths(), "front")
     results = {"front": None, "rear": None}
-    here = SimpleNamespace(
-        case=case, load_case=load_case, links=results, collapses=found, doubts=lambda link: doubts
-    )
+    here = SimpleNamespace(case=case, load_case=load_case, links=results, collapses=found, doubts=lambda link: doubts)
     [one] = asked(case, PlasticCollapseCheck)
     return judge_collapse(here, one).outcome
 
