@@ -175,8 +175,11 @@ def test_brittle_and_layered_links_are_refused(entry, says):
     with pytest.raises(CaseError, match=says) as error:
         edited("knee", [FRONT, entry])
     assert "front" in str(error.value)
+    assert str(error.value).endswith("name the other links in links")
     case = edited("knee", [CHECK, entry])
     assert asked_of(case, PlasticCollapseCheck) == ("rear",)
+    with pytest.raises(CaseError, match="leave this check out"):
+        edited("knee", [CHECK, entry, entry.replace("front", "rear")])
 
 
 @pytest.mark.parametrize(
