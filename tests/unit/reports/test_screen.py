@@ -83,7 +83,10 @@ def test_under_the_worst_load_case_least_is_known_of_a_number():
     def outcome(load_case, band):
         return CheckOutcome.of("own", Subject.link("a"), load_case, Quantity.PLASTIC_COLLAPSE, band, 1.0)
 
-    known = [outcome("first", Band(value=9.0, low=8.0, high=9.0)), outcome("second", Band(value=9.0, low=5.0, high=9.0))]
+    known = [
+        outcome("first", Band(value=9.0, low=8.0, high=9.0)),
+        outcome("second", Band(value=9.0, low=5.0, high=9.0)),
+    ]
     for least, worst in ((2.0, "third"), (6.0, "second")):
         every = [known[0], outcome("third", Band.at_least(least)), known[1]]
         for order in (every, every[::-1]):
