@@ -526,7 +526,10 @@ def worst_of_each(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     found: dict[tuple[str, Subject, Quantity], CheckOutcome] = {}
     for check in (*first, *by_nearness(check for check in checks if id(check) not in chosen)):
         if check.applies:
-            found.setdefault((check.name, check.subject, check.quantity), check)
+            key = check.name, check.subject, check.quantity
+            worst = found.setdefault(key, check)
+            if check.value.least_alone and check.verdict is worst.verdict and check.margin < worst.margin:
+                found[key] = check  # no more is known of it
     return list(found.values())
 
 

@@ -20,7 +20,7 @@ from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.judging.loading import ByHand, Judged, Loading
+from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
@@ -103,25 +103,31 @@ def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], loa
     CaseError
         For a joint without pin diameter.
     """
+    factors, pressed = {}, [pressing(case, joint, wrench) for wrench in wrenches]
+    for link, (bears, own) in _borne(case, name, joint).items():
+        force = max(float(one[link]) for one in pressed)
+        factors[link] = own.on(load.on(Band.exact(force, WITHOUT)).inverse(bears))
+    weakest = min(factors, key=lambda link: factors[link].low)
+    return weakest, factors[weakest]
+
+
+def _borne(case: Case, name: str, joint: str) -> dict[str, tuple[float, Scatter]]:
+    """Link -> force that its eye or slot bears of a joint's pin [N], and what that scatters by."""
     record = case.joints[joint]
     if record.pin_diameter is None:
         raise CaseError(
             f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
         )
-    factors, pressed = {}, [pressing(case, joint, wrench) for wrench in wrenches]
+    found = {}
     # A pin in a slot shares its hole in the second link with others: that slot's force is not all that bears there.
     for link in (record.slotted,) if record.slotted else record.links:
         if link in case.checked_links:
-            material = case.material_of(link)
+            material, thickness = case.material_of(link), eye_of(case, joint, link).thickness
             strength = material.ultimate_strength or material.allowable
-            force = max(float(one[link]) for one in pressed)
-            stress = bearing_stress(
-                force=force, diameter=record.pin_diameter, thickness=eye_of(case, joint, link).thickness
-            )
             own = strength_scatter(material) if strength == material.allowable else Scatter()
-            factors[link] = own.on(load.on(Band.exact(stress, WITHOUT)).inverse(strength))
-    weakest = min(factors, key=lambda link: factors[link].low)
-    return weakest, factors[weakest]
+            of_one = bearing_stress(force=1.0, diameter=record.pin_diameter, thickness=thickness)
+            found[link] = strength / of_one, own
+    return found
 
 
 def contact_pressure(case: Case, joint: str, link: str, force: float) -> tuple[float, float] | None:
@@ -215,9 +221,25 @@ def judge_bearing(here: Loading, one: Asked) -> Judged:
     return Judged(outcome=bearing_outcome(here.case, here.load_case, one, here.wrenches(joint), growth))
 
 
-BEARING = ByHand(
-    judge=judge_bearing,
-    least=lambda over, one: (
-        -np.max([*pressing(over.case, one.subject.name, over.wrenches(one.subject.name)[0]).values()], axis=0)
-    ),
-)
+def least_of_bearing(over: OverMotion, one: Asked) -> Real:
+    """Return by what the weaker eye of a joint bears more than what presses it at each pose.
+
+    Parameters
+    ----------
+    over : OverMotion
+    one : Asked
+        Of the pin.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    case, joint = over.case, one.subject.name
+    [way] = over.wrenches(joint)
+    pressed = pressing(case, joint, way)
+    with np.errstate(divide="ignore"):  # without a force there is no end
+        every = [own.low * bears / pressed[link] for link, (bears, own) in _borne(case, one.name, joint).items()]
+    return np.asarray(np.min(every, axis=0))
+
+
+BEARING = ByHand(judge=judge_bearing, least=least_of_bearing)

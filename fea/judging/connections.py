@@ -195,7 +195,8 @@ def connection_factors(
             bands[mode] = Band.unknown(_not_held(one.name, check))
         elif low < math.inf:
             told = distinct(sources, COUPLES if shared else ())
-            band = Band(value=value, low=low, high=high, sources=told, without=WITHOUT)
+            # Of ways alike but for rounding the ends, inverted twice, may miss the value by as much.
+            band = Band(value=value, low=min(low, value), high=max(high, value), sources=told, without=WITHOUT)
             bands[mode] = spread.on(band)
     return ConnectionFactors(link=connected_link(case, check), load=ways[0], factors=bands)
 

@@ -262,7 +262,7 @@ def _factors(strength: EyeStrength, plate: LinkLoads, spread: Scatter) -> EyeFac
 
 
 def least_of_eyes(over: OverMotion, one: Asked) -> NDArray[np.float64]:
-    """Return by what the eyes of a link bear more than their pins' forces at each pose.
+    """Return by what the eyes of a link bear more than their pins' forces, as far as these may grow, at each pose.
 
     Parameters
     ----------
@@ -275,12 +275,13 @@ def least_of_eyes(over: OverMotion, one: Asked) -> NDArray[np.float64]:
     ndarray, shape (n,)
     """
     assert isinstance(one.check, EyeCheck)
-    least = np.full(len(over.evaluated), np.inf)
+    least, joints = np.full(len(over.evaluated), np.inf), eyes_of(over.case, one.subject.name)
     for strength in strengths(over.case, one.subject.name, one.check):
+        grown = max(over.joint_growth(joint).high for joint in joints[strength.name])
         for plate in over.loads(one.subject.name):
             force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
             for _, low, _ in strength.factors(np.broadcast_to(force, (*least.shape, 2)))[0].values():
-                least = np.minimum(least, low)
+                least = np.minimum(least, low / grown)
     return least
 
 

@@ -14,13 +14,14 @@ from alula.fea.asked.asked import Asked, asked, asked_of
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.scatter import strength_scatter
+from alula.fea.common.scatter import Scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.judge import of_link
 from alula.fea.judging.link_result import spread
 from alula.fea.judging.loading import Collapse, Judged, SolvedLinks
+from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
 from alula.fea.plastic.yield_law import YieldLaw
@@ -225,12 +226,21 @@ def judge_collapse(here: SolvedLinks, one: Asked) -> Judged:
     known = here.collapses[link]
     if not isinstance(known, LinkCollapse):
         return Judged(outcome=one.outcome(load_case, Band.unknown(known), known))
-    outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *here.doubts(link)))
+    grown = solid_growth(solid_buckling(here.links[link]))
+    outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *here.doubts(link), grown))
     why = reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
     return Judged(outcome=outcome.because(why), numbers=(known,))
 
 
-def collapse_band(case: Case, link: str, load_case: str, found: LinkCollapse, uneven: Growths, shares: Shares) -> Band:
+def collapse_band(
+    case: Case,
+    link: str,
+    load_case: str,
+    found: LinkCollapse,
+    uneven: Growths,
+    shares: Shares,
+    grown: Scatter | None = None,
+) -> Band:
     """Return the plastic-collapse factor of a link, with all that leaves it open.
 
     For perfect plasticity it goes with the yield stress exactly, and with loads that grow together. What doubts change
@@ -243,8 +253,8 @@ def collapse_band(case: Case, link: str, load_case: str, found: LinkCollapse, un
     load_case : str
         Its name.
     found : LinkCollapse
-    uneven, shares
-        As ``link_result`` takes them.
+    uneven, shares, grown
+        As ``spread`` takes them.
 
     Returns
     -------
@@ -256,7 +266,7 @@ def collapse_band(case: Case, link: str, load_case: str, found: LinkCollapse, un
         detail = reason("pins_may_press_better", factor=found.pressure)
         sources.append(Source(kind=SourceKind.PIN_PRESSURE, detail=detail))
     band = Band(value=found.factor, low=found.low, high=found.high, sources=tuple(sources))
-    loads = spread(case, link, load_case, "von_mises", uneven, shares)
+    loads = spread(case, link, load_case, "von_mises", uneven, shares, grown)
     return strength_scatter(case.material_of(link)).times(loads.inverse).on(band)
 
 

@@ -189,7 +189,7 @@ def _at_worst_pose(moved: CaseMotion, over: OverMotion, one: Asked) -> CheckOutc
     else:
         assert one.check is not None
         how = BY_HAND[type(one.check)]
-        pose = first_least(np.where(evaluated, how.least(over, one), np.inf))
+        pose = first_least(np.where(evaluated, how.least(over, one), np.nan))
         found = how.judge(over.at(pose), one).outcome
     outcome = _complete(found, evaluated)
     if subject.kind == "link":

@@ -76,9 +76,10 @@ def _unlike_brittle(case: CoreCase, link: str) -> bool:
 
 def _check_ductile(case: CoreCase, name: str, link: str) -> None:
     if why := _unlike_ductile(case, link):
+        others = any(not _unlike_ductile(case, other) for other in case.checked_links)
         raise CaseError(
-            f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and name the "
-            "other links in links"
+            f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and "
+            f"{'name the other links in links' if others else 'leave this check out'}"
         )
 
 
@@ -88,9 +89,10 @@ def _check_notched(case: CoreCase, name: str, link: str) -> None:
     material = case.all_materials[part.material]
     entry = f"checks.{name}.links"
     if not material.brittle:
+        others = any(not _unlike_brittle(case, other) for other in case.checked_links)
         raise CaseError(
-            f"{entry}: '{part.material}', the material of link '{link}', yields at a notch before it breaks; name the "
-            "brittle links alone"
+            f"{entry}: '{part.material}', the material of link '{link}', yields at a notch before it breaks; "
+            f"{'name the brittle links alone' if others else 'leave this check out'}"
         )
     if material.inherent_strength is None and material.weibull_modulus is None:
         raise CaseError(

@@ -145,13 +145,17 @@ def collapse_model(name: str, found: LinkCollapse, points: Mapping[str, tuple[fl
     -------
     dict
     """
-    cut, strain = cut_surface(found.nodes, found.boundary), 100.0 * found.zone
-    surface, scale = strain[cut.nodes], shown_scale(found.nodes, found.shape)
+    cut, scale = cut_surface(found.nodes, found.boundary), shown_scale(found.nodes, found.shape)
+    surface = 100.0 * found.zone[cut.nodes]
+    endless = found.ended == "limit" and bool(surface.any())
+    if endless:  # strain grows as far as the path is followed
+        surface *= 100.0 / surface.max()
     hottest = int(np.argmax(surface))
     top = float(np.quantile(surface[surface > 0.0], SHOWN)) if surface.any() else 1.0
+    told = "at the ring, and grows without end" if endless else f"{number(surface[hottest], 2)} % where the path ends"
     return {
         "name": name,
-        "measure": "plastic strain",
+        "measure": "plastic strain over its largest" if endless else "plastic strain",
         "seek": "Largest strain",
         "unit": "%",
         "top": top,
@@ -162,9 +166,7 @@ def collapse_model(name: str, found: LinkCollapse, points: Mapping[str, tuple[fl
         "variants": [
             {
                 "title": f"at {number(found.factor, 3)} times its loads",
-                "peak": [
-                    f"largest: {number(surface[hottest], 2)} % where the path ends; it grows as the link flows on"
-                ],
+                "peak": [f"largest: {told}"],
                 "beyond": bool(surface[hottest] > top),
                 "hottest": hottest,
                 "largest": float(np.linalg.norm(found.shape, axis=1).max()),

@@ -161,6 +161,16 @@ def test_the_band_holds_loads_strengths_growth_and_ways_of_sharing():
         assert {source.kind for source in holes.sources} == kinds
 
 
+def test_ways_of_sharing_that_differ_by_rounding_alone_make_no_band():
+    case = connected()
+    [one] = asked(case, ConnectionCheck)
+    for torque in range(1, 50):
+        wrench = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0])
+        ways = [transmitted(case, one.check, wrench, x) for x in (torque, torque * (1.0 - 1e-15))]
+        for band in connection_factors(case, "pull", one, ways).factors.values():
+            assert (band.low, band.high) == pytest.approx((band.value, band.value))
+
+
 def test_couples_are_about_the_middle_of_the_link_and_of_pairs_on_their_plates():
     case = connected(at="A", press=GRIP | {"pressure": ["20 MPa", "30 MPa"]})
     [one] = asked(case, ConnectionCheck)

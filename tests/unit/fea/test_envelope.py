@@ -419,11 +419,10 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
     assert found["eyes"].value.value == pytest.approx(eye)
 
 
-@pytest.mark.parametrize("second", [False, True])
-def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, second):
-    """Not where the joint force is largest, nor at a pose that was left out."""
-    eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
-    monkeypatch.setattr(bearing, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
+def pose_of_bearing(monkeypatch, pressed, bears, evaluated):
+    """Return the pose at which two eyes are judged that are pressed so, and bear so much."""
+    monkeypatch.setattr(bearing, "pressing", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
+    monkeypatch.setattr(bearing, "_borne", lambda *_: {eye: (x, Scatter()) for eye, x in zip("ab", bears, strict=True)})
     told, joint = [], SimpleNamespace(wrench=np.zeros((4, 6)))
     judge = SimpleNamespace(least=BY_HAND[BearingCheck].least, judge=lambda here, one: told.append(here) or one)
     monkeypatch.setitem(BY_HAND, BearingCheck, judge)
@@ -435,9 +434,22 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     moved = SimpleNamespace(case=None, forces={"push": solved}, motion=motion)
     check = BearingCheck.model_validate({"type": "bearing"})
     eyes_asked = Asked(name="eyes", subject=Subject.pin("B"), quantity=Quantity.SAFETY_FACTOR, limit=3.33, check=check)
-    over = replace(loading_over(moved, "push", np.arange(4) < 3, {}, Growths()), at=lambda pose: pose)
+    over = replace(loading_over(moved, "push", evaluated, {}, Growths()), at=lambda pose: pose)
     outcomes_over_motion._at_worst_pose(moved, over, SimpleNamespace(**vars(eyes_asked), outcome=None))
-    assert told == [2]
+    [pose] = told
+    return pose
+
+
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(("bears", "worst"), [((10.0, 10.0), 2), ((1.0, 10.0), 1)])
+def test_a_joint_is_judged_at_the_pose_where_either_eye_bears_least(monkeypatch, order, bears, worst):
+    """Not where one is pressed most whose other is weaker, nor at a pose that was left out."""
+    pressed = [1.0, 5.0, 2.0, 30.0], [4.0, 3.0, 9.0, 20.0]
+    assert pose_of_bearing(monkeypatch, pressed[::order], bears[::order], np.arange(4) < 3) == worst
+
+
+def test_without_a_force_a_joint_is_judged_at_a_pose_that_counts(monkeypatch):
+    assert pose_of_bearing(monkeypatch, ([9.0, 0.0, 0.0, 0.0],) * 2, (10.0, 10.0), np.arange(4) > 0) == 1
 
 
 def test_no_joint_passes_where_poses_were_left_out(path):

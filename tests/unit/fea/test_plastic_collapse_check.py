@@ -11,12 +11,14 @@ from plastic_problems import FOUND
 from alula.fea.asked.asked import asked, asked_of
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
+from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict, deciding
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import plastic_collapse
 from alula.fea.judging.link_result import by_hand_shares
 from alula.fea.judging.plastic_collapse import above_first_yield, as_elastic, judge_collapse
 from alula.fea.plastic.load_path import NoPlasticStateError
+from alula.fea.refine.link_buckling import SolidBuckling
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import PlasticCollapseCheck
 from alula.reports.check.plastic_collapse import collapse_section
@@ -39,7 +41,8 @@ def judged(case, found):
     """Return the outcome under the first load case."""
     load_case = next(iter(case.load_cases))
     doubts = Growths(), by_hand_shares(Growths(), "front")
-    here = SimpleNamespace(case=case, load_case=load_case, collapses=found, doubts=lambda link: doubts)
+    results = {"front": None, "rear": None}
+    here = SimpleNamespace(case=case, load_case=load_case, links=results, collapses=found, doubts=lambda link: doubts)
     [one] = asked(case, PlasticCollapseCheck)
     return judge_collapse(here, one).outcome
 
@@ -67,6 +70,16 @@ def test_the_range_of_the_strength_multiplies_the_band():
     assert outcome.value.low == pytest.approx(1.9 * 0.75)
     assert outcome.value.high == pytest.approx(2.2 * 1.25)
     assert outcome.verdict is Verdict.UNDECIDED
+
+
+def test_bending_that_grows_towards_buckling_of_the_solid_multiplies_the_band(monkeypatch):
+    """At a fifth of the buckling load bending is at most 1/(1 - 1/5) of that of the solid, which is linear."""
+    buckles = SolidBuckling(value=6.0, least=5.0, most=9.0, error=0.0)
+    monkeypatch.setattr(plastic_collapse, "solid_buckling", lambda result: buckles)
+    outcome = judged(edited("knee", [FRONT]), {"front": FOUND})
+    assert outcome.value.low == pytest.approx(1.9 * 0.8)
+    assert outcome.value.high == pytest.approx(2.2)
+    assert SourceKind.GROWTH in {source.kind for source in outcome.value.sources}
 
 
 def collapses(result):
@@ -162,8 +175,11 @@ def test_brittle_and_layered_links_are_refused(entry, says):
     with pytest.raises(CaseError, match=says) as error:
         edited("knee", [FRONT, entry])
     assert "front" in str(error.value)
+    assert str(error.value).endswith("name the other links in links")
     case = edited("knee", [CHECK, entry])
     assert asked_of(case, PlasticCollapseCheck) == ("rear",)
+    with pytest.raises(CaseError, match="leave this check out"):
+        edited("knee", [CHECK, entry, entry.replace("front", "rear")])
 
 
 @pytest.mark.parametrize(

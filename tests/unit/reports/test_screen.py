@@ -77,6 +77,23 @@ def test_checks_of_two_names_and_links_stand_for_themselves_and_what_does_not_ap
         assert worst_of_each(order) == [heavy, second, other]
 
 
+def test_under_the_worst_load_case_least_is_known_of_a_number():
+    """Though how near to its limit that is nobody knows, so that it decides less than one that is known."""
+
+    def outcome(load_case, band):
+        return CheckOutcome.of("own", Subject.link("a"), load_case, Quantity.PLASTIC_COLLAPSE, band, 1.0)
+
+    known = [
+        outcome("first", Band(value=9.0, low=8.0, high=9.0)),
+        outcome("second", Band(value=9.0, low=5.0, high=9.0)),
+    ]
+    for least, worst in ((2.0, "third"), (6.0, "second")):
+        every = [known[0], outcome("third", Band.at_least(least)), known[1]]
+        for order in (every, every[::-1]):
+            assert [one.load_case for one in worst_of_each(order)] == [worst]
+            assert deciding(order)[0].load_case == "second"
+
+
 def test_many_names_are_counted_alone():
     result = by_hand("ornithopter")
     text = brief(result.verdict, checks_of(result), several=True)

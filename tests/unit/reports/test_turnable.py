@@ -197,24 +197,31 @@ def test_the_surface_is_that_of_the_solid(record, result):
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0 == pytest.approx(volume, rel=1e-4)
 
 
-def test_the_plastic_strain_of_a_link_at_its_collapse(result):
+@pytest.mark.parametrize(
+    ("ended", "measure", "says"),
+    [("strain", "plastic strain", "100 % where"), ("limit", "plastic strain over its largest", "without end")],
+)
+def test_the_plastic_strain_of_a_link_at_its_collapse(result, ended, measure, says):
     """Where a quarter of it flows: nine in ten of its nodes below the last colour, the largest with its place."""
     space = result.load_cases["weight"].links["GF"].solution.space
     span = np.ptp(space.nodes[:, 0])
     share = (space.nodes[:, 0] - space.nodes[:, 0].min()) / span
     zone = np.where(share > 0.75, np.random.default_rng(1).random(len(share)), 0.0)
     shape = share[:, None] * [0.0, span, 0.0]
-    found = replace(FOUND, nodes=space.nodes, boundary=space.boundary, zone=zone, shape=shape)
+    flows_on = 7.0 if ended == "limit" else 1.0  # as far as the path was followed
+    found = replace(FOUND, ended=ended, nodes=space.nodes, boundary=space.boundary, zone=flows_on * zone, shape=shape)
     record = json.loads(collapse_models({"GF": found}, result.case)["plastic-GF"])
     nodes, moved, values = fields(record, 0)
     near = np.linalg.norm(space.nodes[:, None] - nodes[None], axis=2).argmin(axis=0)
-    assert values == pytest.approx(100.0 * zone[near], abs=1e-2)
+    most = zone[near].max() if ended == "limit" else 1.0
+    assert values == pytest.approx(100.0 * zone[near] / most, abs=1e-2)
     assert moved == pytest.approx(shape[near], abs=1e-4 * span)
-    assert (record["measure"], record["unit"], record["scale"]) == ("plastic strain", "%", 0.05)
+    assert (record["measure"], record["unit"], record["scale"]) == (measure, "%", 0.05)
     flows = values[values > 1e-2]
     assert np.mean(flows <= record["top"]) == pytest.approx(0.9, abs=0.02)
     [variant] = record["variants"]
     assert variant["beyond"]
+    assert says in variant["peak"][0]
     assert values[variant["hottest"]] == values.max()
 
 
