@@ -254,7 +254,7 @@ class LayerGaps:
         return max(math.floor(100.0 * found) / 100.0, 0.0)
 
     def _opens(self, free: Sequence[Real]) -> bool:
-        """Whether all gaps stay open where play closes them by so much: ndarrays of shape (joints, n)."""
+        """Whether all gaps stay open where play closes them by so much, each an ndarray of shape (joints, n)."""
         return all(bool((left >= each.sum(axis=0)).all()) for left, each in self._beside(free))
 
     def _beside(self, free: Sequence[Real]) -> Iterator[tuple[Real, Real]]:
