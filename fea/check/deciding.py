@@ -79,7 +79,8 @@ class Deciding:
         given_up = [one for one in self.load_cases if alone and one.lost]
         held = [one for one in self.load_cases if one not in given_up]
         lost = {cut.name for one in given_up for found in one.plates.values() for cut, _ in found}
-        firm = [one for one in held if alone and not one.solids_may_hold_it]
+        doubted = held if alone else []
+        firm = [one for one in doubted if not one.solids_may_hold_it]
 
         def ranges(link: str, solid: RefinedSolid | None = None) -> dict[str, OpenRanges]:
             solved = [None if solid is None else self._answers_of(one, link, solid) for one in firm]
@@ -95,6 +96,10 @@ class Deciding:
             fidelity=self.fidelity,
             first=self.first,
             lost=lost,
+            doubted={
+                link: {name: found for one in doubted for name, found in one.open_ranges(link).items()}
+                for link in tasks
+            },
             threads=self.threads,
             told=ranges,
             progress=self.progress,

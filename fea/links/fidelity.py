@@ -18,7 +18,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import CONTACT, Source, SourceKind
-from alula.fea.refine.beyond_meshes import Ends, is_open, mesh_may_decide, none_decides
+from alula.fea.refine.beyond_meshes import Ends, OpenRanges, is_open, mesh_may_decide, none_decides
 from alula.fea.refine.link_series import PeakQuantity
 from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, Told, refine_links
@@ -135,6 +135,7 @@ def decide(
     fidelity: str,
     first: Mapping[str, TaggedMesh] | None = None,
     lost: Collection[str] = (),
+    doubted: Mapping[str, Mapping[str, OpenRanges]] | None = None,
     threads: int | None = None,
     told: Told | None = None,
     progress: Progress = lambda message: None,
@@ -160,6 +161,9 @@ def decide(
         First meshes that are there already.
     lost : collection of str, optional
         Names of loads that the linkage gives way to. Solids are not solved under them unless all solids were asked for.
+    doubted : mapping of str to mapping of str to OpenRanges, optional
+        Link -> name of loads -> within what numbers by hand its checks are open; by default the ``open_ranges`` of its
+        task, which leave out loads under which meshes are made finer all the same.
     threads : int, optional
     told : callable, optional
         As of ``refine_links``.
@@ -187,7 +191,8 @@ def decide(
             reasons[link] = reason("field_requested") if task.beyond_peak and fidelity != "solid" else asked_for
             continue
         hands[link] = _hands(task, beams[link])
-        decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])
+        ranges = (doubted or {}).get(link, task.open_ranges)
+        decision, reasons[link] = decided_by_hand(task, [*hands[link].values()], ranges)
         beyond = _open_anyway(task, hands[link])
         for names, why in ((lost, left_out), (beyond, left_open)):
             own = [loads.name for loads in rest[link].loads if loads.name in names]
@@ -198,7 +203,8 @@ def decide(
             rest[link] = less = rest[link].without(own)
             decision = without
             if less.loads:
-                decision, reasons[link] = decided_by_hand(less, [hands[link][loads.name] for loads in less.loads])
+                own_hands = [hands[link][loads.name] for loads in less.loads]
+                decision, reasons[link] = decided_by_hand(less, own_hands, ranges)
         if decision is not None:
             del rest[link]
             found[link] = DecidedLink(decision=decision, hands=hands[link], left=left[link])
@@ -214,20 +220,20 @@ def _open_anyway(task: LinkTask, hands: Mapping[str, HandBands]) -> frozenset[st
     return frozenset(name for name, hand in hands.items() if task.holding is None and _beyond_meshes(task, name, hand))
 
 
-def _open_for_doubts(task: LinkTask, hands: Sequence[HandBands]) -> Reason | None:
+def _open_for_doubts(task: LinkTask, hands: Sequence[HandBands], ranges: Mapping[str, OpenRanges]) -> Reason | None:
     """Return which limit lies in the band of a stress or displacement once doubts widen it, where a solid may tell."""
     for loads, hand in zip(task.loads, hands, strict=True):
-        if loads.name in task.open_ranges:
-            for band, limit, what, unit in _limited(task, loads.name, hand):
+        if loads.name in ranges:
+            for band, limit, what, unit in _limited(task, ranges[loads.name], hand):
                 ends = [(band.low, band.high)]
                 if is_open(ends, limit) and mesh_may_decide(ends, limit):
                     return reason("limit_within", what=what, low=band.low, high=band.high, limit=limit, unit=unit)
     return None
 
 
-def _limited(task: LinkTask, name: str, hand: HandBands) -> Iterator[tuple[Band, Ends, str, str]]:
+def _limited(task: LinkTask, ranges: OpenRanges, hand: HandBands) -> Iterator[tuple[Band, Ends, str, str]]:
     """Yield the numbers of a link under some loads by hand with the ranges that other causes make of their limits."""
-    limits = task.open_ranges[name].limits
+    limits = ranges.limits
     bands: dict[PeakQuantity, tuple[Band, str, str]] = {
         task.measures[0]: (hand.deciding(brittle=task.brittle), "peak stress", "MPa"),
         "displacement": (hand.displacement, "displacement", "mm"),
@@ -239,7 +245,9 @@ def _limited(task: LinkTask, name: str, hand: HandBands) -> Iterator[tuple[Band,
 def _beyond_meshes(task: LinkTask, name: str, hand: HandBands) -> bool:
     if name not in task.open_ranges or hand.outside or _layers_open(task, [hand]):
         return False
-    return none_decides([([(band.low, band.high)], limit) for band, limit, *_ in _limited(task, name, hand)])
+    return none_decides(
+        [([(band.low, band.high)], limit) for band, limit, *_ in _limited(task, task.open_ranges[name], hand)]
+    )
 
 
 def left_open(body: Body) -> Decision:
@@ -383,7 +391,9 @@ def _layers_open(task: LinkTask, hands: Sequence[HandBands]) -> bool:
     return any(worst > least for least, _ in task.layer_limits)
 
 
-def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, Reason | None]:
+def decided_by_hand(
+    task: LinkTask, hands: Sequence[HandBands], doubted: Mapping[str, OpenRanges] | None = None
+) -> tuple[Decision | None, Reason | None]:
     """Return the decision, if hand calculation can make it.
 
     Parameters
@@ -391,6 +401,8 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     task : LinkTask
     hands : sequence of HandBands
         Of every load case.
+    doubted : mapping of str to OpenRanges, optional
+        Name of loads -> within what numbers their checks are open; by default the ``open_ranges`` of the task.
 
     Returns
     -------
@@ -402,8 +414,11 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
             return None, reason("uncalibrated_since", outside=hand.outside)
     if _layers_open(task, hands):
         return None, reason("layers_open_by_hand")
+    ranges = task.open_ranges if doubted is None else doubted
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
-    open_limit = undecided(task, stresses, [hand.displacement for hand in hands]) or _open_for_doubts(task, hands)
+    open_limit = undecided(task, stresses, [hand.displacement for hand in hands]) or _open_for_doubts(
+        task, hands, ranges
+    )
     if open_limit:
         return None, reason("open_by_hand", open_limit=open_limit)
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)

@@ -9,10 +9,12 @@ from edited_cases import edited
 
 from alula.fea.beam.calibration import calibrations
 from alula.fea.beam.critical_locations import critical_locations, shoulder_factors
+from alula.fea.check import deciding
 from alula.fea.check.run import check_case
 from alula.fea.links.fidelity import decide, decided_by_hand, hand_bands
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.refinement import START, Effort
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.parts.part import HoleRow
 from alula.loads.records.bearing import CONTACT_SHORTFALL
 from alula.reports.sentences import told
@@ -85,6 +87,27 @@ def test_what_doubts_leave_open_by_hand_is_left_to_a_solid_that_may_decide(ends,
     hand = hand_bands(task, task.loads[0], eye_link.beam(task))
     assert 4.0 < hand.von_mises.low < 15.0 < hand.von_mises.high < 39.0
     assert (decided_by_hand(task, [hand])[0] is not None) is by_hand
+    bare = replace(task, open_ranges={})  # as where solids may hold the linkage
+    assert decided_by_hand(bare, [hand])[0] is not None
+    assert (decided_by_hand(bare, [hand], task.open_ranges)[0] is not None) is by_hand
+
+
+def test_where_solids_may_hold_the_linkage_a_solid_settles_doubts_too(monkeypatch):
+    """Meshes are made finer all the same there: tasks have no ranges, and doubts have, of each load case that holds."""
+    seen = {}
+
+    def decided(tasks, *_, doubted, **more):
+        seen.update({link: (set(task.open_ranges), set(doubted[link])) for link, task in tasks.items()})
+        raise CannotRunError("seen")
+
+    monkeypatch.setattr(deciding, "decide", decided)
+    for case, firm in (("finger", set()), ("knee", {"heel-strike", "late-stance"})):
+        seen.clear()
+        case = edited(case, [])
+        with pytest.raises(CannotRunError, match="seen"):
+            check_case(case)
+        assert set(seen) == set(case.checked_links)
+        assert all(ranges == (firm, set(case.load_cases)) for ranges in seen.values())
 
 
 @pytest.mark.parametrize(
