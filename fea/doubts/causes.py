@@ -41,7 +41,16 @@ class Cause(Protocol):
         ...
 
     def answers(self, link: str) -> LinkAnswers:
-        """Return what acts on a link as stated, and in the other answers."""
+        """Return what acts on a link as stated, and in the other answers.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        LinkAnswers
+        """
         ...
 
 

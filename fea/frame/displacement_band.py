@@ -264,16 +264,16 @@ def works(
     plain = Zone(start=0.0, end=np.inf, least=np.ones(6), most=np.ones(6))
     every = [(i, zone) for i in range(len(lengths)) for zone in beams.get(i) or (plain,)]
     numbers = np.array([i for i, _ in every], dtype=np.int64)
-    start, end = (
-        np.minimum([getattr(zone, name) for _, zone in every], np.take(lengths, numbers)) for name in ("start", "end")
-    )
+    ends = np.minimum([(zone.start, zone.end) for _, zone in every], np.take(lengths, numbers)[:, None])
+    start, end = ends.reshape(-1, 2).T
     half = (end - start)[:, None] / 2.0
     xs, dx = (start + end)[:, None] / 2.0 + half * _NODES, half * _WEIGHTS
-    flexible = np.array([flexibility(one.section, one.young, one.poisson) for one in model.elements])
+    each = [flexibility(one.section, one.young, one.poisson) for one in model.elements]
+    factors = [(each[i], zone.least, zone.most) for i, zone in every]
+    flexible, least, most = np.array(factors).reshape(-1, 3, 6).swapaxes(0, 1)
     real, virtual = (values(one.forces_along[numbers, None], xs[..., None]) for one in (loaded, unit))
-    each = flexible[numbers] * np.einsum("zq,zqi->zi", dx, real * virtual)
-    least, most = (np.array([getattr(zone, name) for _, zone in every]) for name in ("least", "most"))
-    np.add.at(terms, numbers, np.stack([each, least * each, most * each], axis=1))
+    work = flexible * np.einsum("zq,zqi->zi", dx, real * virtual)
+    np.add.at(terms, numbers, np.stack([work, least * work, most * work], axis=1))
     acting = [_on_links(solution, pins) for solution in (loaded, unit)]
     sunk = [give * acting[0][node] * acting[1][node] for node, give in bores]
     return Works(beams=terms, bores=np.array(sunk).reshape(-1, 6))
