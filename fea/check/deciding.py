@@ -15,6 +15,7 @@ from alula.fea.judging.plastic_collapse import find_collapses, needs_path
 from alula.fea.links.fidelity import DecidedLink, by_hand, decide
 from alula.fea.links.solid_result import link_task
 from alula.fea.outcomes.point_displacement import meshes_to_refine
+from alula.fea.outcomes.result import LinkResult
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import Effort, RefinedSolid
@@ -137,16 +138,13 @@ class Deciding:
             for one in self.load_cases
         }
 
-    def collapses(
-        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Mapping[str, SolvedAnswers]]
-    ) -> dict[str, dict[str, Collapse]]:
+    def collapses(self, results: Mapping[str, Mapping[str, LinkResult]]) -> dict[str, dict[str, Collapse]]:
         """Return the plastic collapse of links of which a check asks for it, and whose first yield does not tell.
 
         Parameters
         ----------
-        decided : mapping of str to DecidedLink
-        solved : mapping of str to mapping of str to SolvedAnswers
-            As ``solved`` returns it.
+        results : mapping of str to mapping of str to LinkResult
+            Load case -> link -> its result.
 
         Returns
         -------
@@ -161,9 +159,11 @@ class Deciding:
                 for link, plates in one.plates.items()
                 if one.acts_on(link)
                 and (self.only is None or link in self.only)
-                and (self.fidelity == "solid" or needs_path(self.case, one.load_case, link, links[link]))
+                and (
+                    self.fidelity == "solid" or needs_path(self.case, one.load_case, link, results[one.load_case][link])
+                )
             }
-            for one, links in ((one, one.links(decided, solved[one.load_case])) for one in self.load_cases)
+            for one in self.load_cases
         }
         return find_collapses(
             self.case,

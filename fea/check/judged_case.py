@@ -21,14 +21,12 @@ from alula.fea.links.fidelity import DecidedLink
 from alula.fea.links.link_by_hand import slenderest
 from alula.fea.outcomes.found import Found
 from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
-from alula.fea.outcomes.result import LoadCaseResult
+from alula.fea.outcomes.result import LinkResult, LoadCaseResult
 from alula.fea.outcomes.unloaded import undecided
 from alula.fea.standing.case_statics import with_ends
 from alula.fea.standing.joint_forces import JointForces, ways_to_hold
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import (
-    PinCheck,
-)
+from alula.loads.records.check_spec import PinCheck
 from alula.loads.statics.statics import Reactions
 
 
@@ -36,6 +34,7 @@ def judged(
     hand: LoadCaseByHand,
     decided: Mapping[str, DecidedLink],
     solved: Mapping[str, SolvedAnswers],
+    links: Mapping[str, LinkResult],
     collapses: Mapping[str, Collapse],
     whole: Sequence[CheckOutcome],
 ) -> LoadCaseResult:
@@ -48,6 +47,8 @@ def judged(
         Of every link on which something acts.
     solved : mapping of str to SolvedAnswers
         What causes make of links that are solids.
+    links : mapping of str to LinkResult
+        What ``hand`` makes of both.
     collapses : mapping of str to Collapse
         Of the links whose plastic collapse a check asks for.
     whole : sequence of CheckOutcome
@@ -58,7 +59,6 @@ def judged(
     LoadCaseResult
     """
     case, load_case, forces, statics = hand.case, hand.load_case, hand.forces, hand.statics
-    links = hand.links(decided, solved)
     moved = with_known_stiffness(case, hand.moved, forces, links, hand.cut)
     reactions = moved.reactions or statics.reactions[load_case]
     pins = _pins(case, reactions, hand.shared_forces)

@@ -19,7 +19,7 @@ from alula.fea.judging.linkage import linkage_outcomes
 from alula.fea.judging.linkage_numbers import limit_load_outcomes, linkage_numbers
 from alula.fea.judging.loading import Demand
 from alula.fea.links.fidelity import DecidedLink
-from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
+from alula.fea.links.link_by_hand import LinkByHand, every_plate_by_hand
 from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, with_growth
@@ -61,9 +61,7 @@ class LoadCaseByHand:
     growth : Growths
         What grows beyond the load alone.
     causes : sequence of Cause
-        What leaves the loads on links open, ``doubts`` among them.
-    doubts : sequence of Doubt
-        Of its air and friction.
+        What leaves the loads on links open.
     """
 
     case: Case
@@ -74,7 +72,6 @@ class LoadCaseByHand:
     size: float
     growth: Growths = field(default_factory=Growths)
     causes: Sequence[Cause] = ()
-    doubts: Sequence[Doubt] = ()
 
     @classmethod
     def as_stated(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement) -> "LoadCaseByHand":
@@ -100,10 +97,7 @@ class LoadCaseByHand:
             statics=statics,
             load_case=load_case,
             moved=moved,
-            plates={
-                link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
-                for link in case.checked_links
-            },
+            plates=every_plate_by_hand(case, load_case, moved, reactions, loads),
             size=load_size(loads, case.linkage.longest),
         )
 
@@ -147,12 +141,17 @@ class LoadCaseByHand:
             grown=found.bent,
             links=told,
         )
-        return replace(found, growth=growth, causes=(*causes_of(stated), *doubts), doubts=doubts)
+        return replace(found, growth=growth, causes=(*causes_of(stated), *doubts))
 
     @property
     def bent(self) -> bool:
         """True where what acts on links holds their bending on free pins already, which ``cut_link`` adds."""
         return self.moved.state in ("off", "unknown")
+
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """Those of its causes that change what acts: air and friction."""
+        return tuple(one for one in self.causes if isinstance(one, Doubt))
 
     @cached_property
     def shared(self) -> Growths:

@@ -173,7 +173,8 @@ def check_case(
     if fidelity not in BY_HAND:
         clock("solid models")
     solved = deciding.solved(decided)
-    collapses = deciding.collapses(decided, solved)
+    results = {x: one.links(decided, solved[x]) for x, one in by_hand.items()}
+    collapses = deciding.collapses(results)
     if collapses:
         clock("plastic collapse")
     outlines, of_whole = None if whole.clearance is None else whole.clearance.assembly, whole_outcomes(whole)
@@ -182,6 +183,7 @@ def check_case(
             one,
             decided,
             solved[x],
+            results[x],
             collapses.get(x, {}),
             (*of_whole[x], *layer_gap_outcomes(one.case, x, moved[x], outlines)),
         )

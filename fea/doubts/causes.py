@@ -7,7 +7,7 @@ cases first (``alula.fea.doubts.other_case.Doubt``), and are causes here as well
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from typing import Protocol
 
 from alula.fea.doubts.force_doubt import sharing_answers, sharing_doubt, stiffness_answers, stiffness_doubt
@@ -92,7 +92,7 @@ class OnLinks:
     name, growths, of_columns
         As of ``Cause``.
     on_link : callable
-        Of a link, to the answers.
+        Of a link, to the answers, which every mesh of it asks for again.
     """
 
     name: str
@@ -120,7 +120,7 @@ def _couples(stated: Stated) -> OnLinks | None:
         return None
     own = replace(stated, forces=stated.shared)
     growths = sharing_doubt(own.case, own.load_case, own.forces, own.loads, grown=own.grown, links=own.links)
-    return OnLinks(name=COUPLES, growths=growths, on_link=partial(_on, sharing_answers, own, grown=own.grown))
+    return OnLinks(name=COUPLES, growths=growths, on_link=cache(partial(_on, sharing_answers, own, grown=own.grown)))
 
 
 def _stiffness(stated: Stated) -> OnLinks | None:
@@ -128,7 +128,7 @@ def _stiffness(stated: Stated) -> OnLinks | None:
     if not stated.forces.open_by:
         return None
     growths = stiffness_doubt(stated.case, stated.load_case, stated.forces, stated.loads)
-    return OnLinks(name="stiffness", growths=growths, on_link=partial(_on, stiffness_answers, stated))
+    return OnLinks(name="stiffness", growths=growths, on_link=cache(partial(_on, stiffness_answers, stated)))
 
 
 def _play(stated: Stated) -> OnLinks | None:
@@ -136,7 +136,7 @@ def _play(stated: Stated) -> OnLinks | None:
     if stated.forces.play is None:
         return None
     growths = play_doubt(stated.case, stated.load_case, stated.forces, stated.loads, stated.links)
-    return OnLinks(name="play", growths=growths, on_link=partial(_on, play_answers, stated), of_columns=True)
+    return OnLinks(name="play", growths=growths, on_link=cache(partial(_on, play_answers, stated)), of_columns=True)
 
 
 def _on(answers: Callable[..., LinkAnswers], stated: Stated, link: str, **options: bool) -> LinkAnswers:

@@ -14,7 +14,7 @@ from alula.fea.common.source import Source
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.fea.doubts.load_growth import Growths, telling
 from alula.fea.links.fidelity import hand_bands
-from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
+from alula.fea.links.link_by_hand import LinkByHand, every_plate_by_hand
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement, examine
 from alula.fea.standing.case_statics import CaseStatics
@@ -69,10 +69,7 @@ class OtherCase:
             case=case,
             moved=moved,
             reactions=moved.reactions or reactions,
-            plates={
-                link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
-                for link in case.checked_links
-            },
+            plates=every_plate_by_hand(case, load_case, moved, reactions, loads),
         )
 
     @cached_property

@@ -134,6 +134,27 @@ def plates_by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[t
     return (worse, *((replace(loads, name=f"{loads.name}, other plate"), hand) for loads, hand in others))
 
 
+def every_plate_by_hand(
+    case: Case, load_case: str, moved: LargeDisplacement, reactions: Reactions, loads: Sequence[Load]
+) -> dict[str, tuple[tuple[LinkLoads, LinkByHand], ...]]:
+    """Return what acts on every link that is checked, cut free, with its hand calculation.
+
+    Parameters
+    ----------
+    case, load_case, moved, reactions, loads
+        As of ``cut_link``.
+
+    Returns
+    -------
+    dict of str to tuple of tuple of (LinkLoads, LinkByHand)
+        By link, as of ``plates_by_hand``.
+    """
+    return {
+        link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
+        for link in case.checked_links
+    }
+
+
 def slenderest(case: Case, link: str, plates_of: Sequence[tuple[LinkLoads, LinkByHand]]) -> BeamCheck:
     """Return the hand calculation of a link, or of the plate of it that buckles first as a column.
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,7 @@ def loading_over(
     def loads(link: str) -> list[LinkLoads]:
         return [one for one in loaded.get(link, ()) if one.name == load_case]
 
+    @cache
     def force(joint: str) -> Scatter:
         return joint_growth(moved, load_case, joint, evaluated).times(grown.joints.get(joint, Scatter()))
 

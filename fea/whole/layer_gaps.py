@@ -198,13 +198,12 @@ class LayerGaps:
     @cached_property
     def least(self) -> LayerGap | None:
         """The gap of which least is left, by the low end of its band; None where no link passes over another."""
-        frame, loose, causes = self.moved.frame, clearances(self.case), self.moved.of_loads
-        assert frame is not None
+        loose, causes = clearances(self.case), self.moved.of_loads
         told = (*(cause.source for cause in causes), *((play_source(loose),) if loose else ()))
         sources = distinct(self._soft.sources, told)
         found = []
-        for over, closed in zip(self._overlaps, self._closed, strict=True):
-            free = self._free(frame, over).sum(axis=0) if loose else np.zeros(len(over.places))
+        for over, closed, freed in zip(self._overlaps, self._closed, self._freed, strict=True):
+            free = freed.sum(axis=0)
             least, most = closed.min(axis=0), closed.max(axis=0)
             k = int(np.argmax(most + free))
             left = Band(
@@ -227,7 +226,7 @@ class LayerGaps:
         loose = clearances(self.case)
         if frame is None or not loose or any(cause.endless for cause in self.moved.of_loads):
             return None
-        free = [self._free(frame, over) for over in self._overlaps]
+        free = self._freed
         if min(float(left.min()) for left, _ in self._beside(free)) < 0.0:
             return reason("deflection_closes_gap")
         alone = {
@@ -266,6 +265,16 @@ class LayerGaps:
     def _overlaps(self) -> list[Overlap]:
         assert self.moved.frame is not None
         return list(overlaps(self.moved.frame, self.assembly))
+
+    @cached_property
+    def _freed(self) -> list[Real]:
+        """By what the play of each joint closes every overlap's gap at its places: (joints, n)."""
+        frame, none = self.moved.frame, not clearances(self.case)
+        assert frame is not None
+        return [
+            np.zeros((len(self.case.joints), len(over.places))) if none else self._free(frame, over)
+            for over in self._overlaps
+        ]
 
     @cached_property
     def _soft(self) -> Scatter:

@@ -260,3 +260,13 @@ def test_a_moment_about_what_nothing_turns_is_refused_beside_a_known_frame() -> 
     solve_frame(tied)
     with pytest.raises(CannotRunError, match=r"the frame is a mechanism"):
         solve_frame(replace(tied, loads=(load(2, 0, 0, 0, 0, 0, 1.0),)))
+
+
+def test_forces_along_an_element_that_do_not_balance_are_refused() -> None:
+    out = solve_frame(replace(CANTILEVER, loads=(load(1, 0, 2.0),)))
+    ends = out.end_forces[0, 1]
+    assert out.internal_forces(0).at(60.0) == pytest.approx(ends, abs=1e-9)
+    forces = out.end_forces.copy()
+    forces[0, 1, 5] += 0.1
+    with pytest.raises(CannotRunError, match="do not balance"):
+        _ = replace(out, end_forces=forces).forces_along
