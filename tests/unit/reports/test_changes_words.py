@@ -104,6 +104,18 @@ def test_a_check_that_no_load_changes_says_so(result, check):
     assert told(result, VerdictChange(check=opened)) == "No model may decide it."
 
 
+@pytest.mark.parametrize(
+    ("state", "words"), [("off", "was not looked at."), ("deformed", "the shape of the deformed linkage counts.")]
+)
+def test_without_proportion_it_is_said_whether_the_deformed_shape_was_looked_at(result, check, state, words):
+    cases = {
+        name: replace(one, large_displacement=replace(one.large_displacement, state=state))
+        for name, one in result.load_cases.items()
+    }
+    [said] = change_sentences(VerdictChange(check=check), replace(result, load_cases=cases))
+    assert said.endswith(words)
+
+
 def test_page_console_and_record_tell_the_same(result):
     check = next(c for c in result.load_cases["weight"].checks if c.quantity is Quantity.SAFETY_FACTOR)
     size = SizeRange(entry="parts.tube.outer_diameter", first="5 mm", last="9 mm")
