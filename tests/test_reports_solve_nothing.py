@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 from test_layers import PACKAGES, ROOT, parsed
 
-ASKING = ("reports/commands/", "reports/notebook/")
+ASKING = ("reports/commands/", "reports/notebook/", "reports/workbench/")
 """Folders that have things found; the others of ``reports/`` tell them."""
 SOLVERS = ("solve", "mesh_")
 """How functions begin whose name says that they solve, beside those of ``WORK``."""
