@@ -63,7 +63,8 @@ def judged(
     reactions = moved.reactions or statics.reactions[load_case]
     pins = _pins(case, reactions, hand.shared_forces)
     in_plane = {x: one for x, one in hand.shared.joints.items() if case.linkage.rise(x) == 0.0}
-    pinned = hand.uneven.times(Growths(joints=in_plane)).joints  # ``pins`` and bearing hold the sharing of others
+    grown = hand.uneven.times(Growths(joints=in_plane))  # ``pins`` and bearing hold the sharing of others
+    pinned = {x: grown.of_pin(x) for x in case.joints}
     linkage = linkage_numbers(case, load_case, moved, forces, links, hand.free)
     columns = {x: slenderest(case, x, hand.columns(x)) for x in hand.plates}
     buckling = (

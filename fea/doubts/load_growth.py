@@ -20,6 +20,7 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
+from alula.fea.nonlinear.rim_growth import rim_growth
 from alula.fea.nonlinear.stability import growth
 from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError, CaseError
@@ -49,6 +50,8 @@ class Growths:
         Joint -> growth of its force.
     torques : mapping of str to Scatter
         Joint -> growth of the torque that goes through it (``alula.fea.judging.connections``).
+    pins : mapping of str to Scatter
+        Joint -> growth of the stress of its pin, beside that of the joint's force.
     columns : mapping of str to Scatter
         Link -> growth of the inverse of its buckling factor, where that is known beside the forces of its joints.
     """
@@ -57,7 +60,21 @@ class Growths:
     displacement: Mapping[str, Scatter] = field(default_factory=dict)
     joints: Mapping[str, Scatter] = field(default_factory=dict)
     torques: Mapping[str, Scatter] = field(default_factory=dict)
+    pins: Mapping[str, Scatter] = field(default_factory=dict)
     columns: Mapping[str, Scatter] = field(default_factory=dict)
+
+    def of_pin(self, joint: str) -> Scatter:
+        """Return the growth of the stress of a joint's pin.
+
+        Parameters
+        ----------
+        joint : str
+
+        Returns
+        -------
+        Scatter
+        """
+        return self.joints.get(joint, Scatter()).times(self.pins.get(joint, Scatter()))
 
     def through(self, joint: str) -> Scatter:
         """Return the growth of all that goes through a joint: its force, its torque, or both.
@@ -84,7 +101,7 @@ class Growths:
         Growths
         """
         found = {}
-        for kind in ("stress", "displacement", "joints", "torques", "columns"):
+        for kind in ("stress", "displacement", "joints", "torques", "pins", "columns"):
             one, two = getattr(self, kind), getattr(other, kind)
             found[kind] = {name: one.get(name, Scatter()).times(two.get(name, Scatter())) for name in {**one, **two}}
         return Growths(**found)
@@ -140,24 +157,12 @@ def growths(
     low, high = _slack(case, load_case, hands)
     plain = by_hand_numbers(hands, moved.reactions or reactions)
     stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
+    found = Growths()
     if moved.state == "small":
-        return stated.of_small(moved, plain, high)
-    if low == high or moved.state not in ("deformed", "off", "unknown"):
-        return Growths()
-    least, most = (stated.at(pose, factor) for factor in (low, high))
-    found = []
-    for i, kind in enumerate(plain):
-        # Displacement is in proportion to load over modulus, which its own scatter holds.
-        over = (low, high) if i == 1 else (1.0, 1.0)
-        ends = {
-            name: (
-                1.0 if least is None or value <= 0.0 else min(1.0, least[i][name] / value / over[0]),
-                1.0 if value <= 0.0 else math.inf if most is None else max(1.0, most[i][name] / value / over[1]),
-            )
-            for name, value in kind.items()
-        }
-        found.append(ends)
-    return _told(found)
+        found = stated.of_small(moved, plain, high)
+    elif low < high and moved.state in ("deformed", "off", "unknown"):
+        found = stated.between(pose, plain, low, high)
+    return found.times(_on_rims(moved, high))
 
 
 def beyond_undeformed(
@@ -195,7 +200,7 @@ def beyond_undeformed(
     high, plain = _slack(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
     stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     if moved.state == "small":
-        return stated.of_small(moved, plain, high)
+        return stated.of_small(moved, plain, high).times(_on_rims(moved, high))
     if moved.gives_way:
         return _told([dict.fromkeys(kind, (1.0, math.inf)) for kind in plain])
     plain = plain if moved.reactions is None else stated.on_tight_pins(moved, plain)
@@ -215,7 +220,15 @@ def beyond_undeformed(
                 if value > least
             }
         )
-    return _told(found)
+    return _told(found).times(_on_rims(moved, high))
+
+
+def _on_rims(moved: LargeDisplacement, high: float) -> Growths:
+    """Growth of stresses with pins in their holes over that with tight ones, where it is looked for."""
+    if moved.pins is None or moved.state not in ("small", "deformed"):
+        return Growths()
+    found = rim_growth(moved.pins, high)
+    return Growths(stress=telling(found.links), pins=telling(found.pins))
 
 
 def _slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
@@ -258,6 +271,23 @@ class _Stated:
             least = NOTHING * max(before.values(), default=0.0)
             over = {n: rise * (after[n] / value - 1.0) if value > least else 0.0 for n, value in before.items()}
             found.append({name: (max(1.0 + min(x, 0.0), 0.0), 1.0 + max(x, 0.0)) for name, x in over.items()})
+        return _told(found)
+
+    def between(self, pose: Pose, plain: Numbers, low: float, high: float) -> Growths:
+        """Growth of the numbers of the load case from the least to the largest load over modulus."""
+        least, most = (self.at(pose, factor) for factor in (low, high))
+        found = []
+        for i, kind in enumerate(plain):
+            # Displacement is in proportion to load over modulus, which its own scatter holds.
+            over = (low, high) if i == 1 else (1.0, 1.0)
+            ends = {
+                name: (
+                    1.0 if least is None or value <= 0.0 else min(1.0, least[i][name] / value / over[0]),
+                    1.0 if value <= 0.0 else math.inf if most is None else max(1.0, most[i][name] / value / over[1]),
+                )
+                for name, value in kind.items()
+            }
+            found.append(ends)
         return _told(found)
 
     def on_tight_pins(self, moved: LargeDisplacement, plain: Numbers) -> Numbers:

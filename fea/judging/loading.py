@@ -101,10 +101,13 @@ class OverMotion(Loading):
         The poses that count.
     at : callable
         Of the number of a pose, to what acts there.
+    pin_growth : callable
+        Of a joint, to how the stress of its pin grows beside scattered loads.
     """
 
     evaluated: NDArray[np.bool_]
     at: Callable[[int], Loading]
+    pin_growth: Callable[[str], Scatter]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -205,7 +205,7 @@ def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked) -> tuple[int, Ch
     a torque goes through the pin, it is that of its own largest stress.
     """
     case, load_case, evaluated, joint = over.case, over.load_case, over.evaluated, one.subject.name
-    solved, growth = moved.forces[load_case], over.joint_growth(joint)
+    solved, growth = moved.forces[load_case], over.pin_growth(joint)
     reaction, sizes = solved.joints[joint], np.linalg.norm(solved.forces[joint], axis=1)
     turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
     twists = [twist_of(case, joint, *of) for of in zip(reaction.wrench[:, 5], turning, strict=True)]

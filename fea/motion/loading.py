@@ -83,6 +83,7 @@ def loading_over(
         joint_growth=force,
         link_growth=lambda link: Scatter() if stressed is None else stressed(load_case, link),
         growth_through=through,
+        pin_growth=lambda joint: force(joint).times(grown.pins.get(joint, Scatter())),
         evaluated=evaluated,
         at=at,
     )

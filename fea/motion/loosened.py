@@ -309,10 +309,14 @@ def motion_growth(
         found[load_case] = Growths(
             stress=_largest_grown([(one.stress, one.growths.stress) for one in poses]),
             columns=_largest_grown(
-                [(one.inverse, {x: _worst(one.growths.joints, joints(x)) for x in one.inverse}) for one in poses]
+                [
+                    (one.inverse, {x: _worst(one.growths.joints.get(name) for name in joints(x)) for x in one.inverse})
+                    for one in poses
+                ]
             ),
             joints=_largest_grown([(one.forces, one.growths.joints) for one in poses]),
             torques=_largest_grown([(one.torques, one.growths.torques) for one in poses]),
+            pins={x: _worst(one.growths.pins.get(x) for one in poses) for x in moved.case.joints},
         )
     return found
 
@@ -354,11 +358,11 @@ def _grown_at(moved: CaseMotion, load_case: str, i: int, histories: Mapping[str,
     return _GrownPose(stress=stress, inverse=inverse, forces=forces, torques=torques, growths=found)
 
 
-def _worst(found: Mapping[str, Scatter], names: Iterable[str]) -> Scatter:
-    """Return one that holds those of several joints."""
-    every = [found[name] for name in names if name in found]
+def _worst(found: Iterable[Scatter | None]) -> Scatter:
+    """Return one that holds several; none is no growth."""
+    every = [one for one in found if one is not None]
     low, high = min((1.0, *(one.low for one in every))), max((1.0, *(one.high for one in every)))
-    return Scatter(low=low, high=high, sources=SOURCES)
+    return Scatter(low=low, high=high, sources=SOURCES if every else ())
 
 
 def _largest_grown(poses: Sequence[tuple[Mapping[str, float], Mapping[str, Scatter]]]) -> dict[str, Scatter]:

@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution
+from alula.fea.frame.system import natural_deformations
 from alula.fea.nonlinear.corotational import SUBDIVISIONS, subdivide
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.stability import (
@@ -125,6 +126,51 @@ class Extended:
         return 0.0
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Condensed:
+    """A frame condensed to where its pins stand at the rims of h holes, by u unknowns of its path.
+
+    Attributes
+    ----------
+    tight : ndarray, shape (u,)
+        Its motion under the loads with tight pins.
+    by_rims : ndarray, shape (u, 4 h)
+        What the variables of the rims add.
+    K : ndarray, shape (4 h, 4 h)
+        Stiffness [N/mm]; with negative eigenvalues where forces drive pins away.
+    g : ndarray, shape (4 h,)
+        Forces at the rims with tight pins [N].
+    """
+
+    tight: Floats
+    by_rims: Floats
+    K: Floats
+    g: Floats
+
+    def moved(self, v: Floats) -> Floats:
+        """Return its motion with pins as they stand.
+
+        Parameters
+        ----------
+        v : ndarray, shape (4 h,)
+            [mm].
+
+        Returns
+        -------
+        ndarray, shape (u,)
+        """
+        return np.asarray(self.tight + self.by_rims @ v)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Pressed:
+    """Geometric stiffness: of the k motions of a frame, between these and 4 h variables of the rims, and of those."""
+
+    frame: Floats
+    pulls: Floats
+    own: Floats
+
+
 class RimPath:
     """The small motions of a frame whose pins are as rims leave them.
 
@@ -177,10 +223,77 @@ class RimPath:
         -------
         Extended
         """
-        path, pins, ways, motions = self.path, self._pins, tangent.ways, self._motions
-        state = state or self.forces(tangent)
+        ways, pressed = tangent.ways, self._pressed_by(state or self.forces(tangent))
+        own_pressed = ways.T @ pressed.own @ ways + np.diag(tangent.stiffness)
+        felt = _felt(ways.T @ self._own_stiffness @ ways, own_pressed)
+        taken = ways @ felt
+        coupled, by_pins, own = self._pulls @ taken, self._follows @ taken, taken.T @ self._own_stiffness @ taken
+        alone, freed = np.linalg.eigh(own + coupled.T @ by_pins)
+        freed = freed[:, alone < FREE * np.abs(own).max(initial=0.0)]
+        return Extended(
+            allowed=self._motions,
+            plain=_bordered(self._stiffness, coupled, own),
+            pressed=_bordered(pressed.frame, pressed.pulls @ taken, felt.T @ own_pressed @ felt),
+            free=np.vstack([by_pins @ freed, freed]),
+        )
+
+    def condensed(self, forces: FrameSolution | None = None, factor: float = 1.0) -> Condensed | None:
+        """Return how the frame answers its loads, and its pins where they stand, in small motions.
+
+        Parameters
+        ----------
+        forces : FrameSolution, optional
+            Whose geometric stiffness counts; none without.
+        factor : float, optional
+            Of these forces.
+
+        Returns
+        -------
+        Condensed or None
+            None where it is unstable with its pins held.
+        """
+        A, C, own = self._stiffness, self._pulls, self._own_stiffness
+        if forces is not None:
+            pressed = self._pressed_by(forces)
+            A, C, own = A + factor * pressed.frame, C + factor * pressed.pulls, own + factor * pressed.own
+        A = (A + A.T) / 2.0
+        try:
+            np.linalg.cholesky(A)
+        except np.linalg.LinAlgError:
+            return None
+        loads = -self._motions.T @ self.path.balance(self.path.state, 1.0)[0]
+        solved = np.linalg.solve(A, np.column_stack([loads, -C]))
+        tight, follows = solved[:, 0], solved[:, 1:]
+        K = own + C.T @ follows
+        return Condensed(
+            tight=self._motions @ tight, by_rims=self._motions @ follows, K=(K + K.T) / 2.0, g=-C.T @ tight
+        )
+
+    def natural_forces(self, moved: Floats, v: Floats) -> Floats:
+        """Return the natural forces of all beams in a small motion, without those that hold line loads.
+
+        Parameters
+        ----------
+        moved : ndarray, shape (u,)
+            In the unknowns of the path.
+        v : ndarray, shape (4 h,)
+            Of the pins at the rims [mm].
+
+        Returns
+        -------
+        ndarray, shape (6 m,)
+            In the order of ``alula.fea.frame.system.natural_deformations``.
+        """
+        path, system = self.path, self.rims.solved.system
+        unknowns = np.append(moved, 0.0)[path.places.numbers]
+        ends = (path.places.matrices(path.chain.axes(path.state.rotations)) * unknowns[:, :, None]).sum(axis=1)
+        ends[self._pins] += self.rims.ends @ v
+        deformed = natural_deformations(system.lengths) @ system.matrices @ ends[:, :, None]
+        return (path.elements.stiffness @ deformed).ravel()
+
+    def _pressed_by(self, state: FrameSolution) -> _Pressed:
+        path, pins = self.path, self._pins
         pressed = pressed_beams(path, state.end_forces)
-        G = path.free(geometric_stiffness(path, pressed, state.guide_forces))
         k_g = (pressed.tangent[pins] + pressed.tangent[pins].swapaxes(1, 2)) / 2.0
         work = np.zeros_like(k_g)
         for end in (0, 1):
@@ -189,18 +302,10 @@ class RimPath:
             turn, shift = slice(6 * end + 3, 6 * end + 6), slice(6 * end, 6 * end + 3)
             work[:, turn, shift] = _turning(forces)
             work[:, turn, turn] = _turning(moments) / 2.0
-        own_pressed = ways.T @ self._own(k_g) @ ways + np.diag(tangent.stiffness)
-        felt = _felt(ways.T @ self._own_stiffness @ ways, own_pressed)
-        taken = ways @ felt
-        coupled, by_pins, own = self._pulls @ taken, self._follows @ taken, taken.T @ self._own_stiffness @ taken
-        alone, freed = np.linalg.eigh(own + coupled.T @ by_pins)
-        freed = freed[:, alone < FREE * np.abs(own).max(initial=0.0)]
-        pressing = motions[: path.chain.count].T @ self._coupled(k_g + work) @ taken
-        return Extended(
-            allowed=motions,
-            plain=_bordered(self._stiffness, coupled, own),
-            pressed=_bordered(G, pressing, felt.T @ own_pressed @ felt),
-            free=np.vstack([by_pins @ freed, freed]),
+        return _Pressed(
+            frame=path.free(geometric_stiffness(path, pressed, state.guide_forces)),
+            pulls=self._motions[: path.chain.count].T @ self._coupled(k_g + work),
+            own=self._own(k_g),
         )
 
     def _own(self, stiffness: Floats) -> Floats:

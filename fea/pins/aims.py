@@ -138,12 +138,7 @@ def aims_of(couples: Real, ends: BeamEnds, noise: float) -> Aims:
     """
     linear = _unlike(couples[np.abs(couples).max(axis=1) > noise])
     open_ends = np.flatnonzero(ends.by_rims.any(axis=(1, 2)))
-    ends = BeamEnds(
-        owners=tuple(ends.owners[k] for k in open_ends),
-        tight=ends.tight[open_ends],
-        by_rims=ends.by_rims[open_ends],
-        round=ends.round[open_ends],
-    )
+    ends = ends.of(open_ends)
     owners = dict.fromkeys(ends.owners)
     return Aims(
         linear=np.vstack([linear, -linear]),

@@ -58,6 +58,10 @@ class BeamEnds:
     ----------
     owners : tuple of tuple of (str, str)
         Of each of e ends: "link" or "pin", and the name of the link or joint.
+    rows : ndarray of int, shape (e, 4)
+        Natural forces of all elements, six of each, that bear on it.
+    unit : ndarray, shape (e, 4)
+        Stress that a unit of each makes [1/mm², 1/mm³].
     tight : ndarray, shape (e, 4)
         N/A, bending stress in the plane and out of it, and √3 times shear stress of the torque, with tight pins [MPa].
     by_rims : ndarray, shape (e, 4, 4 h)
@@ -67,9 +71,48 @@ class BeamEnds:
     """
 
     owners: tuple[tuple[str, str], ...]
+    rows: NDArray[np.int64]
+    unit: Real
     tight: Real
     by_rims: Real
     round: NDArray[np.bool_]
+
+    def of(self, ends: NDArray[np.int64]) -> "BeamEnds":
+        """Return some of the ends.
+
+        Parameters
+        ----------
+        ends : ndarray of int
+            Their numbers.
+
+        Returns
+        -------
+        BeamEnds
+        """
+        return BeamEnds(
+            owners=tuple(self.owners[k] for k in ends),
+            rows=self.rows[ends],
+            unit=self.unit[ends],
+            tight=self.tight[ends],
+            by_rims=self.by_rims[ends],
+            round=self.round[ends],
+        )
+
+    def stresses(self, parts: Real) -> Real:
+        """Return the stress of plain sections.
+
+        Parameters
+        ----------
+        parts : ndarray, shape (..., e, 4)
+            As ``tight``.
+
+        Returns
+        -------
+        ndarray, shape (..., e)
+            [MPa]
+        """
+        axial, inside, across, shear = np.moveaxis(np.abs(parts), -1, 0)
+        return np.hypot(axial + np.where(self.round, np.hypot(inside, across), inside + across), shear)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -185,11 +228,12 @@ class RimFrame:
         Returns
         -------
         RimFrame
-            Its variables are the same; its frame tells nothing of the links' beams.
+            Its variables are the same.
         """
         pins = {name: int(np.flatnonzero(parents == i)[0]) for name, i in self.frame.pin_beams.items()}
         rims = {(name, hole.link): (hole.low, hole.high) for hole in self.holes for name in hole.joints}
-        return RimFrame.of(replace(self.frame, model=model, pin_beams=pins, beams={}), rims)
+        beams = {k: self.frame.beams[i] for k, i in enumerate(parents.tolist()) if i in self.frame.beams}
+        return RimFrame.of(replace(self.frame, model=model, pin_beams=pins, beams=beams), rims)
 
 
 def _noise(frame: LinkageFrame) -> float:
@@ -232,6 +276,8 @@ def _beam_ends(frame: LinkageFrame, solved: FactorisedFrame, opened: Real) -> Be
     by_rims[np.abs(by_rims).max(axis=1) <= _noise(frame)] = 0.0
     return BeamEnds(
         owners=tuple(owner for _, owner, _ in ends),
+        rows=rows.reshape(-1, 4),
+        unit=unit,
         tight=unit * tight.reshape(-1, 4),
         by_rims=unit[:, :, None] * by_rims.reshape(len(ends), 4, -1),
         round=np.array([section.round for section in sections], dtype=bool),

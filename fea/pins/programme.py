@@ -147,7 +147,7 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
 
     Parameters
     ----------
-    K : ndarray, shape (2 m, 2 m)
+    K : ndarray, shape (2 m, 2 m) or (n, 2 m, 2 m)
         Symmetric, without negative eigenvalues.
     g : ndarray, shape (2 m,) or (n, 2 m)
     radii : ndarray, shape (n, m + f)
@@ -166,9 +166,10 @@ def least_in_discs(K: Real, g: Real, radii: Real, close: float = CLOSE, ties: ND
     CannotRunError
         Where the bound does not come near to the value.
     """
-    each = np.broadcast_to(g, (len(radii), len(K)))
-    batches = [slice(k, k + BATCH) for k in range(0, max(len(radii), 1), BATCH)]
-    found = [_least(K, each[batch], radii[batch], close, ties) for batch in batches]
+    count, size = len(radii), K.shape[-1]
+    stiff, each = np.broadcast_to(K, (count, size, size)), np.broadcast_to(g, (count, size))
+    batches = [slice(k, k + BATCH) for k in range(0, max(count, 1), BATCH)]
+    found = [_least(stiff[batch], each[batch], radii[batch], close, ties) for batch in batches]
     return InDiscs(**{name: np.concatenate([vars(one)[name] for one in found]) for name in vars(found[0])})
 
 

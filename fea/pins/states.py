@@ -170,11 +170,17 @@ class PinStates:
         return (self.tangent(self.radii.value, self.value), *(self.tangent(shares, v) for shares, v in told))
 
     @property
+    def standing(self) -> tuple[Real, Real]:
+        """Radii (n + 1, d) of all discs, and where pins stand (n + 1, 4 h): of the values first, then of ``states``."""
+        shares, states = self._told
+        return self.radii.of(np.vstack([self.radii.value, shares]))[0], np.vstack([self.value, states])
+
+    @property
     def reaches(self) -> Real:
         """(n + 1,) how far rims and heads let a point move at most, wherever pins stand, of the same states [mm]."""
         moved = self.rims.solved.displacements(self.rims.opened)[:, :3]
         by_rims, holes = moved.reshape(*moved.shape[:2], -1, 2, 2), len(self.rims.holes)
-        radii = self.radii.of(np.vstack([self.radii.value, self._told[0]]))[0]
+        radii, _ = self.standing
         radius, between = radii[:, : 2 * holes : 2], self.radii.ties[:, 0] // 2
         apart = np.full(radius.shape, 2.0)
         apart[:, between] = radii[:, 2 * holes :] / np.maximum(radius[:, between], LEAST_RADIUS)
