@@ -289,7 +289,7 @@ class RimPath:
         ends = (path.places.matrices(path.chain.axes(path.state.rotations)) * unknowns[:, :, None]).sum(axis=1)
         ends[self._pins] += self.rims.ends @ v
         deformed = natural_deformations(system.lengths) @ system.matrices @ ends[:, :, None]
-        return (path.elements.stiffness @ deformed).ravel()
+        return np.asarray((path.elements.stiffness @ deformed).ravel())
 
     def _pressed_by(self, state: FrameSolution) -> _Pressed:
         path, pins = self.path, self._pins

@@ -112,7 +112,7 @@ class BeamEnds:
             [MPa]
         """
         axial, inside, across, shear = np.moveaxis(np.abs(parts), -1, 0)
-        return np.hypot(axial + np.where(self.round, np.hypot(inside, across), inside + across), shear)
+        return np.asarray(np.hypot(axial + np.where(self.round, np.hypot(inside, across), inside + across), shear))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
