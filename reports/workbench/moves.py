@@ -186,6 +186,8 @@ class Plane:
     def _posed(self) -> dict[str, Frame] | None:
         """Return the frames of the pose; None where there is none."""
         pose = self.pose
+        if not self.joints:
+            return None
         try:
             if pose is None or not self._shown(pose):
                 links = {name: Link.model_validate(link) for name, link in self.links.items()}
