@@ -20,6 +20,7 @@ from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.pose import Pose, solve_pose
 from alula.loads.case.part_points import KINDS
+from alula.loads.text.explain import sentence
 from alula.reports.workbench.toml_text import Path, TomlText, value_at
 
 Frame = tuple[complex, float]
@@ -124,13 +125,19 @@ class Plane:
 
     def __post_init__(self) -> None:
         """Read links and joints, and find where they lie."""
-        try:
-            self.joints = {name: Joint.model_validate(one) for name, one in self.tables.get("joints", {}).items()}
-        except (ValidationError, AttributeError):
-            raise CaseError("joints: they cannot be read; correct them in the text first") from None
+        for table in ("links", "joints"):
+            stated = self.tables.get(table, {})
+            if not isinstance(stated, dict) or not all(isinstance(one, dict) for one in stated.values()):
+                raise CaseError(f"{table}: they are no tables; correct them in the text first")
+        self.joints = {}
+        for name, one in self.tables.get("joints", {}).items():
+            try:
+                self.joints[name] = Joint.model_validate(one)
+            except ValidationError as wrong:
+                raise CaseError(f"joints.{name}.{sentence(wrong, Joint)}") from None
         self.local = {}
         for name, link in self.links.items():
-            points = link.get("points", {}) if isinstance(link, dict) else {}
+            points = link.get("points", {})
             for point, at in points.items() if isinstance(points, dict) else ():
                 entry = ("links", name, "points", point)
                 if not isinstance(at, list) or len(at) != 2:
