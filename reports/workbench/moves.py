@@ -292,9 +292,10 @@ def move(draft: TomlText, plane: Plane, key: tuple[str, str], to: complex) -> No
     Points of plates, of the ground and of links without a part take the place in the frame of their link. A straight
     link keeps its points on its axis: with one other joint it gets a new length and a new direction, and its points
     without a joint keep their distance from that joint. Where three or more joints stand on one axis, the others give
-    way by as little as keeps them in line (joints of the ground do not), so these alone are not where they were. Where
-    that cannot be, and on a guide, the joint itself stands at the nearest place that it can have; so does a load point on
-    the axis of a link that two joints hold.
+    way by about as little as keeps them in line (joints of the ground do not), so these alone are not where they were.
+    Where that cannot be, and on a guide, the joint itself stands at the nearest place that it can have; so does a load
+    point on the axis of a link that two joints hold. Slots and rows of holes follow the origin of their link; centroids
+    of masses and spans of wings stay as they are stated.
 
     Parameters
     ----------
