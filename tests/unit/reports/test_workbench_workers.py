@@ -8,7 +8,8 @@ import pytest
 
 from alula.loads.case.case_file import read_text
 from alula.reports.workbench import workers
-from alula.reports.workbench.answers import linear_answer, pose_answer, whole_answer
+from alula.reports.workbench.answers import pose_answer
+from alula.reports.workbench.verdicts import linear_answer, whole_answer
 from alula.reports.workbench.workers import Workers
 
 TEXT, NAME = read_text("four-bar")[0], "four-bar"
