@@ -16,7 +16,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import changed_case, folder_of
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.states.kinetostatics import dead_points
-from alula.reports.workbench.drawn import drawn, joint_forces
+from alula.reports.workbench.drawn import drawn, drawn_loosely, joint_forces
 
 Plain = dict[str, Any]
 Stage = Callable[[str, str, Callable[[str, Plain], None]], None]
@@ -47,10 +47,17 @@ def case_of(text: str, name: str) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
+    return _case(_tables(text), name)
+
+
+def _tables(text: str) -> dict[str, Any]:
     try:
-        tables = tomllib.loads(text.removeprefix("\ufeff"))
+        return tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:
         raise CaseError(f"this is not valid TOML: {error}; correct that line") from None
+
+
+def _case(tables: dict[str, Any], name: str) -> Case:
     return changed_case(tables, (), name, folder_of(name))
 
 
@@ -69,12 +76,16 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
     Returns
     -------
     dict
-        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, None where nothing can be; ``forces`` as ``joint_forces``;
-        ``problem``, the sentence that says why either is missing, else None; ``ms``.
+        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, loosely where no pose can be solved, None where nothing
+        can be read; ``forces`` as ``joint_forces``; ``problem``, the sentence that says why there is less, else None;
+        ``ms``.
     """
     start, seen, forces, problem = time.perf_counter(), None, None, None
+    tables: dict[str, Any] = {}
+    case: Case | None = None
     try:
-        case = case_of(text, name)
+        tables = _tables(text)
+        case = _case(tables, name)
         seen = drawn(case, case.solve_pose())
         if early is not None:
             early(_posed(seen, None, None, start))
@@ -82,6 +93,8 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
         seen, forces = drawn(case, statics.pose, statics), joint_forces(statics)
     except AlulaError as error:
         problem = str(error)
+    if seen is None and tables:
+        seen = drawn_loosely(tables, case)
     return _posed(seen, forces, problem, start)
 
 

@@ -78,10 +78,19 @@ def test_what_balances_by_itself_is_drawn_where_it_stands():
 def test_a_problem_is_one_sentence_and_what_can_be_is_drawn():
     open_loop = posed("four-bar", ('points.B = ["120 mm"', 'points.B = ["320 mm"'))
     assert open_loop["problem"].startswith("pose: the linkage cannot be assembled")
-    assert open_loop["drawn"] is None
-    assert posed("four-bar", ("schema_version = 1", "schema_version ="))["problem"].startswith("this is not valid TOML")
+    assert open_loop["forces"] == {}
+    links = {link["name"]: link for link in open_loop["drawn"]["links"]}
+    assert [links[link]["angle"] for link in ("crank", "coupler", "rocker")] == pytest.approx([40.0, 20.0, 57.0])
+    assert np.ptp(links["coupler"]["outline"], axis=0)[0] == pytest.approx(320.0 + 1.6 * 8.0, abs=0.1)
+    assert links["coupler"]["origin"] == pytest.approx(links["crank"]["points"][1]["at"])
+    assert [load["path"] for load in open_loop["drawn"]["loads"]] == [["load_cases", "lift", "forces", 0]]
     held = posed("four-bar", ("[drive]\n", "[drive]\ntransfer = 5\n"))
     assert held["problem"].startswith("drive.transfer")
+    assert {link["name"] for link in held["drawn"]["links"]} == {"base", "crank", "coupler", "rocker"}
+    nothing = posed("four-bar", ("schema_version = 1", "schema_version ="))
+    assert nothing["problem"].startswith("this is not valid TOML")
+    assert nothing["drawn"] is None
+    assert posed("four-bar", ("schema_version = 1", "links = 5\nschema_version = 1"))["drawn"] is None
 
 
 def known(value):
