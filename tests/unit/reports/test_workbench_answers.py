@@ -1,0 +1,150 @@
+"""What the workbench answers to a text says the same as commands do, and is plain data."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+import solved
+
+from alula.fea.findings.of_check import with_findings
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.loads.case.case_file import read_case, read_text
+from alula.reports.check.changes import change_records
+from alula.reports.commands.statics import statics_sections
+from alula.reports.sentences.verdicts import first_lines
+from alula.reports.workbench.answers import motion_answer, pose_answer
+from alula.reports.workbench.verdicts import whole_answer
+
+
+def posed(name, *pairs):
+    text, _ = read_text(name)
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    found = pose_answer(text, name)
+    return json.loads(json.dumps(found, allow_nan=False))
+
+
+@pytest.mark.parametrize("name", ["owl-wing-static", "four-bar", "knee"])
+def test_forces_are_those_of_alula_statics(name):
+    answer, case = posed(name), read_case(name)
+    pose, told = statics_sections(solve_case_statics(case, name), matrix=False)
+    assert answer["problem"] is None
+    assert list(answer["forces"]) == answer["drawn"]["load_cases"] == list(told.data["load_cases"])
+    for load_case, record in told.data["load_cases"].items():
+        found = answer["forces"][load_case]
+        for one in record["reactions"]:
+            joint = found["joints"][one["joint"]]
+            assert (joint["force"], joint["on"], joint["magnitude"]) == (one["force"], one["on"], one["magnitude"])
+        assert (found["drive"] or {"torque": 0.0})["torque"] == record["drive_torque"]  # a stop holds the knee
+    for link in answer["drawn"]["links"]:
+        assert link["angle"] % 360.0 == pytest.approx(pose.data["pose"]["angles"][link["name"]])
+
+
+def test_links_are_drawn_as_wide_as_their_parts():
+    links = {link["name"]: link for link in posed("four-bar")["drawn"]["links"]}
+    outline = np.array(links["crank"]["outline"])
+    eye = 1.6 * 8.0 / 2.0
+    assert outline.min(axis=0) == pytest.approx([-eye, -eye], abs=0.05)
+    assert outline.max(axis=0) == pytest.approx([40.0 + eye, eye], abs=0.05)
+    assert (links["crank"]["width"], links["crank"]["thickness"], links["base"]["outline"]) == (8.0, 4.0, None)
+    turn, (x, y) = math.radians(links["rocker"]["angle"]), links["rocker"]["origin"]
+    end = next(point for point in links["rocker"]["points"] if point["name"] == "P")
+    assert end["at"] == pytest.approx([x + 120.0 * math.cos(turn), y + 120.0 * math.sin(turn)])
+
+
+def test_loads_have_the_path_of_their_entry():
+    loads = {load["kind"]: load for load in posed("four-bar")["drawn"]["loads"]}
+    assert loads["force"]["path"] == ["load_cases", "lift", "forces", 0]
+    assert loads["force"]["vector"] == [0.0, -5.0]
+    assert loads["weight"]["vector"][1] < 0.0
+    turned = posed("four-bar", ('force = ["0 N", "-5 N"]', 'force = ["0 N", "-5 N"]\naxes = "link"'))["drawn"]
+    [force] = [load for load in turned["loads"] if load["kind"] == "force"]
+    along = math.radians(next(link["angle"] for link in turned["links"] if link["name"] == "rocker"))
+    assert force["vector"] == pytest.approx([5.0 * math.sin(along), -5.0 * math.cos(along)])
+
+
+def test_what_balances_by_itself_is_drawn_where_it_stands():
+    answer = posed("spring-pedal")
+    case = read_case("spring-pedal")
+    stands = solve_case_statics(case, "spring-pedal").pose
+    pedal = next(link for link in answer["drawn"]["links"] if link["name"] == "pedal")
+    assert pedal["angle"] == pytest.approx(math.degrees(stands.angles["pedal"]))
+    assert pedal["angle"] != pytest.approx(math.degrees(case.stated_pose.angles["pedal"]), abs=0.1)
+    assert {spring["kind"] for spring in answer["drawn"]["springs"]} == {"coil", "wall"}
+
+
+def test_a_problem_is_one_sentence_and_what_can_be_is_drawn():
+    open_loop = posed("four-bar", ('points.B = ["120 mm"', 'points.B = ["320 mm"'))
+    assert open_loop["problem"].startswith("pose: the linkage cannot be assembled")
+    assert open_loop["forces"] == {}
+    links = {link["name"]: link for link in open_loop["drawn"]["links"]}
+    assert [links[link]["angle"] for link in ("crank", "coupler", "rocker")] == pytest.approx([40.0, 20.0, 57.0])
+    assert np.ptp(links["coupler"]["outline"], axis=0)[0] == pytest.approx(320.0 + 1.6 * 8.0, abs=0.1)
+    assert links["coupler"]["origin"] == pytest.approx(links["crank"]["points"][1]["at"])
+    assert [load["path"] for load in open_loop["drawn"]["loads"]] == [["load_cases", "lift", "forces", 0]]
+    held = posed("four-bar", ("[drive]\n", "[drive]\ntransfer = 5\n"))
+    assert held["problem"].startswith("drive.transfer")
+    assert {link["name"] for link in held["drawn"]["links"]} == {"base", "crank", "coupler", "rocker"}
+    nothing = posed("four-bar", ("schema_version = 1", "schema_version ="))
+    assert nothing["problem"].startswith("this is not valid TOML")
+    assert nothing["drawn"] is None
+    assert posed("four-bar", ("schema_version = 1", "links = 5\nschema_version = 1"))["drawn"] is None
+
+
+def known(value):
+    return value if math.isfinite(value) else None
+
+
+@pytest.mark.parametrize("name", ["four-bar", "knee"])
+def test_the_whole_verdict_is_that_of_alula_check(name):
+    result, early = solved.by_hand(name), []
+    answer = whole_answer(read_text(name)[0], name, early.append)
+    told = with_findings(result)
+    assert answer["verdict"] == result.verdict
+    assert answer["sentences"] == list(first_lines(told))
+    checks = {(one["check"], one["subject"], one["load_case"], one["quantity"]): one for one in answer["checks"]}
+    assert len(checks) == sum(len(one.checks) for one in result.load_cases.values())
+    for load_case, one in result.load_cases.items():
+        for check in one.checks:
+            found = checks[check.name, str(check.subject), load_case, check.quantity]
+            assert (found["value"], found["low"], found["high"], found["verdict"]) == (
+                *map(known, (check.value.value, check.value.low, check.value.high)),
+                check.answer,
+            )
+    [soon] = early
+    assert (soon["changes"], soon["checks"], soon["links"]) == ([], answer["checks"], answer["links"])
+    assert [one["command"] for one in answer["changes"]][:1] == [one["command"] for one in change_records(told)][:1]
+    json.dumps(answer, allow_nan=False)
+
+
+def test_motion_has_the_places_of_its_poses():
+    case, motion = read_case("four-bar"), motion_answer(read_text("four-bar")[0], "four-bar")
+    assert (motion["range"], motion["unit"], motion["turns"], motion["problem"]) == ([40.0, 400.0], "deg", True, None)
+    turned = case.with_values({"pose.angle": f"{motion['values'][30]} deg"})
+    at = turned.stated_pose.position("rocker", "P")
+    assert motion["points"]["rocker.P"][30] == pytest.approx(at.tolist(), abs=1e-3)
+    assert motion["points"]["crank.A"][0] == motion["points"]["crank.A"][-1]
+    assert len(motion["angles"]["coupler"]) == len(motion["values"]) == 361
+
+
+def test_motion_goes_as_far_as_the_linkage_does():
+    text = read_text("four-bar")[0]
+    for old, new in (
+        ("turn = true", 'range = ["-180 deg", "180 deg"]'),
+        ('points.A = ["40 mm"', 'points.A = ["120 mm"'),
+        ('coupler = "20 deg", rocker = "57 deg"', 'coupler = "-60 deg", rocker = "60 deg"'),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    motion = motion_answer(text, "four-bar")
+    # Coupler and rocker, 120 and 80 mm, are in line where the crank's pin is 200 or 40 mm from O4.
+    ends = [math.degrees(math.acos((120.0**2 + 100.0**2 - far**2) / (2.0 * 120.0 * 100.0))) for far in (40.0, 200.0)]
+    assert motion["dead"] == pytest.approx(ends, abs=1e-6)
+    assert ends[0] < motion["range"][0] < ends[0] + 1.1
+    assert ends[1] - 1.1 < motion["range"][1] < ends[1]
+    assert "dead point" in motion["problem"]
+    assert not motion["turns"]
+    none = motion_answer(text.replace("[motion]", "").replace('range = ["-180 deg", "180 deg"]', ""), "four-bar")
+    assert list(none) == ["problem"]
