@@ -87,7 +87,7 @@ def new(
         raise CaseError(f"{', '.join(sources)}, --study: they name different things; keep one of them")
     if step is not None:
         from alula.loads.exchange.part import part_case
-        from alula.reports.commands.inspect_part import inspect_file
+        from alula.reports.tools.part import inspect_file
 
         write_new({path: part_case(inspect_file(step, None, unit), path).encode()})
         print(f"Wrote {path}. Correct its lines marked GUESS. Check it with: alula check {path} -o out")
