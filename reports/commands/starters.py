@@ -31,11 +31,11 @@ def schema(
     """Print the JSON Schema of the case file."""
     import json
 
-    from alula.loads.case.case import Case
+    from alula.loads.compose.entry_examples import schema_with_examples
     from alula.loads.plans.plan import StudyPlan
     from alula.loads.text.entries import file_schema
 
-    print(json.dumps(file_schema(StudyPlan if study else Case), indent=2))
+    print(json.dumps(file_schema(StudyPlan) if study else schema_with_examples(), indent=2))
 
 
 @app.command()
