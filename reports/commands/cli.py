@@ -311,9 +311,10 @@ def inspect(
     json: options.JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from alula.reports.commands.inspect_part import inspect_file, tell_inspection
+    from alula.reports.commands.inspect_part import tell_inspection
     from alula.reports.figures.figures import start_renderer
     from alula.reports.page.output import refuse_unusable
+    from alula.reports.tools.part import inspect_file
 
     refuse_unusable(output, "inspect")
     if output is not None:

@@ -31,11 +31,11 @@ def schema(
     """Print the JSON Schema of the case file."""
     import json
 
-    from alula.loads.case.case import Case
+    from alula.loads.compose.entry_examples import schema_with_examples
     from alula.loads.plans.plan import StudyPlan
     from alula.loads.text.entries import file_schema
 
-    print(json.dumps(file_schema(StudyPlan if study else Case), indent=2))
+    print(json.dumps(file_schema(StudyPlan) if study else schema_with_examples(), indent=2))
 
 
 @app.command()
@@ -87,7 +87,7 @@ def new(
         raise CaseError(f"{', '.join(sources)}, --study: they name different things; keep one of them")
     if step is not None:
         from alula.loads.exchange.part import part_case
-        from alula.reports.commands.inspect_part import inspect_file
+        from alula.reports.tools.part import inspect_file
 
         write_new({path: part_case(inspect_file(step, None, unit), path).encode()})
         print(f"Wrote {path}. Correct its lines marked GUESS. Check it with: alula check {path} -o out")

@@ -1,0 +1,43 @@
+/** What the page knows. Modules know the store alone, not each other. */
+
+const listeners = new Map();
+
+export const store = {
+  state: {
+    document: null, // the last event "document"
+    drawn: null, // the last event "drawn"
+    verdict: { linear: null, whole: null, solids: null }, // the last event "verdict" of each stage
+    motion: null,
+    solids: null,
+    notice: null,
+    selected: null, // {kind: "link"|"joint", name} | {kind: "point", link, point} | {kind: "load", path}
+    loadCase: null, // name of the load case whose forces are shown
+    instant: null, // number of the instant of the motion that is shown; null for the case's own pose
+    panel: "verdict", // name of the tab that is open
+  },
+
+  /** Call `listener(value)` after each change of a key; returns a function that ends this. */
+  on(key, listener) {
+    if (!listeners.has(key)) listeners.set(key, new Set());
+    listeners.get(key).add(listener);
+    return () => listeners.get(key).delete(listener);
+  },
+
+  /** Set a key and tell its listeners. */
+  put(key, value) {
+    if (store.state[key] === value) return;
+    store.state[key] = value;
+    for (const listener of listeners.get(key) ?? []) listener(value);
+  },
+};
+
+/** The verdict to show: of the newest revision by hand, the whole one if it is there; null if there is none yet. */
+export function newestVerdict({ linear, whole } = store.state.verdict) {
+  if (!linear || !whole) return whole ?? linear;
+  return whole.revision >= linear.revision ? whole : linear;
+}
+
+/** Whether two selections are the same thing. */
+export function same(a, b) {
+  return JSON.stringify(a) === JSON.stringify(b);
+}
