@@ -11,6 +11,7 @@ from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
 from alula.reports.commands.materials import app as materials
+from alula.reports.commands.open import app as opening
 from alula.reports.commands.size import app as size
 from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
@@ -287,6 +288,7 @@ def synth(
     write("synth", output, partial(as_brief_record, sections), fill, what="\nRecord and drawing", json=json)
 
 
+app.add_typer(opening)
 app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
@@ -309,9 +311,10 @@ def inspect(
     json: options.JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from alula.reports.commands.inspect_part import inspect_file, tell_inspection
+    from alula.reports.commands.inspect_part import tell_inspection
     from alula.reports.figures.figures import start_renderer
     from alula.reports.page.output import refuse_unusable
+    from alula.reports.tools.part import inspect_file
 
     refuse_unusable(output, "inspect")
     if output is not None:
