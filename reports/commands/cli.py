@@ -11,6 +11,7 @@ from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
 from alula.reports.commands.materials import app as materials
+from alula.reports.commands.open import app as opening
 from alula.reports.commands.size import app as size
 from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
@@ -287,6 +288,7 @@ def synth(
     write("synth", output, partial(as_brief_record, sections), fill, what="\nRecord and drawing", json=json)
 
 
+app.add_typer(opening)
 app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
