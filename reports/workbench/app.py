@@ -248,10 +248,9 @@ def _starters() -> list[dict[str, str]]:
 
 @cache
 def _schema() -> str:
-    from alula.loads.case.case import Case
-    from alula.loads.text.entries import file_schema
+    from alula.loads.compose.entry_examples import schema_with_examples
 
-    return json.dumps(file_schema(Case))
+    return json.dumps(schema_with_examples())
 
 
 async def received(request: Request, most: int) -> bytes:

@@ -27,8 +27,8 @@ class Forms {
     this.choice = make("select", { id: unused(), onchange: () => this.show(this.choice.value, null) });
     this.names = make("div", { class: "names", role: "group", "aria-label": "Entries of this table" });
     this.form = make("form", { onsubmit: (event) => event.preventDefault() });
-    this.told = make("p", { class: "wrong", role: "status" });
-    holder.append(make("p", {}, make("label", { for: this.choice.id }, "Show "), this.choice), this.names, this.told, this.form);
+    this.said = make("p", { class: "wrong", role: "status" });
+    holder.append(make("p", {}, make("label", { for: this.choice.id }, "Show "), this.choice), this.names, this.said, this.form);
     this.form.addEventListener("focusin", ({ target }) => this.entered(target));
     store.on("document", (now) => {
       this.tables = now?.tables ?? this.tables;
@@ -92,10 +92,10 @@ class Forms {
     const scrolled = this.holder.scrollTop;
     this.sections();
     this.wrong = problem;
-    this.told.textContent = "";
+    this.said.textContent = "";
     const shown = this.shown();
     this.form.replaceChildren(...shown.flat().filter(Boolean));
-    if (problem && !this.form.querySelector('[aria-invalid="true"], .wrong:not(:empty)')) this.told.textContent = problem;
+    if (problem && !this.form.querySelector('[aria-invalid="true"], .wrong:not(:empty)')) this.said.textContent = problem;
     this.holder.scrollTop = scrolled;
     this.back(kept);
     if (this.seek) this.find(this.seek)?.scrollIntoView({ block: "center" });
@@ -243,12 +243,12 @@ class Forms {
   }
 
   holdsProblem(path) {
-    return path.at(-1) === "further" && this.wrong && this.begins(path.slice(0, -1)) && path.length > 2;
+    return path.at(-1) === "further" ? path.length > 2 && this.begins(path.slice(0, -1)) : this.begins(path);
   }
 
   begins(path) {
     const name = dotted(path);
-    return Boolean(name) && this.wrong.startsWith(name) && !/[\w+-]/.test(this.wrong[name.length] ?? " ");
+    return Boolean(name && this.wrong) && this.wrong.startsWith(name) && !/[\w+-]/.test(this.wrong[name.length] ?? " ");
   }
 
   help(text) {
@@ -454,7 +454,7 @@ class Forms {
       then?.();
     } catch (problem) {
       if (path) this.refuse(path, problem.message);
-      else this.told.textContent = problem.message;
+      else this.said.textContent = problem.message;
     }
   }
 }
