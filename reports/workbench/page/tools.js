@@ -33,13 +33,13 @@ export function mount(element) {
   const always = add(keeping, "label", { class: "choice" });
   const box = add(always, "input", { type: "checkbox" });
   always.append(" save as one goes");
-  box.addEventListener("change", () => keepSaved(box.checked));
+  box.addEventListener("change", () => ask("save", { always: box.checked }));
   loadCases(group(element, "Load case"));
   store.on("document", (now) => {
     undo.disabled = !now.undo;
     redo.disabled = !now.redo;
     save.disabled = now.saved;
-    if (box.checked) keepSaved(true);
+    box.checked = Boolean(now.always);
   });
   hint();
   document.addEventListener("keydown", shortcut);
@@ -57,16 +57,7 @@ function button(parent, label, key, title, act) {
   return one;
 }
 
-const ask = (route) => change(route).catch(() => {}); // refusals are told as notices
-
-let saving = null;
-
-/** Save a second after the last change, unless the file was changed by another program. */
-function keepSaved(on) {
-  clearTimeout(saving);
-  const now = store.state.document;
-  if (on && now && !now.saved && !now.disk) saving = setTimeout(() => ask("save"), 1000);
-}
+const ask = (route, body) => change(route, body).catch(() => {}); // refusals are told as notices
 
 /** Take up a tool; removing and splitting act at once on what is selected. */
 function choose(name) {
