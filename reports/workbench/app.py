@@ -18,9 +18,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.imported.read import LARGEST_FILE
-from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_tables
-from alula.loads.text.entries import file_schema
+from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
 from alula.reports.workbench import out
 from alula.reports.workbench.parts import dropped
@@ -235,7 +234,7 @@ def _starters() -> list[dict[str, str]]:
 
 @cache
 def _schema() -> str:
-    return json.dumps(file_schema(Case))
+    return json.dumps(schema_with_examples())
 
 
 async def _received(request: Request, most: int) -> bytes:

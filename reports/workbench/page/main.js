@@ -1,7 +1,13 @@
 /** Makes the parts of the page and joins them to the store. */
 
 import { store } from "./store.js";
-import { connect } from "./server.js";
+import { change, connect } from "./server.js";
+import * as plane from "./plane.js";
+import * as gestures from "./gestures.js";
+import * as tools from "./tools.js";
+import * as side from "./side.js";
+import * as motion from "./motion.js";
+import { add } from "./svg.js";
 
 const find = (id) => document.getElementById(id);
 const PANELS = ["verdict", "forms", "text", "solids", "out"];
@@ -32,18 +38,37 @@ function tabs() {
 /** The name of the file, what is wrong with it, and what happened. */
 function said() {
   store.on("document", (now) => {
-    const changed = now.saved ? "" : " (not saved)";
-    find("name").textContent = now.name + changed;
-    document.title = `${now.name}${changed} - alula`;
+    const name = (now.name ?? "alula") + (now.saved ? "" : " (not saved)");
+    find("name").textContent = name;
+    document.title = now.name ? `${name} - alula` : name;
     const line = now.problem?.line ? `Line ${now.problem.line}: ` : "";
     find("problem").textContent = now.problem ? line + now.problem.sentence : "";
     find("problem").hidden = !now.problem;
+    asked(now);
   });
   store.on("notice", (notice) => {
     find("notice").textContent = notice?.sentence ?? "";
     find("notice").hidden = !notice?.sentence;
   });
   find("notice").addEventListener("click", () => store.put("notice", null));
+}
+
+const DISK = {
+  changed: ["Another program has changed the file.", ["Take its text over", "reload"], ["Keep mine", "overwrite"]],
+  deleted: ["The file is gone from the disk.", ["Write it anew", "overwrite"]],
+  "read-only": ["The file may not be written: Out has the case as a copy."],
+};
+const DRAFT = ["Changes of last time were not saved.", ["Take them", "draft", { take: true }], ["Let them go", "draft", { take: false }]];
+
+/** What the page has to ask the reader about the file. */
+function asked(now) {
+  const [sentence, ...answers] = now.draft ? DRAFT : DISK[now.disk] ?? [""];
+  const bar = find("asked");
+  bar.hidden = !sentence;
+  if (bar.dataset.shown === sentence) return;
+  bar.dataset.shown = sentence;
+  bar.textContent = `${sentence} `;
+  for (const [label, route, body] of answers) add(bar, "button", { type: "button" }, label).addEventListener("click", () => change(route, body));
 }
 
 /** The load case that is shown: the first one until another is chosen. */
@@ -63,5 +88,9 @@ async function panels() {
 tabs();
 said();
 loadCases();
+gestures.mount(plane.mount(find("plane")));
+tools.mount(find("tools"));
+side.mount(find("side"));
+motion.mount(find("motion"));
 await panels();
 connect();

@@ -90,11 +90,14 @@ function take(name, value) {
     revision = other ? value.revision : Math.max(revision, value.revision);
     if (other) forget();
   }
+  // Told before its joint forces are known: those of the drawing before stand until then.
+  if (name === "drawn" && !value.problem && !Object.keys(value.forces).length) value.forces = store.state.drawn?.forces ?? {};
   store.put(name, value);
 }
 
 /** Another case was opened: nothing that was told of the last one holds. */
 function forget() {
   store.put("verdict", { linear: null, whole: null, solids: null });
-  for (const name of ["drawn", "motion", "solids", "selected", "loadCase", "instant"]) store.put(name, null);
+  for (const name of ["drawn", "motion", "solids", "selected", "loadCase", "instant", "held"]) store.put(name, null);
+  store.put("fitted", false);
 }

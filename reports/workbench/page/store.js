@@ -14,6 +14,13 @@ export const store = {
     loadCase: null, // name of the load case whose forces are shown
     instant: null, // number of the instant of the motion that is shown; null for the case's own pose
     panel: "verdict", // name of the tab that is open
+    view: null, // {scale, left, top}: where the plane is on the screen
+    fitted: false, // whether all of the case was shown once
+    tool: "", // name of the tool that a press in the plane uses
+    held: null, // what is pulled: {points, at, text} | {load, vector, at, text} | {pose, at, text}
+    ends: null, // first end of what a tool makes: {end, at, operations, handle, to}
+    cursor: null, // place that the keyboard moves, for tools
+    paths: false, // whether paths of points are shown
   },
 
   /** Call `listener(value)` after each change of a key; returns a function that ends this. */
