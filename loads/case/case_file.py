@@ -78,7 +78,29 @@ def read_tables(name_or_path: str) -> dict[str, Any]:
     CaseError
         As ``read_text``, and for text that is no TOML.
     """
-    text, where = read_text(name_or_path)
+    return parse_tables(*read_text(name_or_path))
+
+
+def parse_tables(text: str, where: str) -> dict[str, Any]:
+    """Return the tables that the text of a case states, without validating them.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    where : str
+        What messages call the file.
+
+    Returns
+    -------
+    dict of str to object
+        As ``tomllib`` reads them.
+
+    Raises
+    ------
+    CaseError
+        For text that is no TOML.
+    """
     try:
         tables = tomllib.loads(text)
     except RecursionError:
