@@ -241,7 +241,7 @@ function pull({ operations, held }, gesture) {
   edit(operations, gesture).then(
     ({ revision }) => {
       newest = revision;
-      settle(store.state.drawn);
+      settle(store.state.document.problem ? store.state.document : store.state.drawn);
     },
     () => store.state.held === held && store.put("held", null),
   );

@@ -19,7 +19,6 @@ export function mount(element) {
   marks(draw(svg, "defs"));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
-  add(element, "div", { id: "legend" });
   for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "paths"]) {
     store.on(name, later);
   }
@@ -115,7 +114,7 @@ function grid({ width, height }) {
   for (const y of lines((view.top - height) / view.scale, view.top / view.scale)) {
     const at = toScreen([0, y])[1];
     groups.grid.put(`y${y}`, "line", { x1: 0, x2: width, y1: at, y2: at });
-    if (at > 50 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
+    if (at > 16 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
   }
   groups.grid.put("unit", "text", { x: width - 6, y: height - 5, "text-anchor": "end" }, "x, y [mm]");
 }
