@@ -1,11 +1,13 @@
 """Routes of the page to work in, and who may use them: pages that this server itself gave to this machine's browser."""
 
+import asyncio
 import json
 import secrets
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, Literal
+from urllib.parse import quote
 
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
@@ -15,19 +17,39 @@ from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.imported.read import LARGEST_FILE
 from alula.loads.case.case_file import built_in_cases, read_tables
+from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
+from alula.reports.workbench import out
+from alula.reports.workbench.parts import dropped
 from alula.reports.workbench.session import ConflictError, Session
 
 LARGEST_REQUEST = 8 << 20
 """Bytes: a case of 1 MiB, each of whose characters JSON may write with six."""
-LARGEST_DROP = 64 << 20
-"""Bytes of a file that is dropped in."""
 KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 """Files that a page consists of, by how their names end."""
 ELSEWHERE = {"viewer.js": "alula.reports.turnable", "report.css": "alula.reports.templates"}
 """Files of the page that stand in other packages."""
+REPORT = "sandbox allow-scripts allow-downloads; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+"""Policy of a report beside its own by hashes: it is of no origin, so that nothing in it can ask this server."""
 Answer = Callable[[Request], Awaitable[Response]]
+Entries = Mapping[str, tuple[type, Any]]
+"""Entries of what a page posts, with their types and what stands for a missing one; ``...`` where it must be there."""
+_ON: Entries = {"revision": (int, ...), "gesture": (str, "")}
+ACTIONS: Mapping[str, tuple[Callable[..., Awaitable[None]], Entries]] = {
+    "edit": (Session.edit, {"operations": (list, ...), **_ON}),
+    "text": (Session.write, {"text": (str, ...), **_ON}),
+    "undo": (Session.undo, {"revision": (int, None)}),
+    "redo": (Session.redo, {"revision": (int, None)}),
+    "save": (Session.save, {"always": (bool, None)}),
+    "reload": (Session.reload, {}),
+    "overwrite": (Session.overwrite, {}),
+    "draft": (Session.take_draft, {"take": (bool, ...)}),
+    "open": (Session.open, {"path": (str, ""), "starter": (str, ""), "as_": (str, "")}),
+    "solids": (Session.check_solids, {"do": (str, ...), "fidelity": (str, "solid")}),
+}
+"""What a page may post, by the last part of its address."""
 
 
 class Guard:
@@ -124,9 +146,6 @@ def application(session: Session) -> Starlette:
     Starlette
     """
 
-    def done() -> Response:
-        return JSONResponse({"revision": session.document.revision if session.document else 0})
-
     async def index(request: Request) -> Response:
         return _page("index.html")
 
@@ -136,7 +155,7 @@ def application(session: Session) -> Starlette:
     async def events(request: Request) -> Response:
         hearing = session.listen()
 
-        async def stream() -> Any:
+        async def stream() -> AsyncIterator[str]:
             try:
                 async for message in hearing.messages():
                     yield message
@@ -145,83 +164,51 @@ def application(session: Session) -> Starlette:
 
         return StreamingResponse(stream(), media_type="text/event-stream")
 
-    async def edit(request: Request) -> Response:
-        asked = await _asked(request, revision=int, operations=list)
-        if not all(isinstance(one, dict) for one in asked["operations"]):
-            raise CaseError("operations: each must be an object with 'op'")
-        session.edit(asked["revision"], asked["operations"], _text(asked, "gesture"))
-        return done()
-
-    async def text(request: Request) -> Response:
-        asked = await _asked(request, revision=int, text=str)
-        session.write(asked["revision"], asked["text"], _text(asked, "gesture"))
-        return done()
-
-    async def undo(request: Request) -> Response:
-        session.undo()
-        return done()
-
-    async def redo(request: Request) -> Response:
-        session.redo()
-        return done()
-
-    async def save(request: Request) -> Response:
-        asked = await _asked(request)
-        await session.save(asked["always"] if isinstance(asked.get("always"), bool) else None)
-        return done()
-
-    async def reload(request: Request) -> Response:
-        await session.reload()
-        return done()
-
-    async def overwrite(request: Request) -> Response:
-        await session.overwrite()
-        return done()
-
-    async def draft(request: Request) -> Response:
-        session.take_draft((await _asked(request, take=bool))["take"])
-        return done()
-
-    async def opened(request: Request) -> Response:
-        asked = await _asked(request)
-        await session.open(_text(asked, "path"))
-        return done()
-
     async def starters(request: Request) -> Response:
         found = sorted(file.name for file in session.folder.glob("*.toml") if file.is_file())
         return JSONResponse({"starters": _starters(), "files": found, "folder": str(session.folder)})
 
-    async def solids(request: Request) -> Response:
-        asked = await _asked(request, do=str)
-        session.check_solids(asked["do"] == "start", _text(asked, "fidelity") or "solid")
-        return done()
+    async def schema(request: Request) -> Response:
+        return Response(_schema(), media_type="application/json")
 
     async def model(request: Request) -> Response:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
-    async def schema(request: Request) -> Response:
-        return Response(_schema(), media_type="application/json")
+    async def report(request: Request) -> Response:
+        fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
+        data = await asyncio.to_thread(out.report, session.text, str(session.path), session.folder, fidelity)
+        return Response(data, media_type="text/html", headers={"Content-Security-Policy": REPORT})
+
+    async def case(request: Request) -> Response:
+        return _file(session.text.encode(), session.path.name)
+
+    async def step(request: Request) -> Response:
+        link = request.path_params["link"]
+        return _file(await asyncio.to_thread(out.step, session.text, link, session.folder), f"{link}.step")
+
+    async def drop(request: Request) -> Response:
+        data = await _received(request, LARGEST_FILE)
+        return JSONResponse(await asyncio.to_thread(dropped, request.path_params["name"], data, session.folder))
+
+    async def act(request: Request) -> Response:
+        if request.path_params["action"] not in ACTIONS:
+            raise HTTPException(404)
+        action, entries = ACTIONS[request.path_params["action"]]
+        await action(session, **await _asked(request, entries))
+        return JSONResponse({"revision": session.document.revision if session.document else 0})
 
     get: Mapping[str, Answer] = {
         "/": index,
         "/page/{file}": page,
         "/events": events,
         "/starters": starters,
-        "/model/{link}": model,
         "/schema": schema,
+        "/model/{link}": model,
+        "/out/report": report,
+        "/out/case": case,
+        "/out/step/{link}": step,
     }
-    post: Mapping[str, Answer] = {
-        "/edit": edit,
-        "/text": text,
-        "/undo": undo,
-        "/redo": redo,
-        "/save": save,
-        "/reload": reload,
-        "/overwrite": overwrite,
-        "/draft": draft,
-        "/open": opened,
-        "/solids": solids,
-    }
+    post: Mapping[str, Answer] = {"/drop/{name}": drop, "/{action}": act}
     return Starlette(
         routes=[
             *(Route(path, answer, methods=["GET"]) for path, answer in get.items()),
@@ -248,63 +235,47 @@ def _starters() -> list[dict[str, str]]:
 
 @cache
 def _schema() -> str:
-    from alula.loads.compose.entry_examples import schema_with_examples
-
     return json.dumps(schema_with_examples())
 
 
-async def received(request: Request, most: int) -> bytes:
-    """Return the body of a request.
-
-    Parameters
-    ----------
-    request : Request
-    most : int
-        Bytes that are taken.
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    CaseError
-        For a larger one, of which no more is read.
-    """
+async def _received(request: Request, most: int) -> bytes:
+    """Return the body of a request, of which no more is read than the limit [bytes]."""
     body = bytearray()
     async for chunk in request.stream():
         body += chunk
         if len(body) > most:
-            raise CaseError(f"what was sent is larger than {most >> 20} MiB, the limit; send less")
+            raise CaseError(f"what was sent is larger than {most / 1e6:.0f} MB, the limit; send less")
     return bytes(body)
 
 
-async def _asked(request: Request, **kinds: type) -> dict[str, Any]:
-    """Return what a page posted: a JSON object, which has the entries named, of these types."""
+async def _asked(request: Request, entries: Entries) -> dict[str, Any]:
+    """Return these entries of the JSON object that a page posted; others are left out."""
     if request.headers.get("content-type", "").partition(";")[0] != "application/json":
         raise CaseError("what was sent is not marked as application/json")
     try:
-        found = json.loads(await received(request, LARGEST_REQUEST) or b"{}", parse_constant=_no_number)
+        found = json.loads(await _received(request, LARGEST_REQUEST) or b"{}", parse_constant=_no_number)
         json.dumps(found, ensure_ascii=False).encode()  # half of a surrogate pair is no text
     except (ValueError, RecursionError):
         raise CaseError("what was sent is no JSON") from None
     if not isinstance(found, dict):
         raise CaseError("what was sent is no JSON object")
-    for name, kind in kinds.items():
-        if type(found.get(name)) is not kind:
-            raise CaseError(f"{name}: it is missing, or of another type than {kind.__name__}")
-    return found
+    asked = {}
+    for name, (kind, default) in entries.items():
+        value = found.get(name.rstrip("_"), default)
+        if type(value) is not kind and (value is ... or value is not default):
+            raise CaseError(f"{name.rstrip('_')}: it is missing, or no {kind.__name__}")
+        asked[name] = value
+    return asked
 
 
 def _no_number(text: str) -> None:
     raise ValueError(text)
 
 
-def _text(asked: Mapping[str, Any], name: str) -> str:
-    found = asked.get(name, "")
-    if not isinstance(found, str):
-        raise CaseError(f"{name}: it must be text")
-    return found
+def _file(data: bytes, name: str) -> Response:
+    """Return a file to be kept, whose name is told in a way that holds any text."""
+    headers = {"Content-Disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
+    return Response(data, media_type="application/octet-stream", headers=headers)
 
 
 def _sentence(status: int, sentence: str) -> Response:

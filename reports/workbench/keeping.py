@@ -7,15 +7,16 @@ import json
 import os
 import secrets
 import shutil
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from alula.geometry.base.cache_folder import cache_folder
-from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
 from alula.loads.text.explain import printable
-from alula.loads.text.file_text import LARGEST_FILE, file_text
+from alula.loads.text.file_text import file_text
+
+_DRAFT = "draft.json"
 
 
 class Stamp(NamedTuple):
@@ -94,27 +95,21 @@ def plain_name(name: str, suffix: str) -> str:
     return name
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a text into a file, all of it or nothing; a link is followed, and owner and permissions stay.
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file, all of it or nothing; a link is followed, and owner and permissions stay.
 
     Parameters
     ----------
     path : Path
         Missing, or a file.
-    text : str
-        Its line ends are kept.
+    data : bytes
 
     Raises
     ------
-    CaseError
-        For a text that would not be read again.
     CannotRunError
         Where the disk refuses; the file is as it was then.
     """
-    shown, data = printable(path.name), text.encode()
-    if not text.strip() or len(data) > LARGEST_FILE:
-        raise CaseError(f"'{shown}': the text is empty or larger than 1 MiB, the limit; it was not saved")
-    target = Path(os.path.realpath(path))
+    shown, target = printable(path.name), Path(os.path.realpath(path))
     made = target.with_name(f".{target.name[:80]}.{secrets.token_hex(4)}")
     try:
         before = stamp_of(target)
@@ -150,21 +145,6 @@ def _flush(folder: Path) -> None:
             os.close(descriptor)
 
 
-@dataclass(frozen=True)
-class Draft:
-    """A text that was not saved.
-
-    Attributes
-    ----------
-    text : str
-    base : str
-        SHA-256 of the text on the disk that it was made from.
-    """
-
-    text: str
-    base: str
-
-
 def digest(text: str) -> str:
     """Return the SHA-256 of a text.
 
@@ -195,7 +175,6 @@ class Drafts:
 
     def __init__(self, path: Path) -> None:
         self.alone = True
-        self._stem = path.stem
         self._folder: Path | None = None
         self._lock: int | None = None
         home = cache_folder("drafts")
@@ -207,21 +186,19 @@ class Drafts:
                 self.alone = self._lock is not None or importlib.util.find_spec("fcntl") is None
                 self._folder = folder if self.alone else None
 
-    @property
-    def _file(self) -> Path | None:
-        return None if self._folder is None else self._folder / "draft.json"
-
-    def kept(self) -> Draft | None:
+    def kept(self) -> tuple[str | None, str]:
         """Return what an earlier server kept.
 
         Returns
         -------
-        Draft or None
+        tuple of str
+            The text, None where there is none, and the digest of the text on the disk that it was made from.
         """
         try:
-            return None if self._file is None else Draft(**json.loads(self._file.read_text(encoding="utf-8")))
-        except (OSError, ValueError, TypeError):
-            return None
+            text, base = json.loads((self._folder / _DRAFT).read_text(encoding="utf-8")) if self._folder else (None, "")
+        except (OSError, ValueError):
+            return None, ""
+        return text, base
 
     def keep(self, text: str, base: str) -> None:
         """Keep a text.
@@ -231,45 +208,42 @@ class Drafts:
         text : str
         base : str
             The text on the disk that it was made from.
-
-        Raises
-        ------
-        CaseError, CannotRunError
-            As ``write_whole``.
         """
-        if self._file is not None:
-            write_whole(self._file, json.dumps(asdict(Draft(text, digest(base)))))
+        if self._folder is not None:
+            write_whole(self._folder / _DRAFT, json.dumps((text, digest(base))).encode())
 
     def drop(self) -> None:
         """Keep nothing any more."""
-        if self._file is not None:
+        if self._folder is not None:
             with contextlib.suppress(OSError):
-                self._file.unlink(missing_ok=True)
+                (self._folder / _DRAFT).unlink(missing_ok=True)
 
-    def set_aside(self, draft: Draft) -> Path | None:
-        """Give a draft that is not taken a file of its own, so that the next one does not replace it.
+    def set_aside(self, text: str) -> Path | None:
+        """Give a draft that is not taken a file of its own, which no later one replaces.
 
         Parameters
         ----------
-        draft : Draft
+        text : str
 
         Returns
         -------
         Path or None
-            Where its text stands; None where there is no place.
+            Where it stands; None where there is no place.
         """
         if self._folder is None:
             return None
-        aside = self._folder / f"{self._stem}-{digest(draft.text)[:8]}.toml"
-        write_whole(aside, draft.text)
-        self.drop()
-        return aside
+        aside = self._folder / f"{digest(text)[:8]}.toml"
+        with contextlib.suppress(AlulaError):
+            write_whole(aside, text.encode())
+            self.drop()
+            return aside
+        return None
 
     def close(self) -> None:
-        """Let another server have them."""
+        """Let another server have the place."""
         if self._folder is not None:
             with contextlib.suppress(OSError):
                 self._folder.rmdir()  # unless something is kept
         if self._lock is not None:
             os.close(self._lock)
-            self._lock = None
+        self._folder = self._lock = None

@@ -15,21 +15,6 @@ from alula.reports.workbench.app import Guard, application
 from alula.reports.workbench.session import Session
 
 
-class _Server(uvicorn.Server):
-    """Ends the streams before it waits for open connections, and says when it listens."""
-
-    session: Session
-    ready: Callable[[], None]
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        await super().startup(sockets)
-        self.ready()
-
-    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        await self.session.close()
-        await super().shutdown(sockets)
-
-
 def listening(port: int) -> socket.socket:
     """Return a socket that this machine alone can reach.
 
@@ -83,20 +68,34 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
         asyncio.run(_serve(case, folder, bound, ready))
 
 
+class _Server(uvicorn.Server):
+    """Ends streams and workers before it waits for open connections, and says when it answers."""
+
+    session: Session
+    ready: Callable[[], None]
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self.ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        await self.session.close()
+        await super().shutdown(sockets)
+
+
 async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: Callable[[str], None]) -> None:
     session = Session(folder)
-    if case is not None:
-        try:
+    try:
+        if case is not None:
             await session.open(case.name)
-        except BaseException:
-            await session.close()
-            raise
+    except BaseException:
+        await session.close()
+        raise
     port, token = bound.getsockname()[1], secrets.token_urlsafe(24)
-    guard = Guard(application(session), token, port)
     config = uvicorn.Config(
-        guard, http="h11", ws="none", loop="asyncio", lifespan="off", log_config=None, log_level="critical",
-        access_log=False, server_header=False, date_header=False, proxy_headers=False, limit_concurrency=64,
-        timeout_graceful_shutdown=1,
+        Guard(application(session), token, port), http="h11", ws="none", loop="asyncio", lifespan="off",
+        log_config=None, log_level="critical", access_log=False, server_header=False, proxy_headers=False,
+        limit_concurrency=64, timeout_graceful_shutdown=1,
     )  # fmt: skip
     server = _Server(config)
     server.session, server.ready = session, lambda: ready(f"http://127.0.0.1:{port}/{token}/")

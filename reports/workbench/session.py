@@ -1,49 +1,50 @@
-"""One open case: its document, who answers it, who is told, and the file that it is saved in."""
+"""One open case: its document, who answers it, which pages are told, and the file that it is saved in."""
 
 import asyncio
-import contextlib
 import json
 from collections.abc import AsyncIterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case_file import changed_case
+from alula.loads.compose.starting import case_files, write_new
 from alula.loads.text.explain import printable
-from alula.reports.workbench.keeping import Draft, Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
+from alula.loads.text.file_text import LARGEST_FILE
+from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
 from alula.reports.workbench.stand_in import Document, Solids, Workers
 
 PERIOD = 1.0
 """Seconds from one look at the disk to the next, and from one draft to the next."""
 QUIET = 15.0
-"""Seconds after which a page that hears nothing is sent a comment: where it is gone, its stream ends."""
+"""Seconds after which a page that hears nothing is sent a comment, which tells whether it is still there."""
 MOST_PAGES = 16
-"""Pages that hear of changes at once; a browser itself keeps to six connections."""
-OPENED = "no case is open; open one first"
+"""Pages that hear of changes at once: each holds a connection."""
 
 
 class ConflictError(AlulaError):
-    """What is asked does not fit how the case stands now; nothing was changed."""
+    """What a page asks does not fit how the case stands now; nothing was changed."""
 
 
 class Page:
-    """What a page has not been told yet: of each kind of event the newest, so that a slow one never piles up."""
+    """What a page has not been told yet: of each kind of event the newest, so that nothing piles up for a slow one."""
 
     def __init__(self) -> None:
         self._waiting: dict[str, str] = {}
         self._any = asyncio.Event()
         self._closed = False
 
-    def put(self, key: str, message: str) -> None:
-        """Have a message sent, in place of an earlier one of its kind.
+    def put(self, kind: str, message: str) -> None:
+        """Have a message sent, in place of one of its kind that waits.
 
         Parameters
         ----------
-        key : str
-            The kind.
-        message : str
+        kind, message : str
         """
-        self._waiting.pop(key, None)
-        self._waiting[key] = message
+        self._waiting.pop(kind, None)
+        self._waiting[kind] = message
         self._any.set()
 
     def close(self) -> None:
@@ -52,14 +53,8 @@ class Page:
         self._any.set()
 
     async def messages(self) -> AsyncIterator[str]:
-        """Send what waits, and wait for more.
-
-        Yields
-        ------
-        str
-            As a stream of server-sent events takes it.
-        """
-        yield f"retry: {int(1000 * PERIOD)}\n\n"
+        """Yield what waits and what comes, as a stream of server-sent events takes it."""
+        yield f"retry: {1000 * PERIOD:.0f}\n\n"
         while not self._closed:
             self._any.clear()
             while self._waiting:
@@ -71,70 +66,61 @@ class Page:
 
 
 class Session:
-    """An open case, or none yet. All of it runs in the event loop that it is made in; files are written beside it.
+    """An open case, or none yet, in the event loop in which it is made.
+
+    What a page asks is an asynchronous method, which raises a ``ConflictError``, ``CaseError`` or ``CannotRunError``
+    with one sentence and has changed nothing then.
 
     Parameters
     ----------
     folder : Path
-        In which cases are opened, and whose files they name.
+        In which cases are opened, and where files stand that they name.
 
     Attributes
     ----------
     folder : Path
-    path : Path or None
+    path : Path
         The file of the open case.
     document : Document or None
-    disk : str or None
-        ``changed``, ``deleted`` or ``read-only``, where the file is so.
-    always : bool
-        Whether changes are saved as one goes.
+        None before a case is open.
+    solids : Solids
     """
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.path: Path | None = None
+        self.folder, self.path = folder, folder
         self.document: Document | None = None
-        self.disk: str | None = None
-        self.always = False
-        self._stored = ""  # the text of the file as it was last read or written
-        self._drafted = ""
-        self._stamp: Stamp | None = None
+        self._stored = ""  # the text that the file held when it was last read or written
+        self._stamp: Stamp | None = None  # of the file then
+        self._disk: str | None = None
+        self._always = False
         self._problem: dict[str, Any] | None = None
-        self._draft: Draft | None = None
+        self._pose: tuple[str, Pose | None] = "", None
         self._drafts: Drafts | None = None
+        self._draft: str | None = None  # what an earlier server kept, until it is taken or not
+        self._drafted = ""
         self._pages: set[Page] = set()
         self._last: dict[str, str] = {}
-        self._told = ""
+        self._notice = ""
         self._files = asyncio.Lock()
-        self._workers = Workers(self.tell, folder)
-        self.solids = Solids(self.tell, folder)
+        self._workers, self.solids = Workers(self.tell, folder), Solids(self.tell, folder)
         self._watch = asyncio.create_task(self._watched())
-
-    @property
-    def saved(self) -> bool:
-        """Whether the file holds the text that is shown."""
-        return self.document is None or (self.document.text == self._stored and self.disk != "deleted")
 
     # What pages are told.
 
     def listen(self) -> Page:
-        """Return a page that hears of all that changes, and first of how everything stands.
+        """Return a page that hears how everything stands, and of all that changes from now on.
 
         Returns
         -------
         Page
-
-        Raises
-        ------
-        ConflictError
-            For one page too many.
         """
         if len(self._pages) >= MOST_PAGES:
             raise ConflictError(f"{MOST_PAGES} pages show this workbench already; close one of them")
         page = Page()
-        for key, message in {"document": self._message("document", self._state()), **self._last}.items():
-            page.put(key, message)
         self._pages.add(page)
+        self._tell_document()
+        for kind, message in self._last.items():
+            page.put(kind, message)
         return page
 
     def leave(self, page: Page) -> None:
@@ -147,12 +133,11 @@ class Session:
         self._pages.discard(page)
 
     def tell(self, name: str, data: dict[str, Any]) -> None:
-        """Tell all pages what a worker found.
+        """Tell all pages of an event; a ``problem`` becomes part of the document's.
 
         Parameters
         ----------
         name : str
-            Of the event; ``problem`` becomes part of the document's.
         data : dict
             With the ``revision`` that it is about.
         """
@@ -161,351 +146,263 @@ class Session:
             if newest:
                 self._find(str(data["sentence"]))
             return
-        if name == "drawn" and newest and self._problem is not None:
+        if name == "drawn" and newest and self._problem is not None and not data.get("problem"):
             self._problem = None
             self._tell_document()
-        key = f"{name} {data.get('stage', '')}"
-        message = self._message(name, data)
-        if name != "notice":
-            self._last[key] = message
+        kind = f"{name} {data['sentence'] if name == 'notice' else data.get('stage', '')}"
+        message = f"event: {name}\ndata: {json.dumps(data, ensure_ascii=False, allow_nan=False)}\n\n"
+        if name not in ("notice", "document"):
+            self._last[kind] = message
         for page in self._pages:
-            page.put(key, message)
+            page.put(kind, message)
 
-    def notice(self, sentence: str) -> None:
-        """Tell all pages a sentence, unless it is the one that they were told last.
-
-        Parameters
-        ----------
-        sentence : str
-        """
-        if sentence != self._told:
-            self._told = sentence
+    def _say(self, sentence: str) -> None:
+        """Tell a sentence, unless it is the one that was told last."""
+        if sentence != self._notice:
+            self._notice = sentence
             self.tell("notice", {"sentence": sentence})
 
-    @staticmethod
-    def _message(name: str, data: Mapping[str, Any]) -> str:
-        return f"event: {name}\ndata: {json.dumps(data, ensure_ascii=False, allow_nan=False)}\n\n"
-
     def _find(self, sentence: str) -> None:
-        assert self.document is not None
-        self._problem = {"sentence": sentence, "line": self.document.line_of(sentence)}
+        self._problem = {"sentence": sentence, "line": self._open().line_of(sentence)}
         self._tell_document()
 
-    def _state(self) -> dict[str, Any]:
-        document = self.document
-        return {
+    def _tell_document(self) -> None:
+        document, open_ = self.document, self.document is not None
+        state = {
             "revision": document.revision if document else 0,
             "text": document.text if document else "",
-            "name": self.path.name if self.path else None,
-            "path": str(self.path) if self.path else None,
+            "name": self.path.name if open_ else None,
+            "path": str(self.path) if open_ else None,
             "saved": self.saved,
+            "always": self._always,
             "undo": bool(document and document.can_undo),
             "redo": bool(document and document.can_redo),
             "problem": self._problem,
-            "disk": self.disk,
+            "disk": self._disk,
             "draft": self._draft is not None,
-            "always": self.always,
         }
-
-    def _tell_document(self) -> None:
-        for page in self._pages:
-            page.put("document", self._message("document", self._state()))
+        self.tell("document", state)
 
     # What changes the document.
 
-    def edit(self, revision: int, operations: Sequence[Mapping[str, Any]], gesture: str) -> None:
-        """Change the case by operations.
-
-        Parameters
-        ----------
-        revision : int
-            The revision that they were made on.
-        operations : sequence of mapping
-        gesture : str
-            Edits that follow one another with the same one are undone together.
-
-        Raises
-        ------
-        ConflictError
-            Where the case has changed since.
-        CaseError
-            For an operation that cannot be.
-        """
-        document = self._at(revision)
-        document.apply(operations, None, gesture)
+    async def edit(self, revision: int, operations: Sequence[Mapping[str, Any]], gesture: str) -> None:
+        """Change the case by operations, which were made on a revision and are undone with others of their gesture."""
+        text = self._open(revision).text
+        pose = await asyncio.to_thread(self._posed, text)
+        self._open(revision).apply(operations, pose, gesture)
         self._changed()
 
-    def write(self, revision: int, text: str, gesture: str) -> None:
-        """Change the text of the case.
-
-        Parameters
-        ----------
-        revision : int
-        text : str
-        gesture : str
-            As for ``edit``.
-
-        Raises
-        ------
-        ConflictError
-            Where the case has changed since.
-        """
-        self._at(revision).replace(text, gesture)
+    async def write(self, revision: int, text: str, gesture: str) -> None:
+        """Put another text in place of the one of a revision."""
+        self._open(revision).replace(text, gesture)
         self._changed()
 
-    def undo(self) -> None:
+    async def undo(self, revision: int | None) -> None:
         """Take back the last change."""
-        self._document().undo()
+        self._open(revision).undo()
         self._changed()
 
-    def redo(self) -> None:
+    async def redo(self, revision: int | None) -> None:
         """Make the change anew that was taken back last."""
-        self._document().redo()
+        self._open(revision).redo()
         self._changed()
 
-    def _document(self) -> Document:
-        if self.document is None:
-            raise ConflictError(OPENED)
-        return self.document
+    async def take_draft(self, take: bool) -> None:
+        """Take what an earlier server kept, or let it go."""
+        document, draft = self._open(), self._draft
+        if draft is None:
+            raise ConflictError("no unsaved changes of this case are kept")
+        self._draft = None
+        if take:
+            document.replace(draft)
+        elif self._drafts is not None:
+            self._drafts.drop()
+        self._changed()
 
-    def _at(self, revision: int) -> Document:
-        document = self._document()
-        if revision != document.revision:
-            raise ConflictError("the case has changed meanwhile, on another page or on the disk; look, and do it again")
-        return document
-
-    def _changed(self) -> None:
-        """Go on from a change."""
-        if self._draft is not None:  # the one who was asked has gone on without it
-            self._set_aside(self._draft, "was not taken")
-            self._draft = None
-        self._answer()
-
-    def _answer(self) -> None:
-        """Tell how the document stands, and have it answered."""
-        document = self._document()
-        try:
-            document.tables()
-        except CaseError as error:
-            self._find(str(error))
-            return
-        self._tell_document()
-        self._workers.ask(document.revision, document.text, str(self.path))
-
-    def check_solids(self, start: bool, fidelity: str) -> None:
-        """Start or stop the check by solids.
-
-        Parameters
-        ----------
-        start : bool
-        fidelity : str
-            As for ``alula check``.
-        """
-        document = self._document()
-        if start:
+    async def check_solids(self, do: str, fidelity: str) -> None:
+        """Start or stop the check by solids."""
+        document = self._open()
+        if do == "start":
             self.solids.start(document.revision, document.text, str(self.path), fidelity)
         else:
             self.solids.stop()
 
+    @property
+    def text(self) -> str:
+        """Of the open case, without a byte order mark."""
+        return self._open().text.removeprefix("\ufeff")
+
+    def _open(self, revision: int | None = None) -> Document:
+        """Return the document, which has to be the one that a page knows."""
+        if self.document is None:
+            raise ConflictError("no case is open; open one first")
+        if revision is not None and revision != self.document.revision:
+            raise ConflictError("the case has changed meanwhile, on another page or on the disk; look, and do it again")
+        return self.document
+
+    def _posed(self, text: str) -> Pose | None:
+        """Return the pose of a text; where it has none, the last one, which pages still show."""
+        if self._pose[0] != text:
+            pose = self._pose[1]
+            with suppress(AlulaError):
+                tables = Document(text).tables()
+                pose = changed_case(tables, (), str(self.path), str(self.folder)).solve_pose()
+            self._pose = text, pose
+        return self._pose[1]
+
+    def _changed(self) -> None:
+        """Tell how the document stands after a change, and have it answered."""
+        if self._draft is not None:
+            draft, self._draft = self._draft, None
+            self._set_aside(draft, "was not taken")
+        document = self._open()
+        try:
+            document.tables()
+        except CaseError as error:
+            self._find(str(error))
+        else:
+            self._tell_document()
+            self._workers.ask(document.revision, document.text, str(self.path))
+
     # The file.
 
-    async def open(self, name: str) -> None:
-        """Open a case of the folder.
+    @property
+    def saved(self) -> bool:
+        """Whether the file holds the text that is shown."""
+        return self.document is None or (
+            self.document.text == self._stored and self._disk not in ("changed", "deleted")
+        )
 
-        Parameters
-        ----------
-        name : str
-            Of its file.
-
-        Raises
-        ------
-        ConflictError
-            Where changes of the open case are not saved.
-        CaseError
-            For a file that cannot be read.
-        """
+    async def open(self, path: str, starter: str = "", as_: str = "") -> None:
+        """Open a case of the folder, or a built-in one that is copied there first."""
         async with self._files:
             if not self.saved:
                 raise ConflictError("changes of the open case are not saved; save it first")
-            path = self.folder / plain_name(name, ".toml")
-            stamp, text, before = stamp_of(path), case_text(path), self.document
+            file = self.folder / plain_name(as_ if starter else path, ".toml")
+            if starter:
+                write_new(case_files(starter, file))
+            stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
             if self._drafts is not None:
                 self._drafts.close()
-            self.path, self.document, self._drafts = path, Document(text), None
-            if before is not None:
-                self.document.revision = before.revision + 1  # answers about the case before are not taken for its
-            self.always, self._problem, self._draft, self._last = False, None, None, {}
+            self.path, self.document, self._drafts = file, Document(text), None
+            self.document.revision = revision  # answers about the case before are not taken for its own
+            self._always, self._problem, self._draft, self._last, self._pose = False, None, None, {}, ("", None)
             self._stand(text, stamp)
-            self._drafts = Drafts(path)
+            self._drafts = Drafts(file)
             if not self._drafts.alone:
-                self.notice("this case is open in another alula as well; what is not saved here is not kept")
-            kept = self._drafts.kept()
-            if kept is not None and kept.base != digest(text):
-                self._set_aside(kept, "belongs to another text than the file has now")
-            elif kept is not None and kept.text != text:
-                self._draft = kept
-            self._answer()
-
-    def take_draft(self, take: bool) -> None:
-        """Take the changes that an earlier server kept, or let them go.
-
-        Parameters
-        ----------
-        take : bool
-
-        Raises
-        ------
-        ConflictError
-            Where there are none.
-        """
-        document, draft = self._document(), self._draft
-        if draft is None or self._drafts is None:
-            raise ConflictError("no unsaved changes are kept of this case")
-        self._draft = None
-        if take:
-            document.replace(draft.text)
+                self._say("this case is open in another alula as well; what is not saved here is not kept")
+            kept, base = self._drafts.kept()
+            if kept not in (None, text) and base != digest(text):
+                self._set_aside(kept or "", "was made from another text than the file has now")
+                kept = None
             self._changed()
-        else:
-            self._drafts.drop()
+            self._draft = None if kept == text else kept
             self._tell_document()
 
     async def save(self, always: bool | None = None) -> None:
-        """Write the text into the file.
-
-        Parameters
-        ----------
-        always : bool, optional
-            Whether to do so from now on whenever it changes; as it was unless given.
-
-        Raises
-        ------
-        ConflictError
-            Where another program has changed the file.
-        CaseError, CannotRunError
-            As ``write_whole``.
-        """
+        """Write the text into the file, from now on by itself if ``always`` says so."""
         async with self._files:
-            self._document()
             self._look()
-            if self.disk == "changed":
+            if self._disk == "changed":
                 raise ConflictError("another program has changed the file; take its text over, or overwrite it")
-            self.always = self.always if always is None else always
             await self._save()
+            self._always = self._always if always is None else always
+            self._tell_document()
 
     async def overwrite(self) -> None:
-        """Write the text into the file, whatever stands there.
-
-        Raises
-        ------
-        CaseError, CannotRunError
-            As ``write_whole``.
-        """
+        """Write the text into the file, whatever stands there."""
         async with self._files:
-            self._document()
             await self._save()
 
     async def reload(self) -> None:
-        """Take the text of the file over; what was here can be had again by undo.
-
-        Raises
-        ------
-        CaseError
-            As ``case_text``.
-        """
+        """Take the text of the file over; what was here comes back by undo."""
         async with self._files:
-            document, path = self._document(), self._file()
-            stamp, text = stamp_of(path), case_text(path)
+            document, stamp, text = self._open(), stamp_of(self.path), case_text(self.path)
             if text != document.text:
                 document.replace(text)
             self._stand(text, stamp)
             self._changed()
 
-    def _file(self) -> Path:
-        assert self.path is not None
-        return self.path
-
     async def _save(self) -> None:
-        text, path = self._document().text, self._file()
-        await asyncio.to_thread(write_whole, path, text)
-        self._stand(text, stamp_of(path))
+        text = self._open().text
+        data = text.encode()
+        if not text.strip() or len(data) > LARGEST_FILE:
+            raise CaseError(
+                "the text is empty or larger than 1 MiB, and no case would be read from it; it was not saved"
+            )
+        await asyncio.to_thread(write_whole, self.path, data)
+        self._stand(text, stamp_of(self.path))
         self._tell_document()
 
     def _stand(self, text: str, stamp: Stamp | None) -> None:
-        """Take a text for what the file holds."""
-        self._stored, self._drafted, self._stamp = text, "", stamp
-        self.disk = "read-only" if stamp is not None and not stamp.writable else None
-        self._told = ""
-        if self._drafts is not None and self._draft is None and self.saved:
+        """Take a text for the one that the file holds."""
+        self._stored, self._stamp, self._drafted, self._notice = text, stamp, "", ""
+        self._disk = "read-only" if stamp is not None and not stamp.writable else None
+        if self.saved and self._drafts is not None and self._draft is None:
             self._drafts.drop()
 
     def _look(self) -> None:
-        """See whether another program has changed the file; without changes here its text is taken over."""
-        document, path, stamp = self._document(), self._file(), stamp_of(self._file())
-        if stamp == self._stamp and (stamp is not None or self.disk == "deleted"):
+        """See what another program has done to the file: where nothing is unsaved here, its text is taken over."""
+        document, stamp, before = self._open(), stamp_of(self.path), self._disk
+        if stamp == self._stamp:
             return
-        was_saved, before = document.text == self._stored, self.disk
-        self._stamp, self.disk = stamp, "changed"
+        self._stamp, self._disk = stamp, "changed"
         if stamp is None:
-            self.disk = "deleted"
-            self.notice(f"'{printable(path.name)}' is gone; save to write it anew")
+            self._disk = "deleted"
+            self._say(f"'{printable(self.path.name)}' is gone; save to write it anew")
         else:
             try:
-                text = case_text(path)
+                text = case_text(self.path)
             except CaseError as error:
-                self.notice(str(error))
+                self._say(str(error))
             else:
                 if text in (self._stored, document.text):
                     self._stand(text, stamp)
-                elif was_saved:
+                elif document.text == self._stored:
                     document.replace(text)
                     self._stand(text, stamp)
-                    self.notice("another program has changed the file; its text is taken over, and undo takes it back")
+                    self._say("another program has changed the file; its text is taken over, and undo takes it back")
                     self._changed()
-        if self.disk != before:
+        if self._disk != before:
             self._tell_document()
 
     async def _watched(self) -> None:
         while True:
             await asyncio.sleep(PERIOD)
             try:
-                await self.tick()
+                await self._tick()
             except AlulaError as error:
-                self.notice(str(error))
+                self._say(str(error))
 
-    async def tick(self) -> None:
-        """Look at the disk, and keep what is not saved.
-
-        Raises
-        ------
-        CaseError, CannotRunError
-            As ``write_whole``.
-        """
-        if self.document is None:
-            return
+    async def _tick(self) -> None:
+        """Look at the disk, and keep what is not saved."""
         async with self._files:
+            if self.document is None:
+                return
             self._look()
-            if self.always and not self.saved and self.disk is None:
-                await self._save()
-            elif not self.saved and self.document.text != self._drafted and self._drafts is not None:
-                text = self.document.text
+            text = self.document.text
+            if self._always and not self.saved and self._disk is None:
+                try:
+                    await self._save()
+                except AlulaError as error:
+                    self._say(str(error))
+            if not self.saved and text != self._drafted and self._drafts is not None:
                 await asyncio.to_thread(self._drafts.keep, text, self._stored)
                 self._drafted = text
 
-    def _set_aside(self, draft: Draft, why: str) -> None:
-        """Keep a draft in a file of its own, and say where."""
-        with contextlib.suppress(AlulaError):
-            place = self._drafts.set_aside(draft) if self._drafts is not None else None
-            if place is not None:
-                self.notice(f"what was not saved earlier {why}; it stands in '{place}'")
+    def _set_aside(self, draft: str, why: str) -> None:
+        place = self._drafts.set_aside(draft) if self._drafts is not None else None
+        if place is not None:
+            self._say(f"what was not saved earlier {why}; it stands in '{place}'")
 
     async def close(self) -> None:
-        """Keep what is not saved, and end the streams and the workers."""
+        """Keep what is not saved, and end streams and workers."""
         self._watch.cancel()
         for page in self._pages:
             page.close()
-        with contextlib.suppress(AlulaError):
-            if self.document is not None and not self.saved and self._drafts is not None:
-                self._drafts.keep(self.document.text, self._stored)
-        await asyncio.gather(self._workers.close(), self.solids.close())
         if self._drafts is not None:
+            if not self.saved:
+                with suppress(AlulaError):
+                    self._drafts.keep(self._open().text, self._stored)
             self._drafts.close()
+        await asyncio.gather(self._workers.close(), self.solids.close())

@@ -115,7 +115,7 @@ function grid({ width, height }) {
   for (const y of lines((view.top - height) / view.scale, view.top / view.scale)) {
     const at = toScreen([0, y])[1];
     groups.grid.put(`y${y}`, "line", { x1: 0, x2: width, y1: at, y2: at });
-    if (at > 14 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
+    if (at > 50 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
   }
   groups.grid.put("unit", "text", { x: width - 6, y: height - 5, "text-anchor": "end" }, "x, y [mm]");
 }
@@ -146,7 +146,7 @@ function bodies(sheet) {
     const handle = { kind: "link", name: link.name };
     const lines = link.pieces.map((piece) => trace(piece, false)).join("");
     const wide = Math.max(link.width * store.state.view.scale, 3);
-    for (const [a, b] of link.pieces) if (!link.ground || link.part) taken.push(...along(toScreen(a), toScreen(b)));
+    if (!link.ground || link.part) taken.push(...link.pieces.flatMap((piece) => seen(piece.map((one) => toScreen(one)), wide / 2)));
     const use = useOf(link);
     const depth = high > low && !link.ground ? ((link.z ?? link.layer ?? 0) - low) / (high - low) : 1;
     const chosen = same(store.state.selected, handle) ? "chosen" : same(hovered, handle) ? "hovered" : "";
@@ -171,6 +171,13 @@ function bodies(sheet) {
   }
 }
 
+/** Middle and both sides of a bar. */
+function seen([a, b], half) {
+  const way = angle(minus(b, a));
+  const sides = half > 6 ? [-half, 0, half] : [0];
+  return sides.flatMap((side) => along(plus(a, turned([0, side], way)), plus(b, turned([0, side], way))));
+}
+
 function said(link, use) {
   const ends = link.points.map((point) => point.name).join(", ");
   return `Link ${link.name}${link.ground ? ", ground" : ""}, points ${ends}${use.text ? `, uses ${use.text} of its strength` : ""}`;
@@ -193,7 +200,7 @@ function joints(sheet) {
     const grounded = joint.links.some((name) => ground.includes(name));
     const radius = Math.max(4.5, (joint.diameter * store.state.view.scale) / 2 || 0);
     if (joint.way) guide(joint, [x, y], grounded, taken);
-    else if (grounded) support(joint, [x, y], sheet);
+    else if (grounded) support(joint, [x, y], Math.max(17, radius + 8), sheet);
     const filled = joint.kind === "bonded" || joint.kind === "fixed";
     const handle = { kind: "joint", name: joint.name };
     const shape = { class: `${joint.kind} ${state(handle)}`, fill: filled ? "#1c2733" : "#fff" };
@@ -214,17 +221,17 @@ function joints(sheet) {
 const state = (handle) => (same(store.state.selected, handle) ? "chosen" : same(hovered, handle) ? "hovered" : same(store.state.ends?.handle, handle) ? "first" : "");
 
 /** Hatched support of the ground, on the side where none of the joint's links is. */
-function support(joint, at, { now, taken }) {
+function support(joint, at, deep, { now, taken }) {
   const arms = now.links.filter((link) => joint.links.includes(link.name)).flatMap((link) => link.pieces.flat())
     .map((one) => minus(toScreen(one), at)).filter((arm) => size(arm) > 1).map((arm) => angle(arm));
   const sides = [Math.PI / 2, 0, Math.PI, -Math.PI / 2];
   const worst = (side) => Math.max(-1, ...arms.map((arm) => Math.cos(arm - side)));
   const way = sides.reduce((best, side) => (worst(side) < worst(best) - 1e-6 ? side : best));
-  const spot = (deep, across) => plus(at, turned([deep, across], way));
+  const spot = (far, across) => plus(at, turned([far, across], way));
   const line = (...spots) => spots.map((one, k) => `${k ? "L" : "M"}${one.map((part) => part.toFixed(1))}`).join("");
-  const hatching = [-14, -8, -2, 4, 10].map((across) => line(spot(17, across), spot(22, across - 4))).join("");
-  groups.joints.put(`${joint.name} ground`, "path", { class: "support", d: `${line(at, spot(17, 9), spot(17, -9))}Z${line(spot(17, 15), spot(17, -15))}${hatching}` });
-  taken.push(...along(at, spot(17, 9)), ...along(at, spot(17, -9)), ...along(spot(19, -17), spot(19, 15)));
+  const hatching = [-14, -8, -2, 4, 10].map((across) => line(spot(deep, across), spot(deep + 5, across - 4))).join("");
+  groups.joints.put(`${joint.name} ground`, "path", { class: "support", d: `${line(at, spot(deep, deep / 2), spot(deep, -deep / 2))}Z${line(spot(deep, 15), spot(deep, -15))}${hatching}` });
+  taken.push(...along(at, spot(deep, 9)), ...along(at, spot(deep, -9)), ...along(spot(deep + 2, -17), spot(deep + 2, 15)));
 }
 
 /** Both sides of a slot or guide, hatched where the ground has it. */
@@ -281,7 +288,8 @@ function moments({ now, texts, taken }) {
   const { drive } = now.forces;
   const direction = (name) => ((now.links.find((link) => link.name === name)?.direction ?? 0) * Math.PI) / 180;
   const joint = drive && now.joints.find((one) => one.name === drive.joint);
-  if (joint && drive.torque) found.push({ name: "drive", at: joint.at, moment: drive.torque, about: direction(drive.link), kind: "torque", radius: 34 });
+  const little = 1e-6 * now.drawn.size * Math.max(0, ...forcesOf(now).map((one) => one.magnitude));
+  if (joint && Math.abs(drive.torque ?? 0) > little) found.push({ name: "drive", at: joint.at, moment: drive.torque, about: direction(drive.link), kind: "torque", radius: 34 });
   if (joint && drive.force && joint.way) {
     const [from, to] = [toScreen(joint.at), toScreen(plus(joint.at, joint.way, Math.sign(drive.force) * 0.12 * now.drawn.size))];
     arrow(groups.forces, "drive", from, to, "torque");
