@@ -6,7 +6,7 @@ import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import quote
 
 from starlette.applications import Starlette
@@ -18,9 +18,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.imported.read import LARGEST_FILE
-from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_tables
-from alula.loads.text.entries import file_schema
+from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
 from alula.reports.workbench import out
 from alula.reports.workbench.parts import dropped
@@ -176,7 +175,8 @@ def application(session: Session) -> Starlette:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
     async def report(request: Request) -> Response:
-        data = await asyncio.to_thread(out.report, session.text, str(session.path), session.folder, "auto")
+        fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
+        data = await asyncio.to_thread(out.report, session.text, str(session.path), session.folder, fidelity)
         return Response(data, media_type="text/html", headers={"Content-Security-Policy": REPORT})
 
     async def case(request: Request) -> Response:
@@ -235,7 +235,7 @@ def _starters() -> list[dict[str, str]]:
 
 @cache
 def _schema() -> str:
-    return json.dumps(file_schema(Case))
+    return json.dumps(schema_with_examples())
 
 
 async def _received(request: Request, most: int) -> bytes:

@@ -4,6 +4,8 @@
 // where there is no WebGL, and on paper. A figure's data-turnable is "waiting", "ready" or, without WebGL, "still"; that of
 // the whole page is "ready" as soon as all models near the visible part are drawn.
 //
+// A page that gets models later puts such a figure into itself and calls window.alulaViewer.add(its data block).
+//
 // Tests read window.alulaViewer.models: each has name, kind, figure and start(), which returns what it is made of. Of a link:
 // nodes (how many), value(node) with value, unit, place and displacement, screen(node) with x and y in the window and
 // whether it is seen, hottest() (node of the largest stress), face(node) (looks at it from near), reading() and legend() (texts), and its stage.
@@ -40,9 +42,17 @@ function modelOf(block) {
   return model;
 }
 
+/** Start a model that came after the page; those whose figures are gone are let go. */
+function add(models, block) {
+  const model = modelOf(block);
+  models.splice(0, models.length, ...models.filter(({ figure }) => figure.isConnected), model);
+  if (renderer()) model.start();
+  else model.figure.dataset.turnable = "still";
+}
+
 function begin() {
   const models = [...document.querySelectorAll('script[type="application/json"][data-model]')].map(modelOf);
-  window.alulaViewer = { models };
+  window.alulaViewer = { models, add: (block) => add(models, block) };
   if (!renderer()) {
     models.forEach(({ figure }) => (figure.dataset.turnable = "still"));
     page.turnable = "still";

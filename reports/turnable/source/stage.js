@@ -57,7 +57,7 @@ export class Stage {
     holder.append(this.picture, this.tools, help);
     letTurn(this.canvas, this);
     new ResizeObserver(() => this.redraw()).observe(this.picture);
-    stages.push(this);
+    stages.splice(0, stages.length, ...stages.filter((stage) => stage.canvas.isConnected), this); // figures may go
   }
 
   /** Set the first view: the points [[x, y, z], ...] to be seen, and the directions to the viewer and up. */

@@ -1,0 +1,84 @@
+/** Links as solids: asked for or by itself after a pause, how far they are, and their models to turn. */
+
+import { make, number } from "./elements.js";
+import { send, tell } from "./server.js";
+
+const PAUSE = 3000; // ms without a change until solids are solved by themselves
+const STATES = { waiting: "waits", solving: "is being solved ...", done: "done", kept: "kept from before" };
+
+export function mount(holder, store) {
+  const said = make("p", { role: "status", "aria-live": "polite" });
+  const start = make("button", { type: "button", onclick: () => ask("start") }, "Check with solids");
+  const stop = make("button", { type: "button", onclick: () => ask("stop"), disabled: true }, "Stop");
+  const auto = make("input", { type: "checkbox", id: "solids-auto", onchange: later });
+  const list = make("table", {}, make("caption", { class: "soft" }, "Links"), make("tbody"));
+  const figures = make("div", { class: "models" });
+  const shown = new Map(); // link -> what its model was made of
+  let pause = null;
+  let begun = -1; // the revision that solids were last started of by themselves
+
+  holder.append(
+    make("p", { class: "row" }, start, stop),
+    make("p", { class: "row" }, auto, make("label", { for: auto.id }, "by itself, three seconds after the last change")),
+    said, list, figures,
+  );
+
+  const ask = (doing) => send("solids", { do: doing, fidelity: "solid" }).catch(({ message }) => tell(message));
+
+  function later() {
+    clearTimeout(pause);
+    const now = store.state.document;
+    if (!auto.checked || !now || now.problem || now.revision === begun) return;
+    pause = setTimeout(() => {
+      begun = now.revision;
+      ask("start");
+    }, PAUSE);
+  }
+
+  function draw() {
+    const now = store.state.solids;
+    const running = now?.state === "running";
+    start.disabled = running || Boolean(store.state.document?.problem);
+    stop.disabled = !running;
+    const stale = now && store.state.document && now.revision < store.state.document.revision && now.state !== "idle";
+    said.textContent = [now?.sentence, stale ? "The case has changed since." : ""].filter(Boolean).join(" ");
+    const links = Object.entries(now?.links ?? {});
+    list.hidden = !links.length;
+    list.tBodies[0].replaceChildren(...links.map(([name, { state, seconds }]) => {
+      const turn = ["done", "kept"].includes(state) && make("button", { type: "button", onclick: () => model(name, true) }, "Model");
+      return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, STATES[state] ?? state), make("td", { class: "num" }, seconds ? `${number(Number(seconds.toPrecision(2)))} s` : ""), make("td", {}, turn || null));
+    }));
+    const ready = links.find(([name, { state }]) => ["done", "kept"].includes(state) && !shown.has(name));
+    if (ready && !shown.size) model(ready[0]);
+  }
+
+  /** Fetch the model of a link and let the viewer start it; one stands on the page at a time. */
+  async function model(name) {
+    shown.set(name, true);
+    try {
+      const { data } = await send(`model/${encodeURIComponent(name)}`);
+      const block = make("script", { type: "application/json", "data-model": "link" });
+      block.textContent = typeof data === "string" ? data : JSON.stringify(data);
+      const figure = make("figure", { "data-name": `link-${name}` }, block, make("figcaption", {}, name));
+      figures.replaceChildren(figure);
+      await viewer();
+      window.alulaViewer.add(block);
+    } catch (problem) {
+      tell(problem.message);
+    }
+  }
+
+  for (const key of ["solids", "document"]) store.on(key, draw);
+  store.on("document", later);
+  draw();
+}
+
+let loaded = null;
+
+/** The script that draws models, fetched when the first one is asked for. */
+function viewer() {
+  loaded ??= new Promise((resolve, reject) => {
+    document.head.append(make("script", { src: "page/viewer.js", onload: resolve, onerror: () => reject(new Error("The viewer of models did not load; reload the page.")) }));
+  });
+  return loaded;
+}
