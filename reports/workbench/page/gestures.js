@@ -29,7 +29,7 @@ export function mount(element) {
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
   store.on("drawn", settle);
-  store.on("document", (now) => now?.problem && settle({ revision: now.revision }));
+  store.on("document", settle);
 }
 
 const local = (event) => {
@@ -86,6 +86,7 @@ function up(event) {
   const done = grab;
   grab = null;
   if (!done) return;
+  settle();
   const { tool } = store.state;
   const place = toPlane(local(event));
   if (done.drag && done.moved) entry.open(parent, done.handle, false);
@@ -241,16 +242,18 @@ function pull({ operations, held }, gesture) {
   edit(operations, gesture).then(
     ({ revision }) => {
       newest = revision;
-      settle(store.state.document.problem ? store.state.document : store.state.drawn);
+      settle();
     },
     () => store.state.held === held && store.put("held", null),
   );
   newest = Infinity;
 }
 
-/** Let go of what was pulled when the server's drawing has it. */
-function settle(drawn) {
-  if (!grab?.moved && store.state.held && drawn?.revision >= newest) store.put("held", null);
+/** Let go of what was pulled when the server's drawing has it, or can have none. */
+function settle() {
+  const { document: now, drawn, held } = store.state;
+  const known = now?.problem ? now.revision : drawn?.revision;
+  if (held && !grab?.moved && known >= newest) store.put("held", null);
 }
 
 /* Tools that make something. */

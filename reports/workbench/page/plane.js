@@ -1,6 +1,7 @@
 /** Draws the linkage to scale, with loads, joint forces and how much of its strength each link uses. */
 
-import { newestVerdict, same, store } from "./store.js";
+import { same, store } from "./store.js";
+import { shownVerdict } from "./verdict.js";
 import { freePoints, poseHandle, scene } from "./scene.js";
 import { add, draw, Group, set } from "./svg.js";
 import { ahead, along, place } from "./labels.js";
@@ -83,7 +84,7 @@ function forcesOf(now) {
 
 /** The use of a link's strength, in words and as a colour. */
 export function useOf(link) {
-  const use = newestVerdict()?.links?.[link.name]?.use ?? null;
+  const use = shownVerdict(store.state.verdict)?.links?.[link.name]?.use ?? null;
   if (use === null || link.ground) return { text: "", colour: "#9fb1c1", over: false };
   return { text: `${number(100 * use, 2)} %`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
 }
@@ -372,7 +373,7 @@ function texts({ texts: labels, taken, width, height }) {
 /** What colours and arrows mean, in words. */
 function legend(now) {
   const element = document.getElementById("legend");
-  const uses = now && Object.values(newestVerdict()?.links ?? {}).some((one) => one.use !== null);
+  const uses = now && Object.values(shownVerdict(store.state.verdict)?.links ?? {}).some((one) => one.use !== null);
   const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
   const key = largest ? round125(largest / 2) : 0;
   const entries = [
