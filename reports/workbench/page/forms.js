@@ -178,7 +178,9 @@ class Forms {
     if (Array.isArray(value)) return value.map((one, place) => this.fitted({ ...itemOf(option, place), "x-refers": node["x-refers"] }, one, [...path, place], table));
     if (node["x-refers"] && typeof value === "string") {
       const names = this.namesOf(node, path, table);
-      return names.includes(value) ? value : (names.find((name) => !this.tables[node["x-refers"]]?.[name]?.ground) ?? value);
+      const moving = names.filter((name) => !this.tables[node["x-refers"]]?.[name]?.ground);
+      const place = path.findLast(Number.isInteger) ?? 0; // the second of a list is another one than the first
+      return names.includes(value) ? value : (moving[place % moving.length] ?? value);
     }
     if (!value || typeof value !== "object") return value;
     const made = {};
