@@ -130,6 +130,7 @@ function spread() {
 
 function wheel(event) {
   event.preventDefault();
+  entry.close();
   zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), local(event));
 }
 
@@ -179,8 +180,9 @@ function force(load, vector, per = newtonLength()) {
 }
 
 function turn(value, step, at) {
-  const { kind } = store.state.drawn.coordinate;
-  const to = rounded(value, step);
+  const { kind, value: now } = store.state.drawn.coordinate;
+  const turns = kind === "angle" && store.state.motion?.turns ? Math.round((value - now) / 360) : 0;
+  const to = rounded(value - 360 * turns, step);
   return { operations: [{ op: "turn", to }], held: { pose: to, at, text: `${number(to, 5)}${kind === "travel" ? " mm" : "°"}` } };
 }
 
@@ -318,7 +320,7 @@ function addLoad({ end, at, operations, to }) {
       .find(({ link, point }) => key(link, point) === one));
     target = points.findLast(Boolean);
   }
-  if (!target?.link) return tell("A load acts on a link: press on a point of one, or on the link itself.");
+  if (!now.links.some((link) => link.name === target?.link && !link.ground)) return tell("A load acts on a link that moves: press on a point of one, or on the link itself.");
   const { loadCase, drawn } = store.state;
   const name = drawn.loads.find((load) => load.load_case === loadCase)?.path[1] ?? loadCase ?? "load";
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));
