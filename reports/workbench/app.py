@@ -6,7 +6,7 @@ import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import quote
 
 from starlette.applications import Starlette
@@ -175,7 +175,8 @@ def application(session: Session) -> Starlette:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
     async def report(request: Request) -> Response:
-        data = await asyncio.to_thread(out.report, session.text, str(session.path), session.folder, "auto")
+        fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
+        data = await asyncio.to_thread(out.report, session.text, str(session.path), session.folder, fidelity)
         return Response(data, media_type="text/html", headers={"Content-Security-Policy": REPORT})
 
     async def case(request: Request) -> Response:

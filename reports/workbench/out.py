@@ -12,7 +12,7 @@ from alula.loads.case.case_file import validate
 from alula.loads.text.explain import printable
 
 
-def report(text: str, name: str, folder: Path, fidelity: Literal["auto", "beam", "solid"]) -> bytes:
+def report(text: str, name: str, folder: Path, fidelity: Literal["beam", "solid"]) -> bytes:
     """Check a case and return its report, as ``alula check -o`` writes it; what was computed before is taken.
 
     Parameters
@@ -23,7 +23,7 @@ def report(text: str, name: str, folder: Path, fidelity: Literal["auto", "beam",
         What the report calls the case.
     folder : Path
         Of the case, where files of its parts stand.
-    fidelity : {"auto", "beam", "solid"}
+    fidelity : {"beam", "solid"}
         Model that decides.
 
     Returns

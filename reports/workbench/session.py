@@ -178,6 +178,7 @@ class Session:
             "always": self._always,
             "undo": bool(document and document.can_undo),
             "redo": bool(document and document.can_redo),
+            "tables": _plain(document),
             "problem": self._problem,
             "disk": self._disk,
             "draft": self._draft is not None,
@@ -407,3 +408,13 @@ class Session:
                     self._drafts.keep(self._open().text, self._stored)
             self._drafts.close()
         await asyncio.gather(self._workers.close(), self.solids.close())
+
+
+def _plain(document: Document | None) -> Any:
+    """Return the tables of a document as JSON has them, with times and what is no number as text; None where it has none."""
+    if document is None:
+        return None
+    try:
+        return json.loads(json.dumps(document.tables(), default=str), parse_constant=str)
+    except CaseError:
+        return None

@@ -95,11 +95,23 @@ class Forms {
     this.said.textContent = "";
     const shown = this.shown();
     this.form.replaceChildren(...shown.flat().filter(Boolean));
-    if (problem && !this.form.querySelector('[aria-invalid="true"], .wrong:not(:empty)')) this.said.textContent = problem;
+    if (problem && !this.form.querySelector('[aria-invalid="true"], .wrong:not(:empty)')) this.said.replaceChildren(this.elsewhere());
     this.holder.scrollTop = scrolled;
     this.back(kept);
     if (this.seek) this.find(this.seek)?.scrollIntoView({ block: "center" });
     this.seek = null;
+  }
+
+  /** A button that shows the entry that is wrong, where another one is shown. */
+  elsewhere() {
+    const tables = Object.keys(this.root.properties).filter((table) => this.begins([table]) && !this.plain(table));
+    const name = tables.length ? Object.keys(this.tables[tables[0]] ?? {}).find((one) => this.begins([tables[0], one])) : null;
+    if (!tables.length) return this.begins([this.wrong.split(/[ .:]/)[0]]) && this.wrong.split(/[ .:]/)[0] in this.root.properties ? this.shower(CASE, null, "the case itself") : "";
+    return this.shower(tables[0], name ?? null, [words(tables[0]), name].filter(Boolean).join(", "));
+  }
+
+  shower(table, name, title) {
+    return make("button", { type: "button", class: "to-line", onclick: () => this.show(table, name) }, `Something is wrong in ${title}: show it`);
   }
 
   find(path) {
@@ -157,7 +169,23 @@ class Forms {
   first(option) {
     const like = Object.values(this.tables[this.table] ?? {}).filter((value) => optionOf({ oneOf: options(this.root.properties[this.table].additionalProperties) }, value).title === option.title);
     const last = like.at(-1);
-    return last && !last.ground ? structuredClone(last) : beginning(option);
+    return last && !last.ground ? structuredClone(last) : this.fitted(option, beginning(option), [this.table, ""]);
+  }
+
+  /** A value whose names are of this case: each that is not there is replaced by the first one that is. */
+  fitted(node, value, path, table = null) {
+    const option = optionOf(node, value);
+    if (Array.isArray(value)) return value.map((one, place) => this.fitted({ ...itemOf(option, place), "x-refers": node["x-refers"] }, one, [...path, place], table));
+    if (node["x-refers"] && typeof value === "string") {
+      const names = this.namesOf(node, path, table);
+      const moving = names.filter((name) => !this.tables[node["x-refers"]]?.[name]?.ground);
+      const place = path.findLast(Number.isInteger) ?? 0; // the second of a list is another one than the first
+      return names.includes(value) ? value : (moving[place % moving.length] ?? value);
+    }
+    if (!value || typeof value !== "object") return value;
+    const made = {};
+    for (const [name, inner] of Object.entries(value)) made[name] = this.fitted(option.properties?.[name] ?? option.additionalProperties ?? {}, inner, [...path, name], made);
+    return made;
   }
 
   free(wish) {
@@ -284,7 +312,7 @@ class Forms {
     if (value === undefined) {
       const add = () => {
         this.open.add(key(path));
-        this.send([{ op: "set", path, value: beginning(node.examples && isList(all[0]) ? { ...all[0], examples: node.examples } : node) }], null, path);
+        this.send([{ op: "set", path, value: this.fitted(node, beginning(node), path, table) }], null, path);
       };
       return make("div", { class: "field unset" }, make("span", {}, label), make("button", { type: "button", onclick: add, "aria-label": `State ${label}` }, "State"), help, this.error(path));
     }
@@ -301,7 +329,7 @@ class Forms {
   inside(node, value, path, table) {
     const box = make("div", { class: "inside" });
     if (value === undefined || value === null) {
-      box.append(make("button", { type: "button", onclick: () => this.send([{ op: "set", path, value: beginning(node) }]) }, `State ${words(path.at(-1))}`));
+      box.append(make("button", { type: "button", onclick: () => this.send([{ op: "set", path, value: this.fitted(node, beginning(node), path) }]) }, `State ${words(path.at(-1))}`));
       return box;
     }
     const option = optionOf(node, value);
@@ -352,7 +380,7 @@ class Forms {
       return box;
     });
     const add = () => {
-      const fresh = value.length ? structuredClone(value.at(-1)) : beginning(option.items);
+      const fresh = value.length ? structuredClone(value.at(-1)) : this.fitted(option.items, beginning(option.items), [...path, 0]);
       this.send([{ op: "append", path, value: fresh }], null, path);
     };
     return [...items, fixed ? null : make("button", { type: "button", onclick: add }, `Add one more`)].filter(Boolean);
@@ -378,6 +406,7 @@ class Forms {
     for (let place = 0; place < shown; place += 1) {
       const child = { ...itemOf(option, place), "x-refers": node["x-refers"] };
       if (examples[place] !== undefined) child.examples = [examples[place]];
+      if (place >= (option.minItems ?? most)) child.default = "left out";
       inputs.push(this.input(child, now[place], [...path, place], table, { id: place ? null : id, label: place || !id ? `${label}, value ${place + 1}` : null, commit }));
     }
     return inputs;
@@ -387,7 +416,7 @@ class Forms {
   input(node, value, path, table, { id = null, label = null, commit = null, wrong = null }) {
     const all = options(node);
     const names = node["x-refers"] ? this.namesOf(node, path, table) : all.every((one) => one.enum || one.const !== undefined) ? all.flatMap((one) => one.enum ?? [one.const]) : all[0]?.type === "boolean" && all.length === 1 ? [true, false] : null;
-    const unset = node.default === undefined || node.default === null ? "" : `${this.told(node.default)} (default)`;
+    const unset = node.default === undefined || node.default === null ? "" : node.default === "left out" ? node.default : `${this.told(node.default)} (default)`;
     const send = ({ target }) => (commit ? commit() : this.send([{ op: "set", path, value: this.read(node, target.value, names) }], null, path));
     const common = { id, "aria-label": label, "data-path": key(path), "data-was": value === undefined ? "" : String(value), onchange: send,
       "aria-invalid": wrong?.textContent ? "true" : null, "aria-describedby": wrong?.textContent ? wrong.id : null };

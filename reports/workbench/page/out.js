@@ -94,6 +94,7 @@ export function mount(holder, store) {
 
   function draw() {
     const found = shownVerdict(store.state.verdict);
+    report.href = `out/report?fidelity=${found?.stage === "solids" ? "solid" : "beam"}`;
     report.textContent = found?.stage === "solids" ? "Report, with solids" : "Report, by hand";
     const links = (store.state.drawn?.links ?? []).filter((link) => link.part).map((link) => link.name);
     if (links.join("\n") !== [...steps.options].map((one) => one.value).join("\n")) steps.replaceChildren(...links.map((name) => make("option", { value: name }, name)));

@@ -1,6 +1,7 @@
 /** Draws the linkage to scale, with loads, joint forces and how much of its strength each link uses. */
 
-import { newestVerdict, same, store } from "./store.js";
+import { same, store } from "./store.js";
+import { shownVerdict } from "./verdict.js";
 import { freePoints, poseHandle, scene } from "./scene.js";
 import { add, draw, Group, set } from "./svg.js";
 import { ahead, along, place } from "./labels.js";
@@ -10,7 +11,7 @@ import { angle, fit, gridStep, minus, number, plus, round125, size, toScreen, tu
 const ARROW = 0.2;
 /** Use of strength: what is up to here, how it is named, its colour, and its hatching for who sees no colours. */
 export const USES = [
-  [0.5, "under 50 %", "#c3d8cc"], [0.8, "50 to 80 %", "#e6d993"], [1, "80 to 100 %", "#ebaf63"], [Infinity, "over 100 %", "#e08a80"],
+  [0.5, "up to 50 %", "#c3d8cc"], [0.8, "80 %", "#e6d993"], [1, "100 %", "#ebaf63"], [Infinity, "more", "#e08a80"],
 ];
 let svg, groups, perNewton = 0, waiting = false, hovered = null;
 
@@ -19,7 +20,6 @@ export function mount(element) {
   marks(draw(svg, "defs"));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
-  add(element, "div", { id: "legend" });
   for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "paths"]) {
     store.on(name, later);
   }
@@ -84,9 +84,10 @@ function forcesOf(now) {
 
 /** The use of a link's strength, in words and as a colour. */
 export function useOf(link) {
-  const use = newestVerdict()?.links?.[link.name]?.use ?? null;
-  if (use === null || link.ground) return { text: "", colour: "#9fb1c1", over: false };
-  return { text: `${number(100 * use, 2)} %`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
+  const { use = null, verdict } = shownVerdict(store.state.verdict)?.links?.[link.name] ?? {};
+  if (use === null || link.ground || store.state.instant !== null) return { text: "", colour: "#9fb1c1", over: false };
+  const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
+  return { text: `${number(100 * use, 2)} %${sign}`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
 }
 
 function drawAll() {
@@ -115,7 +116,7 @@ function grid({ width, height }) {
   for (const y of lines((view.top - height) / view.scale, view.top / view.scale)) {
     const at = toScreen([0, y])[1];
     groups.grid.put(`y${y}`, "line", { x1: 0, x2: width, y1: at, y2: at });
-    if (at > 14 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
+    if (at > 16 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
   }
   groups.grid.put("unit", "text", { x: width - 6, y: height - 5, "text-anchor": "end" }, "x, y [mm]");
 }
@@ -146,7 +147,7 @@ function bodies(sheet) {
     const handle = { kind: "link", name: link.name };
     const lines = link.pieces.map((piece) => trace(piece, false)).join("");
     const wide = Math.max(link.width * store.state.view.scale, 3);
-    for (const [a, b] of link.pieces) if (!link.ground || link.part) taken.push(...along(toScreen(a), toScreen(b)));
+    if (!link.ground || link.part) taken.push(...link.pieces.flatMap((piece) => seen(piece.map((one) => toScreen(one)), wide / 2)));
     const use = useOf(link);
     const depth = high > low && !link.ground ? ((link.z ?? link.layer ?? 0) - low) / (high - low) : 1;
     const chosen = same(store.state.selected, handle) ? "chosen" : same(hovered, handle) ? "hovered" : "";
@@ -166,9 +167,16 @@ function bodies(sheet) {
     const [a, b] = link.pieces.reduce((best, one) => (size(minus(...one)) > size(minus(...best)) ? one : best)).map((one) => toScreen(one));
     const across = angle(minus(b, a)) + Math.PI / 2;
     const anchors = [0.5, 0.35, 0.65, 0.25, 0.75].map((share) => plus(a, minus(b, a), share));
-    const text = use.text ? `${link.name}: ${use.text}${use.over ? " ✗" : ""}` : link.name;
+    const text = use.text ? `${link.name}: ${use.text}` : link.name;
     texts.push({ key: `link ${link.name}`, text, anchors, gap: wide / 2 + 4, way: across, kind: `link ${use.over ? "over" : ""}`, rank: 4 });
   }
+}
+
+/** Middle and both sides of a bar. */
+function seen([a, b], half) {
+  const way = angle(minus(b, a));
+  const sides = half > 6 ? [-half, 0, half] : [0];
+  return sides.flatMap((side) => along(plus(a, turned([0, side], way)), plus(b, turned([0, side], way))));
 }
 
 function said(link, use) {
@@ -193,7 +201,7 @@ function joints(sheet) {
     const grounded = joint.links.some((name) => ground.includes(name));
     const radius = Math.max(4.5, (joint.diameter * store.state.view.scale) / 2 || 0);
     if (joint.way) guide(joint, [x, y], grounded, taken);
-    else if (grounded) support(joint, [x, y], sheet);
+    else if (grounded) support(joint, [x, y], Math.max(17, radius + 8), sheet);
     const filled = joint.kind === "bonded" || joint.kind === "fixed";
     const handle = { kind: "joint", name: joint.name };
     const shape = { class: `${joint.kind} ${state(handle)}`, fill: filled ? "#1c2733" : "#fff" };
@@ -214,17 +222,17 @@ function joints(sheet) {
 const state = (handle) => (same(store.state.selected, handle) ? "chosen" : same(hovered, handle) ? "hovered" : same(store.state.ends?.handle, handle) ? "first" : "");
 
 /** Hatched support of the ground, on the side where none of the joint's links is. */
-function support(joint, at, { now, taken }) {
+function support(joint, at, deep, { now, taken }) {
   const arms = now.links.filter((link) => joint.links.includes(link.name)).flatMap((link) => link.pieces.flat())
     .map((one) => minus(toScreen(one), at)).filter((arm) => size(arm) > 1).map((arm) => angle(arm));
   const sides = [Math.PI / 2, 0, Math.PI, -Math.PI / 2];
   const worst = (side) => Math.max(-1, ...arms.map((arm) => Math.cos(arm - side)));
   const way = sides.reduce((best, side) => (worst(side) < worst(best) - 1e-6 ? side : best));
-  const spot = (deep, across) => plus(at, turned([deep, across], way));
+  const spot = (far, across) => plus(at, turned([far, across], way));
   const line = (...spots) => spots.map((one, k) => `${k ? "L" : "M"}${one.map((part) => part.toFixed(1))}`).join("");
-  const hatching = [-14, -8, -2, 4, 10].map((across) => line(spot(17, across), spot(22, across - 4))).join("");
-  groups.joints.put(`${joint.name} ground`, "path", { class: "support", d: `${line(at, spot(17, 9), spot(17, -9))}Z${line(spot(17, 15), spot(17, -15))}${hatching}` });
-  taken.push(...along(at, spot(17, 9)), ...along(at, spot(17, -9)), ...along(spot(19, -17), spot(19, 15)));
+  const hatching = [-14, -8, -2, 4, 10].map((across) => line(spot(deep, across), spot(deep + 5, across - 4))).join("");
+  groups.joints.put(`${joint.name} ground`, "path", { class: "support", d: `${line(at, spot(deep, deep / 2), spot(deep, -deep / 2))}Z${line(spot(deep, 15), spot(deep, -15))}${hatching}` });
+  taken.push(...along(at, spot(deep, 9)), ...along(at, spot(deep, -9)), ...along(spot(deep + 2, -17), spot(deep + 2, 15)));
 }
 
 /** Both sides of a slot or guide, hatched where the ground has it. */
@@ -256,7 +264,7 @@ function forces({ now, texts, taken }) {
     if (!newtons) continue;
     const editable = load.kind === "force";
     const text = editable ? `${number(newtons)} N` : `${number(newtons)} N ${load.kind}`;
-    arrows.push({ key: `load ${k} ${load.path.join(".")}`, at: load.at, tip: plus(load.at, load.vector, perNewton), kind: editable ? "load" : "load other", text, rank: editable ? 1 : 7, needed: editable, path: load.path });
+    arrows.push({ key: `load ${k} ${load.path.join(".")}`, at: load.at, tip: plus(load.at, load.vector, perNewton), kind: editable ? "load" : "load other", text, rank: editable ? 1 : 7, needed: editable, near: !editable, path: load.path });
   }
   for (const one of arrows) {
     const [from, to] = [toScreen(one.at), toScreen(one.tip)];
@@ -281,7 +289,8 @@ function moments({ now, texts, taken }) {
   const { drive } = now.forces;
   const direction = (name) => ((now.links.find((link) => link.name === name)?.direction ?? 0) * Math.PI) / 180;
   const joint = drive && now.joints.find((one) => one.name === drive.joint);
-  if (joint && drive.torque) found.push({ name: "drive", at: joint.at, moment: drive.torque, about: direction(drive.link), kind: "torque", radius: 34 });
+  const little = 1e-6 * now.drawn.size * Math.max(0, ...forcesOf(now).map((one) => one.magnitude));
+  if (joint && Math.abs(drive.torque ?? 0) > little) found.push({ name: "drive", at: joint.at, moment: drive.torque, about: direction(drive.link), kind: "torque", radius: 34 });
   if (joint && drive.force && joint.way) {
     const [from, to] = [toScreen(joint.at), toScreen(plus(joint.at, joint.way, Math.sign(drive.force) * 0.12 * now.drawn.size))];
     arrow(groups.forces, "drive", from, to, "torque");
@@ -365,11 +374,11 @@ function texts({ texts: labels, taken, width, height }) {
 /** What colours and arrows mean, in words. */
 function legend(now) {
   const element = document.getElementById("legend");
-  const uses = now && Object.values(newestVerdict()?.links ?? {}).some((one) => one.use !== null);
+  const uses = now && Object.values(shownVerdict(store.state.verdict)?.links ?? {}).some((one) => one.use !== null);
   const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
   const key = largest ? round125(largest / 2) : 0;
   const entries = [
-    ...(uses ? [["", "use of strength:"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
+    ...(uses ? [["", "strength used (✗ fails, ? undecided):"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
     ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
     ...(now?.loads.length ? [["load", "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),

@@ -85,5 +85,6 @@ export function poseHandle({ links, joints, drawn, still }, pixel) {
   const arms = ends.map((end) => minus(end, pivot)).sort((a, b) => size(b) - size(a));
   const reach = arms.length ? size(arms[0]) : 0;
   const way = reach > 0 ? arms[0].map((part) => part / reach) : turned([1, 0], radians(link.direction));
-  return { at: plus(pivot, way, reach + 30 * pixel), way: null, pivot };
+  const far = Math.max(reach, ...(link.rings?.[0] ?? []).map((one) => (one[0] - pivot[0]) * way[0] + (one[1] - pivot[1]) * way[1]));
+  return { at: plus(pivot, way, far + 22 * pixel), way: null, pivot };
 }

@@ -61,11 +61,12 @@ export function titleOf(option) {
 /** A value to begin with: an example, or what has to be stated, from examples. */
 export function beginning(node) {
   const [option] = options(node);
+  if (node.examples?.length) return structuredClone(node.examples[0]);
   if (option.examples?.length) return structuredClone(option.examples[0]);
   if (isTable(option)) {
     const needed = new Set(option.required ?? []);
     for (const [key, child] of Object.entries(option.properties)) if ("const" in child && typeof child.const === "string") needed.add(key);
-    return Object.fromEntries([...needed].map((key) => [key, beginning({ ...option.properties[key] })]));
+    return Object.fromEntries([...needed].map((key) => [key, beginning(option.properties[key])]));
   }
   if (isMap(option)) return {};
   if (isList(option)) return Array.from({ length: option.minItems ?? 0 }, (_, place) => beginning(itemOf(option, place)));

@@ -1,25 +1,18 @@
-/** The text of the case: with line numbers, what is wrong at its line, and what became of the file on disk. */
+/** The text of the case: with line numbers, and what is wrong at its line. */
 
 import { make } from "./elements.js";
 import { lineOf, pathOf } from "./lines.js";
-import { newGesture, replaceText, send, tell } from "./server.js";
+import { newGesture, replaceText } from "./server.js";
 
 const PAUSE = 300; // ms after the last key until the text is sent
-const DISK = {
-  changed: "Another program has changed the file on disk.",
-  deleted: "The file is no longer on disk; saving writes it anew.",
-  "read-only": "The file may not be written; save the case under another name, or give leave to write it.",
-};
-
 export function mount(holder, store) {
   const numbers = make("pre", { class: "numbers", "aria-hidden": "true" });
   const area = make("textarea", { "aria-label": "Text of the case", spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off" });
   const mark = make("div", { class: "mark", hidden: true });
-  const wrong = make("p", { class: "at-line", hidden: true });
-  const bars = make("div", { class: "bars", "aria-live": "polite" });
-  const problem = make("p", { class: "wrong", role: "alert", id: "text-wrong" });
+  const wrong = make("p", { class: "at-line", id: "text-wrong", hidden: true });
+  const go = make("button", { type: "button", class: "to-line", hidden: true, onclick: () => jump(store.state.document.problem.line) });
   const editor = make("div", { class: "editor" }, numbers, mark, area, wrong);
-  holder.append(bars, problem, editor);
+  holder.append(go, editor);
   let typed = null; // the timer of what was typed and not sent
   let gesture = newGesture();
   let marked = null;
@@ -63,28 +56,17 @@ export function mount(holder, store) {
     area.scrollTop = top;
   }
 
-  function bar(sentence, ...choices) {
-    const ask = (route, body) => () => send(route, body).catch(({ message }) => tell(message));
-    return make("p", { class: "bar" }, sentence, ...choices.map(([title, route, body]) => make("button", { type: "button", onclick: ask(route, body) }, title)));
-  }
-
   function show(now) {
     if (!now) return;
     if (typed === null) take(now.text);
     number();
     const { sentence, line } = now.problem ?? {};
-    problem.textContent = sentence && !line ? sentence : "";
     wrong.textContent = sentence ?? "";
     wrong.hidden = !line;
     area.setAttribute("aria-invalid", String(Boolean(sentence)));
     area.setAttribute("aria-describedby", "text-wrong");
-    if (sentence && line) problem.replaceChildren(make("button", { type: "button", class: "to-line", onclick: () => jump(line) }, `Line ${line}`), ` ${sentence}`);
-    bars.replaceChildren(
-      ...[
-        now.disk && bar(DISK[now.disk] ?? "", ...(now.disk === "changed" ? [["Take over", "reload", {}], ["Keep mine", "overwrite", {}]] : [])),
-        now.draft && bar("Changes that were not saved were found, of a time before.", ["Take them", "draft", { take: true }], ["Discard them", "draft", { take: false }]),
-      ].filter(Boolean),
-    );
+    go.hidden = !line;
+    go.textContent = `Go to line ${line}, which is wrong`;
     point();
   }
 
@@ -101,6 +83,13 @@ export function mount(holder, store) {
     mark.hidden = !marked;
     if (marked && scroll && !holder.hidden) scrollTo(marked);
     follow();
+  }
+
+  /** The panel was opened: what is wrong is seen, otherwise what is selected. */
+  function opened() {
+    const line = store.state.document?.problem?.line;
+    if (line) scrollTo(line);
+    else point(true);
   }
 
   function sendTyped() {
@@ -122,6 +111,6 @@ export function mount(holder, store) {
   area.addEventListener("scroll", follow);
   store.on("document", show);
   store.on("selected", () => point(true));
-  store.on("panel", (name) => name === "text" && requestAnimationFrame(() => point(true)));
+  store.on("panel", (name) => name === "text" && requestAnimationFrame(opened));
   show(store.state.document);
 }

@@ -58,7 +58,7 @@ export function pan(dx, dy) {
 export function fit(places, width, height) {
   const [xs, ys] = [0, 1].map((k) => places.map((place) => place[k]));
   const [low, high] = [[Math.min(...xs), Math.min(...ys)], [Math.max(...xs), Math.max(...ys)]];
-  const room = Math.min(110, 0.16 * Math.min(width, height));
+  const room = Math.min(70, 0.1 * Math.min(width, height));
   const extent = Math.max(high[0] - low[0], high[1] - low[1], 1e-6);
   const wide = (width - 2 * room) / Math.max(high[0] - low[0], 0.05 * extent);
   const tall = (height - 2 * room) / Math.max(high[1] - low[1], 0.05 * extent);
