@@ -50,7 +50,9 @@ BAR = {
     "shape": "bar",
     "material": "pla-fdm-xy",
     "build_direction": [0, 0, 1],
-    **{"width": "8 mm", "thickness": "4 mm", "fillet_radius": "2 mm"},
+    "width": "8 mm",
+    "thickness": "4 mm",
+    "fillet_radius": "2 mm",
 }
 """The starter four-bar's part, for a first link of a case without one."""
 PIN = "3 mm"

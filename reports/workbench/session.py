@@ -14,6 +14,7 @@ from alula.loads.compose.starting import case_files, write_new
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.document import Document
+from alula.reports.workbench.edits import EMPTY
 from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
 from alula.reports.workbench.stand_in import Solids
 from alula.reports.workbench.workers import Workers
@@ -24,6 +25,8 @@ QUIET = 15.0
 """Seconds after which a page that hears nothing is sent a comment, which tells whether it is still there."""
 MOST_PAGES = 16
 """Pages that hear of changes at once: each holds a connection."""
+DRAWING = "empty"
+"""What one starts from who draws all links, beside the built-in cases."""
 
 
 class ConflictError(AlulaError):
@@ -283,7 +286,7 @@ class Session:
                 raise ConflictError("changes of the open case are not saved; save it first")
             file = self.folder / plain_name(as_ if starter else path, ".toml")
             if starter:
-                write_new(case_files(starter, file))
+                write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
             stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
             if self._drafts is not None:
                 self._drafts.close()
