@@ -209,13 +209,15 @@ def application(session: Session) -> Starlette:
         "/out/step/{link}": step,
     }
     post: Mapping[str, Answer] = {"/drop/{name}": drop, "/{action}": act}
-    return Starlette(
+    app = Starlette(
         routes=[
             *(Route(path, answer, methods=["GET"]) for path, answer in get.items()),
             *(Route(path, answer, methods=["POST"]) for path, answer in post.items()),
         ],
         exception_handlers={AlulaError: _explained, HTTPException: _unknown, Exception: _broken},
     )
+    app.router.redirect_slashes = False  # it knows no token
+    return app
 
 
 def _page(name: str) -> Response:

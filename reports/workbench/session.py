@@ -126,6 +126,7 @@ class Session:
         self._tell_document()
         for kind, message in self._last.items():
             page.put(kind, message)
+        self._last = {kind: message for kind, message in self._last.items() if not kind.startswith("notice")}
         return page
 
     def leave(self, page: Page) -> None:
@@ -156,7 +157,7 @@ class Session:
             self._tell_document()
         kind = f"{name} {data['sentence'] if name == 'notice' else data.get('stage', '')}"
         message = f"event: {name}\ndata: {json.dumps(data, ensure_ascii=False, allow_nan=False)}\n\n"
-        if name not in ("notice", "document"):
+        if name not in ("notice", "document") or (name == "notice" and not self._pages):
             self._last[kind] = message
         for page in self._pages:
             page.put(kind, message)
@@ -193,6 +194,8 @@ class Session:
 
     async def edit(self, revision: int, operations: Sequence[Mapping[str, Any]], gesture: str) -> None:
         """Change the case by operations, which were made on a revision and are undone with others of their gesture."""
+        if not all(isinstance(one, Mapping) for one in operations):
+            raise CaseError("operations: each must be an object")
         text = self._open(revision).text
         pose = await asyncio.to_thread(self._posed, text)
         self._open(revision).apply(operations, pose, gesture)
