@@ -380,8 +380,8 @@ def with_growth(case: Case, title: str, moved: LargeDisplacement, loads: Sequenc
     Returns
     -------
     LargeDisplacement
-        The same unless small, and where linear theory alone was asked for; the answer on the deformed shape itself where
-        that does not hold the load.
+        The same unless small, and where linear theory alone was asked for; the answer on the deformed shape itself
+        where that does not hold the load.
     """
     if moved.state != "small" or moved.frame is None or moved.buckling is None:
         return moved

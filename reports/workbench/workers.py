@@ -18,6 +18,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +30,8 @@ Key = tuple[object, ...]
 Kept = OrderedDict[Key, dict[str, dict[str, Plain]]]
 """Text -> stage -> event -> what was told last."""
 
-ROLES: Mapping[str, tuple[str, ...]] = {"poses": ("pose", "motion"), "verdicts": ("linear", "whole")}
-"""What each process answers, stage after stage."""
+ROLES: Mapping[str, tuple[str, ...]] = {"answers": ("pose", "motion"), "verdicts": ("linear", "whole")}
+"""What each process answers, stage after stage, by the name of the module that does."""
 _KEPT = 200
 """Texts whose answers are kept: some ten kilobytes each, the last steps of undo and a drag."""
 _LONGEST = 1 << 26
@@ -180,8 +181,8 @@ class _Line:
         assert self._child.stderr is not None
         why, status = last_line(await self._child.stderr.read()), await self._child.wait()
         sentence = (
-            f"The process that answers {self._role} ended by itself (status {status}: {why}); it was started anew, and "
-            "this text is not asked of it again"
+            f"One of the two processes that answer, {self._role}, ended by itself (status {status}: {why}); it was "
+            "started anew, and this text is not asked of it again"
         )
         self._tell("notice", {"revision": asked.revision, "sentence": sentence})
         await self._start()
@@ -258,9 +259,7 @@ def main(role: str) -> None:
         One of ``ROLES``.
     """
     service = _Service()
-    from alula.reports.workbench.answers import STAGES  # what takes long to import, while the page loads
-
-    service.run({stage: STAGES[stage] for stage in ROLES[role]})
+    service.run(import_module(f"alula.reports.workbench.{role}").STAGES)  # imported while the page loads
 
 
 if __name__ == "__main__":

@@ -5,11 +5,16 @@ import math
 
 import numpy as np
 import pytest
+import solved
 
+from alula.fea.findings.of_check import with_findings
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case_file import read_case, read_text
+from alula.reports.check.changes import change_records
 from alula.reports.commands.statics import statics_sections
+from alula.reports.sentences.verdicts import first_lines
 from alula.reports.workbench.answers import pose_answer
+from alula.reports.workbench.verdicts import whole_answer
 
 
 def posed(name, *pairs):
@@ -77,3 +82,29 @@ def test_a_problem_is_one_sentence_and_what_can_be_is_drawn():
     assert posed("four-bar", ("schema_version = 1", "schema_version ="))["problem"].startswith("this is not valid TOML")
     held = posed("four-bar", ("[drive]\n", "[drive]\ntransfer = 5\n"))
     assert held["problem"].startswith("drive.transfer")
+
+
+def known(value):
+    return value if math.isfinite(value) else None
+
+
+@pytest.mark.parametrize("name", ["four-bar", "knee"])
+def test_the_whole_verdict_is_that_of_alula_check(name):
+    result, early = solved.by_hand(name), []
+    answer = whole_answer(read_text(name)[0], name, early.append)
+    told = with_findings(result)
+    assert answer["verdict"] == result.verdict
+    assert answer["sentences"] == list(first_lines(told))
+    checks = {(one["check"], one["subject"], one["load_case"], one["quantity"]): one for one in answer["checks"]}
+    assert len(checks) == sum(len(one.checks) for one in result.load_cases.values())
+    for load_case, one in result.load_cases.items():
+        for check in one.checks:
+            found = checks[check.name, str(check.subject), load_case, check.quantity]
+            assert (found["value"], found["low"], found["high"], found["verdict"]) == (
+                *map(known, (check.value.value, check.value.low, check.value.high)),
+                check.answer,
+            )
+    [soon] = early
+    assert (soon["changes"], soon["checks"], soon["links"]) == ([], answer["checks"], answer["links"])
+    assert [one["command"] for one in answer["changes"]][:1] == [one["command"] for one in change_records(told)][:1]
+    json.dumps(answer, allow_nan=False)
