@@ -100,7 +100,7 @@ class LargeDisplacement:
         A link for which the frame's beam does not tell how far it gives; "" where there is none.
     buckling : float or None
         Lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does, None where
-        there is no frame.
+        there is no frame, and where linear theory alone was asked for.
     dead_point : float
         Factor on the linear displacements that takes the linkage to a dead point; infinite where they lead away.
     points : dict of tuple of 2 str to ndarray
@@ -288,6 +288,8 @@ def examine(
     forces: JointForces,
     loads: Sequence[Load],
     buckling: float | None = None,
+    *,
+    linear: bool = False,
 ) -> LargeDisplacement:
     """Solve the linear frame of a load case and, where it moves far or may give way, its deformed shape.
 
@@ -303,6 +305,8 @@ def examine(
         That act on the links, global axes.
     buckling : float, optional
         Lowest factor at which the linear frame becomes unstable, where it is known.
+    linear : bool, optional
+        True for the linear frame alone, whatever it says: small, and without a factor to buckling or to a dead point.
 
     Returns
     -------
@@ -321,22 +325,27 @@ def examine(
         if frame is None or solution is None:
             frame = build_frame(case, pose, loads, held=case.pinned_drive)
             solution = solve_frame(frame.model)
-        factor = linkage_factor(frame) if buckling is None else buckling
+        factor = linkage_factor(frame) if buckling is None and not linear else buckling
     except (CaseError, CannotRunError) as error:
         return left("off", as_said) if off else left("unknown", reason("large_displacement_unknown", error=str(error)))
     scatter = stated_scatter(case, title)
     blind = blind_link(case)
     eyes = Scatter() if blind else compliance_range(case, frame, solution)
-    near, points = dead_point_factor(frame, solution), frame.at_points(solution.displacements)
+    points = frame.at_points(solution.displacements)
+    if linear:
+        one = LargeDisplacement(state="small", span=size, points=points, links={}, reason=reason("linear_so_far"))
+        return replace(one, scatter=scatter, eyes=eyes, blind=blind, frame=frame, solution=solution)
+    assert factor is not None
+    near = dead_point_factor(frame, solution)
     if off:
         found = left("off", as_said)
         known = replace(found, buckling=factor, dead_point=near, points=points, frame=frame, solution=solution)
         return replace(known, scatter=scatter, eyes=eyes, blind=blind, pins=forces.pins)
-    linear, where = _largest(frame, solution)
+    farthest, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",
         span=size,
-        linear=linear,
+        linear=farthest,
         where=where,
         buckling=factor,
         dead_point=near,
@@ -348,10 +357,10 @@ def examine(
         frame=frame,
         solution=solution,
         pins=forces.pins,
-        reason=reason("moves_little", linear=linear, where=where, share=linear / size, span=size, limit=LARGE),
+        reason=reason("moves_little", linear=farthest, where=where, share=farthest / size, span=size, limit=LARGE),
     )
     told = max(LEAST_FACTOR, SNAP * eyes.high) * scatter.high
-    if scatter.high * linear <= LARGE * size and min(factor, near) >= told:
+    if scatter.high * farthest <= LARGE * size and min(factor, near) >= told:
         return small
     return _deformed(case, title, frame, small, loads)
 
@@ -371,9 +380,10 @@ def with_growth(case: Case, title: str, moved: LargeDisplacement, loads: Sequenc
     Returns
     -------
     LargeDisplacement
-        The same unless small; the answer on the deformed shape itself where that does not hold the load.
+        The same unless small, and where linear theory alone was asked for; the answer on the deformed shape itself
+        where that does not hold the load.
     """
-    if moved.state != "small" or moved.frame is None:
+    if moved.state != "small" or moved.frame is None or moved.buckling is None:
         return moved
     try:
         grown = _deformed(case, title, moved.frame, moved, loads)

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.geometry.linkage.placement import vector
-from alula.loads.acting.acting import ActingMark
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import LineLoad, PointLoad, in_axes
 from alula.loads.states.actions import bounds, lasting, stated_loads
@@ -19,7 +18,7 @@ from alula.reports.figures.sheet.letters import extent
 from alula.reports.figures.sheet.plot import Axes, ticks, widest
 from alula.reports.figures.sheet.silhouette import curves, outlines, silhouette
 from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
-from alula.reports.figures.sprung import coil, spiral, stop_mark
+from alula.reports.figures.sprung import mark_line
 from alula.reports.words.numbers import number, turning
 
 Real = NDArray[np.float64]
@@ -259,20 +258,13 @@ class _Drawing:
                 told = "slack"
                 if mark.effort:
                     told = f"{number(abs(mark.effort), 3)} {'N·mm' if mark.turns else 'N'}"
-                found.append((mark.name if mark.kind == "wall" else f"{mark.name}: {told}", self._mark(mark)))
+                found.append(
+                    (
+                        mark.name if mark.kind == "wall" else f"{mark.name}: {told}",
+                        mark_line(mark, self.pose, self.size),
+                    )
+                )
         return found
-
-    def _mark(self, mark: ActingMark) -> Real:
-        """Line of something that acts."""
-        route = np.array([self.points[end] for end in mark.ends])
-        if mark.kind == "coil":
-            return coil(route[0], route[-1], 0.016 * self.size)
-        if mark.kind == "spiral":
-            return spiral(route[0], self.pose.angles[mark.ends[0][0]], 0.035 * self.size)
-        if mark.kind == "wall":
-            middle = mark.at + 0.14 * self.size * mark.aside
-            return stop_mark(np.array([middle.real, middle.imag]), float(np.angle(mark.behind)), 0.05 * self.size)
-        return route
 
     def _line(self, points: list[Real], width: float, dashes: tuple[float, float] | None = None) -> None:
         self.sheet.line(self.axes.at(points), GROUND, width, dashes)

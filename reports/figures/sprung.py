@@ -3,9 +3,39 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.acting import ActingMark
+
 Real = NDArray[np.float64]
 
 _COILS = 6
+
+
+def mark_line(mark: ActingMark, pose: Pose, size: float) -> Real:
+    """Return the line of something that acts.
+
+    Parameters
+    ----------
+    mark : ActingMark
+    pose : Pose
+        In which it is drawn.
+    size : float
+        Of the linkage [mm].
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        [mm]
+    """
+    if mark.kind == "wall":
+        middle = mark.at + 0.14 * size * mark.aside
+        return stop_mark(np.array([middle.real, middle.imag]), float(np.angle(mark.behind)), 0.05 * size)
+    route = np.array([pose.position(*end) for end in mark.ends])
+    if mark.kind == "coil":
+        return coil(route[0], route[-1], 0.016 * size)
+    if mark.kind == "spiral":
+        return spiral(route[0], pose.angles[mark.ends[0][0]], 0.035 * size)
+    return route
 
 
 def coil(start: Real, end: Real, half: float) -> Real:

@@ -29,7 +29,7 @@ export function mount(element) {
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
   store.on("drawn", settle);
-  store.on("document", (now) => now?.problem && settle({ revision: now.revision }));
+  store.on("document", settle);
 }
 
 const local = (event) => {
@@ -86,6 +86,7 @@ function up(event) {
   const done = grab;
   grab = null;
   if (!done) return;
+  settle();
   const { tool } = store.state;
   const place = toPlane(local(event));
   if (done.drag && done.moved) entry.open(parent, done.handle, false);
@@ -129,6 +130,7 @@ function spread() {
 
 function wheel(event) {
   event.preventDefault();
+  entry.close();
   zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), local(event));
 }
 
@@ -178,8 +180,9 @@ function force(load, vector, per = newtonLength()) {
 }
 
 function turn(value, step, at) {
-  const { kind } = store.state.drawn.coordinate;
-  const to = rounded(value, step);
+  const { kind, value: now } = store.state.drawn.coordinate;
+  const turns = kind === "angle" && store.state.motion?.turns ? Math.round((value - now) / 360) : 0;
+  const to = rounded(value - 360 * turns, step);
   return { operations: [{ op: "turn", to }], held: { pose: to, at, text: `${number(to, 5)}${kind === "travel" ? " mm" : "°"}` } };
 }
 
@@ -241,16 +244,18 @@ function pull({ operations, held }, gesture) {
   edit(operations, gesture).then(
     ({ revision }) => {
       newest = revision;
-      settle(store.state.drawn);
+      settle();
     },
     () => store.state.held === held && store.put("held", null),
   );
   newest = Infinity;
 }
 
-/** Let go of what was pulled when the server's drawing has it. */
-function settle(drawn) {
-  if (!grab?.moved && store.state.held && drawn?.revision >= newest) store.put("held", null);
+/** Let go of what was pulled when the server's drawing has it, or can have none. */
+function settle() {
+  const { document: now, drawn, held } = store.state;
+  const known = now?.problem ? now.revision : drawn?.revision;
+  if (held && !grab?.moved && known >= newest) store.put("held", null);
 }
 
 /* Tools that make something. */
@@ -315,7 +320,7 @@ function addLoad({ end, at, operations, to }) {
       .find(({ link, point }) => key(link, point) === one));
     target = points.findLast(Boolean);
   }
-  if (!target?.link) return tell("A load acts on a link: press on a point of one, or on the link itself.");
+  if (!now.links.some((link) => link.name === target?.link && !link.ground)) return tell("A load acts on a link that moves: press on a point of one, or on the link itself.");
   const { loadCase, drawn } = store.state;
   const name = drawn.loads.find((load) => load.load_case === loadCase)?.path[1] ?? loadCase ?? "load";
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));

@@ -24,9 +24,9 @@ const overlap = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[
 const WAYS = Array.from({ length: 16 }, (_, k) => (k * Math.PI) / 8);
 
 /** Boxes about an anchor where a text may stand, the nearest first. */
-function* boxes(anchor, text, gap, way, needed) {
+function* boxes(anchor, text, gap, way, near) {
   const half = [wide(text) / 2, HIGH / 2];
-  for (const far of needed ? [gap, gap + 9, gap + 20, gap + 36] : [gap, gap + 8]) {
+  for (const far of near ? [gap, gap + 8] : [gap, gap + 9, gap + 20, gap + 36]) {
     const ways = way === null ? WAYS : [...WAYS].sort((a, b) => Math.cos(b - way) - Math.cos(a - way));
     for (const at of ways) {
       const middle = [anchor[0] + Math.cos(at) * (far + half[0]), anchor[1] + Math.sin(at) * (far + half[1])];
@@ -36,7 +36,7 @@ function* boxes(anchor, text, gap, way, needed) {
 }
 
 /**
- * Find a box for each label {text, anchors, gap, way, needed}; null for one that has no room and is not needed.
+ * Find a box for each label {text, anchors, gap, way, needed, near}; null for one that has no room and is not needed.
  *
  * @param {object[]} labels in the order in which they choose
  * @param {number[][]} taken places that stay free of text
@@ -48,7 +48,7 @@ export function place(labels, taken, frame) {
     let best = null, least = Infinity;
     for (const anchor of label.anchors) {
       if (!inside(anchor, frame)) continue;
-      for (const box of boxes(anchor, label.text, label.gap ?? 7, label.way ?? null, label.needed)) {
+      for (const box of boxes(anchor, label.text, label.gap ?? 7, label.way ?? null, label.near)) {
         const out = box[0] < frame[0] || box[1] < frame[1] || box[2] > frame[2] || box[3] > frame[3];
         const cost = 5 * found.filter((other) => other && overlap(other, box)).length + (out ? 8 : 0)
           + taken.filter((one) => inside(one, box)).length;

@@ -7,10 +7,17 @@ import * as gestures from "./gestures.js";
 import * as tools from "./tools.js";
 import * as side from "./side.js";
 import * as motion from "./motion.js";
+import * as start from "./start.js";
+import * as verdict from "./verdict.js";
+import * as forms from "./forms.js";
+import * as text from "./text.js";
+import * as solids from "./solids.js";
+import * as out from "./out.js";
 import { add } from "./svg.js";
 
 const find = (id) => document.getElementById(id);
-const PANELS = ["verdict", "forms", "text", "solids", "out"];
+const MODULES = { verdict, forms, text, solids, out };
+const PANELS = Object.keys(MODULES);
 
 /** Tabs as a keyboard expects them: arrows go from tab to tab, Tab goes into the panel. */
 function tabs() {
@@ -78,13 +85,6 @@ function loadCases() {
   });
 }
 
-async function panels() {
-  for (const name of PANELS) {
-    const module = await import(`./${name}.js`).catch(() => null);
-    module?.mount(find(`panel-${name}`), store);
-  }
-}
-
 tabs();
 said();
 loadCases();
@@ -92,5 +92,6 @@ gestures.mount(plane.mount(find("plane")));
 tools.mount(find("tools"));
 side.mount(find("side"));
 motion.mount(find("motion"));
-await panels();
+start.mount(find("start"));
+for (const name of PANELS) MODULES[name].mount(find(`panel-${name}`), store);
 connect();

@@ -37,8 +37,7 @@ export function mount(element) {
     if (instant !== null && !(instant < motion?.values?.length)) leave();
     show();
   });
-  store.on("instant", show);
-  store.on("drawn", show);
+  for (const name of ["instant", "drawn", "document"]) store.on(name, show);
   show();
 }
 
@@ -91,7 +90,8 @@ function show() {
   parts.play.textContent = playing ? "Pause" : "Play";
   parts.element.hidden = !motion;
   if (!moves) {
-    parts.said.textContent = motion?.problem ?? "";
+    const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
+    parts.said.textContent = (!told && motion?.problem) || "no motion";
     parts.dead.replaceChildren();
     return;
   }

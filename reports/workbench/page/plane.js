@@ -1,6 +1,7 @@
 /** Draws the linkage to scale, with loads, joint forces and how much of its strength each link uses. */
 
-import { newestVerdict, same, store } from "./store.js";
+import { same, store } from "./store.js";
+import { shownVerdict } from "./verdict.js";
 import { freePoints, poseHandle, scene } from "./scene.js";
 import { add, draw, Group, set } from "./svg.js";
 import { ahead, along, place } from "./labels.js";
@@ -10,7 +11,7 @@ import { angle, fit, gridStep, minus, number, plus, round125, size, toScreen, tu
 const ARROW = 0.2;
 /** Use of strength: what is up to here, how it is named, its colour, and its hatching for who sees no colours. */
 export const USES = [
-  [0.5, "under 50 %", "#c3d8cc"], [0.8, "50 to 80 %", "#e6d993"], [1, "80 to 100 %", "#ebaf63"], [Infinity, "over 100 %", "#e08a80"],
+  [0.5, "up to 50 %", "#c3d8cc"], [0.8, "80 %", "#e6d993"], [1, "100 %", "#ebaf63"], [Infinity, "more", "#e08a80"],
 ];
 let svg, groups, perNewton = 0, waiting = false, hovered = null;
 
@@ -19,7 +20,6 @@ export function mount(element) {
   marks(draw(svg, "defs"));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
-  add(element, "div", { id: "legend" });
   for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "paths"]) {
     store.on(name, later);
   }
@@ -84,9 +84,10 @@ function forcesOf(now) {
 
 /** The use of a link's strength, in words and as a colour. */
 export function useOf(link) {
-  const use = newestVerdict()?.links?.[link.name]?.use ?? null;
-  if (use === null || link.ground) return { text: "", colour: "#9fb1c1", over: false };
-  return { text: `${number(100 * use, 2)} %`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
+  const { use = null, verdict } = shownVerdict(store.state.verdict)?.links?.[link.name] ?? {};
+  if (use === null || link.ground || store.state.instant !== null) return { text: "", colour: "#9fb1c1", over: false };
+  const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
+  return { text: `${number(100 * use, 2)} %${sign}`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
 }
 
 function drawAll() {
@@ -115,7 +116,7 @@ function grid({ width, height }) {
   for (const y of lines((view.top - height) / view.scale, view.top / view.scale)) {
     const at = toScreen([0, y])[1];
     groups.grid.put(`y${y}`, "line", { x1: 0, x2: width, y1: at, y2: at });
-    if (at > 50 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
+    if (at > 16 && at < height - 24) groups.grid.put(`ty${y}`, "text", { x: 4, y: at - 3 }, number(y, 6));
   }
   groups.grid.put("unit", "text", { x: width - 6, y: height - 5, "text-anchor": "end" }, "x, y [mm]");
 }
@@ -166,7 +167,7 @@ function bodies(sheet) {
     const [a, b] = link.pieces.reduce((best, one) => (size(minus(...one)) > size(minus(...best)) ? one : best)).map((one) => toScreen(one));
     const across = angle(minus(b, a)) + Math.PI / 2;
     const anchors = [0.5, 0.35, 0.65, 0.25, 0.75].map((share) => plus(a, minus(b, a), share));
-    const text = use.text ? `${link.name}: ${use.text}${use.over ? " ✗" : ""}` : link.name;
+    const text = use.text ? `${link.name}: ${use.text}` : link.name;
     texts.push({ key: `link ${link.name}`, text, anchors, gap: wide / 2 + 4, way: across, kind: `link ${use.over ? "over" : ""}`, rank: 4 });
   }
 }
@@ -263,7 +264,7 @@ function forces({ now, texts, taken }) {
     if (!newtons) continue;
     const editable = load.kind === "force";
     const text = editable ? `${number(newtons)} N` : `${number(newtons)} N ${load.kind}`;
-    arrows.push({ key: `load ${k} ${load.path.join(".")}`, at: load.at, tip: plus(load.at, load.vector, perNewton), kind: editable ? "load" : "load other", text, rank: editable ? 1 : 7, needed: editable, path: load.path });
+    arrows.push({ key: `load ${k} ${load.path.join(".")}`, at: load.at, tip: plus(load.at, load.vector, perNewton), kind: editable ? "load" : "load other", text, rank: editable ? 1 : 7, needed: editable, near: !editable, path: load.path });
   }
   for (const one of arrows) {
     const [from, to] = [toScreen(one.at), toScreen(one.tip)];
@@ -373,11 +374,11 @@ function texts({ texts: labels, taken, width, height }) {
 /** What colours and arrows mean, in words. */
 function legend(now) {
   const element = document.getElementById("legend");
-  const uses = now && Object.values(newestVerdict()?.links ?? {}).some((one) => one.use !== null);
+  const uses = now && Object.values(shownVerdict(store.state.verdict)?.links ?? {}).some((one) => one.use !== null);
   const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
   const key = largest ? round125(largest / 2) : 0;
   const entries = [
-    ...(uses ? [["", "use of strength:"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
+    ...(uses ? [["", "strength used (✗ fails, ? undecided):"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
     ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
     ...(now?.loads.length ? [["load", "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),

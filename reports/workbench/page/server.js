@@ -46,9 +46,10 @@ async function next() {
   try {
     const answer = await send(route, { revision, gesture, ...body });
     revision = Math.max(revision, answer.revision ?? 0);
+    if (store.state.notice?.refused) store.put("notice", null);
     resolve(answer);
   } catch (problem) {
-    tell(problem.message);
+    store.put("notice", { sentence: problem.message, refused: true });
     reject(problem);
   }
   busy = false;

@@ -38,12 +38,6 @@ export const store = {
   },
 };
 
-/** The verdict to show: of the newest revision by hand, the whole one if it is there; null if there is none yet. */
-export function newestVerdict({ linear, whole } = store.state.verdict) {
-  if (!linear || !whole) return whole ?? linear;
-  return whole.revision >= linear.revision ? whole : linear;
-}
-
 /** Whether two selections are the same thing. */
 export function same(a, b) {
   return JSON.stringify(a) === JSON.stringify(b);

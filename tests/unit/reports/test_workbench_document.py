@@ -58,6 +58,8 @@ def test_a_value_that_is_set_changes_its_own_line(name: str) -> None:
 def test_an_entry_is_added_and_removed_anywhere(name: str) -> None:
     document = Document(source(name))
     for path, value in list(entries(document.tables()))[::11]:
+        if len(path) == 2 and path[0] == "materials":
+            continue  # parts are made of it
         assert all(
             line[0] == "-" or "]" in line or "}" in line for line in edited(document, {"op": "remove", "path": path})
         )

@@ -1,0 +1,179 @@
+"""The verdict by hand on the text of a case while it is edited, as plain data: so far by linear theory, then whole."""
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import CheckOutcome, Subject, Tier, Verdict, by_nearness, overall
+from alula.fea.findings.of_check import with_findings
+from alula.fea.outcomes.result import CheckResult
+from alula.geometry.base.errors import AlulaError
+from alula.loads.case.case import Case
+from alula.loads.case.case_file import keys_of
+from alula.reports.check.changes import change_sentences, change_title, size_command
+from alula.reports.sentences import told
+from alula.reports.sentences.verdicts import checks_of, first_lines, opening
+from alula.reports.words.numbers import sentence
+from alula.reports.workbench.answers import Plain, Stage, case_of
+
+_SO_FAR = (
+    "So far by linear theory of the loads as stated: large displacement, buckling of the linkage, its limit load and "
+    "other numbers of it as a whole are still to come, and so are play, air, friction and pins that tilt in the bands."
+)
+
+
+def linear_answer(text: str, name: str) -> Plain:
+    """Answer the verdict by hand so far: what linear theory says of the loads as stated.
+
+    It leaves out what takes long (``linear`` of ``alula.fea.check.run.check_case``): numbers of the linkage as a whole,
+    its buckling, limit load and deformed shape, and in bands play, air, friction and how pins may stand in their holes.
+    Its bands are narrower for that, so that a pass may become open or a fail, and a fail open.
+
+    Parameters
+    ----------
+    text : str
+        Of the case file.
+    name : str
+        Path or built-in name.
+
+    Returns
+    -------
+    dict
+        As ``whole_answer``, of stage ``linear``; without changes and warnings.
+    """
+    start = time.perf_counter()
+    try:
+        return verdict_of(check_case(case_of(text, name), name=name, threads=1, linear=True), "linear", start)
+    except AlulaError as error:
+        return _open("linear", str(error), start)
+
+
+def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = None) -> Plain:
+    """Answer the whole verdict by hand, as ``alula check --fidelity beam`` gives it.
+
+    Parameters
+    ----------
+    text : str
+        Of the case file.
+    name : str
+        Path or built-in name.
+    early : callable, optional
+        Is told the same before what would change it is tried, which takes several checks.
+
+    Returns
+    -------
+    dict
+        ``stage`` whole; ``verdict``; ``sentences``, the verdict in words; ``checks``, with value, band and limit in
+        their unit, None for what is not known or has no end; ``links``: link -> ``use``, the largest share of strength
+        that it takes at the unfavourable end of its band, None where no check asks, and ``verdict``; ``changes``, each
+        with ``text``, ``command`` and ``operations``, edits that make it, None where it is no single entry;
+        ``warnings``; ``ms``.
+    """
+    start = time.perf_counter()
+    try:
+        result = check_case(case_of(text, name), name=name, fidelity="beam", threads=1)
+        if early is not None:
+            early(verdict_of(result, "whole", start))
+        return verdict_of(with_findings(result), "whole", start)
+    except AlulaError as error:
+        return _open("whole", str(error), start)
+
+
+def verdict_of(result: CheckResult, stage: str, start: float) -> Plain:
+    """Return a verdict as plain data.
+
+    Parameters
+    ----------
+    result : CheckResult
+    stage : {"linear", "whole", "solids"}
+        What it is of.
+    start : float
+        When it was begun, by ``time.perf_counter`` [s].
+
+    Returns
+    -------
+    dict
+        As ``whole_answer``.
+    """
+    checks, several = checks_of(result), len(result.load_cases) > 1
+    sentences = first_lines(result)
+    if stage == "linear":
+        sentences = (*opening(result.case, result.verdict, checks, several=several), _SO_FAR)
+    of_links = {
+        link: [one for one in checks if one.subject == Subject.link(link)] for link in result.case.checked_links
+    }
+    return {
+        "stage": stage,
+        "verdict": result.verdict.value,
+        "sentences": list(sentences),
+        "checks": [_check(result.case, check) for check in by_nearness(checks)],
+        "links": {
+            link: {"use": _use(own), "verdict": overall(one.verdict for one in own).value}
+            for link, own in of_links.items()
+        },
+        "changes": _changes(result),
+        "warnings": [sentence(told(warning)) for warning in result.warnings],
+        "ms": 1e3 * (time.perf_counter() - start),
+    }
+
+
+def _open(stage: str, problem: str, start: float) -> Plain:
+    """Return the verdict on a case that cannot be checked."""
+    nothing: Plain = {"checks": [], "links": {}, "changes": [], "warnings": []}
+    ms = 1e3 * (time.perf_counter() - start)
+    return {"stage": stage, "verdict": Verdict.UNDECIDED.value, "sentences": [problem], **nothing, "ms": ms}
+
+
+def _check(case: Case, check: CheckOutcome) -> Plain:
+    return {
+        "check": check.name,
+        "type": getattr(case.all_checks.get(check.name), "type", ""),
+        "quantity": str(check.quantity),
+        "subject": str(check.subject),
+        "load_case": check.load_case,
+        "value": _known(check.value.value),
+        "low": _known(check.value.low),
+        "high": _known(check.value.high),
+        "limit": _known(check.limit),
+        "unit": check.unit,
+        "verdict": check.answer,
+        "text": sentence(told(check.reason)),
+    }
+
+
+def _known(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _use(checks: Sequence[CheckOutcome]) -> float | None:
+    """Return the largest share of strength that a link takes: the limit over the low end of its band."""
+    margins = [one.margin for one in checks if one.applies and one.quantity.tier is not Tier.NEITHER]
+    known = [1.0 / margin for margin in margins if margin > 0.0]
+    return max(known, default=None)
+
+
+def _changes(result: CheckResult) -> list[Plain]:
+    """Return what would change the verdict, as reports tell it; a size that was tried and passes can be set at once."""
+    several, found = len(result.load_cases) > 1, list[Plain]()
+    for change in result.changes:
+        title = sentence(change_title(change, several=several))[:-1]
+        told_of_it = f"{title}: {' '.join(change_sentences(change, result))}"
+        found.append({"text": told_of_it, "command": size_command(change, result) or None, "operations": None})
+        if (size := change.size) is not None and change.check.verdict is not Verdict.PASS:
+            operations = [{"op": "set", "path": keys_of(size.entry), "value": size.last}]
+            wide = f"With {size.entry} = {size.last} it passes; the least that does lies between {size.first} and this."
+            found.append({"text": wide, "command": None, "operations": operations})
+    return found
+
+
+def _linear(text: str, name: str, tell: Callable[[str, Plain], None]) -> None:
+    tell("verdict", linear_answer(text, name))
+
+
+def _whole(text: str, name: str, tell: Callable[[str, Plain], None]) -> None:
+    tell("verdict", whole_answer(text, name, lambda answer: tell("verdict", answer)))
+
+
+STAGES: Mapping[str, Stage] = {"linear": _linear, "whole": _whole}
+"""What a process may be asked, one after the other: each tells events with their data."""

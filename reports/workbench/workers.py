@@ -1,0 +1,266 @@
+"""Processes that answer while a case is edited: one tells poses, one verdicts; the newest text comes first.
+
+Each takes a text through its stages. The first stage always runs to its end, so that numbers follow a drag however fast
+it is; the later ones take longer, and are interrupted as soon as there is a newer text. Requests and answers are lines
+of JSON on the child's standard input and output. A child ends with this process, whose end closes its input.
+"""
+
+import asyncio
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from _thread import interrupt_main
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from alula.geometry.base.child import environment, last_line, module_command
+
+Plain = dict[str, Any]
+Tell = Callable[[str, Plain], None]
+Key = tuple[object, ...]
+Kept = OrderedDict[Key, dict[str, dict[str, Plain]]]
+"""Text -> stage -> event -> what was told last."""
+
+ROLES: Mapping[str, tuple[str, ...]] = {"answers": ("pose", "motion"), "verdicts": ("linear", "whole")}
+"""What each process answers, stage after stage, by the name of the module that does."""
+_KEPT = 200
+"""Texts whose answers are kept: some ten kilobytes each, the last steps of undo and a drag."""
+_LONGEST = 1 << 26
+"""Longest line of a child [bytes]."""
+_AGAIN = 0.5
+"""Seconds after which a stage that has not stopped is interrupted once more: foreign code may swallow an exception, and
+what is left behind in order takes less."""
+
+
+class Workers:
+    """What answers the texts of a case. It belongs to the event loop in which it is made.
+
+    Parameters
+    ----------
+    tell : callable
+        Takes the name of an event and its data, with the revision that it is of.
+    folder : Path
+        That of the case, whose files of parts enter the answers.
+    """
+
+    def __init__(self, tell: Tell, folder: Path) -> None:
+        self._folder = folder
+        kept = Kept()
+        self._lines = [_Line(role, tell, kept) for role in ROLES]
+
+    def ask(self, revision: int, text: str, name: str) -> None:
+        """Ask for all answers to a text; what is still asked for an older one is left out.
+
+        Parameters
+        ----------
+        revision : int
+            With which answers are told.
+        text : str
+            Of the case file.
+        name : str
+            Its path or built-in name.
+        """
+        asked = _Asked(revision=revision, text=text, name=name, key=(text, name, *_files(self._folder, text)))
+        for line in self._lines:
+            line.ask(asked)
+
+    async def close(self) -> None:
+        """End both processes."""
+        await asyncio.gather(*(line.close() for line in self._lines))
+
+
+def _files(folder: Path, text: str) -> list[tuple[str, int, int]]:
+    """Return the files of a folder that a text names, with their time and size."""
+    try:
+        with os.scandir(folder) as entries:
+            named = [(one.name, one.stat()) for one in entries if one.name in text and one.is_file()]
+    except OSError:  # the folder has gone, or a file meanwhile
+        return []
+    return sorted((name, found.st_mtime_ns, found.st_size) for name, found in named)
+
+
+@dataclass(kw_only=True, eq=False)
+class _Asked:
+    revision: int
+    text: str
+    name: str
+    key: Key
+
+
+class _Line:
+    """One process, and what it is asked."""
+
+    def __init__(self, role: str, tell: Tell, kept: Kept) -> None:
+        self._role, self._stages, self._tell, self._kept = role, ROLES[role], tell, kept
+        self._asked: _Asked | None = None
+        self._at_work: tuple[Key, str] | None = None
+        self._child: asyncio.subprocess.Process | None = None
+        self._new = asyncio.Event()
+        self._task = asyncio.get_running_loop().create_task(self._run())
+
+    def ask(self, asked: _Asked) -> None:
+        self._asked = asked
+        self._new.set()
+        if self._at_work is not None and self._at_work[0] != asked.key and self._at_work[1] != self._stages[0]:
+            self._send({"stop": True})
+
+    async def close(self) -> None:
+        self._task.cancel()
+        with suppress(asyncio.CancelledError):
+            await self._task
+        if self._child is not None and self._child.returncode is None:
+            self._child.kill()
+            await self._child.wait()
+
+    def _send(self, request: Plain) -> None:
+        assert self._child is not None
+        assert self._child.stdin is not None
+        with suppress(ConnectionError):  # it has ended, and the missing answer tells
+            self._child.stdin.write(json.dumps(request).encode() + b"\n")
+
+    async def _run(self) -> None:
+        await self._start()
+        while True:
+            await self._new.wait()
+            self._new.clear()
+            asked = self._asked
+            assert asked is not None
+            for stage in self._stages:
+                if stage != self._stages[0] and self._new.is_set():
+                    break
+                await self._answer(asked, stage)
+
+    async def _start(self) -> None:
+        pipe, command = asyncio.subprocess.PIPE, module_command(__name__, self._role)
+        self._child = await asyncio.create_subprocess_exec(
+            *command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment(), limit=_LONGEST
+        )
+
+    async def _answer(self, asked: _Asked, stage: str) -> None:
+        """Tell what a stage answers to a text, from what is kept where it was answered before."""
+        known = self._kept.setdefault(asked.key, {})
+        self._kept.move_to_end(asked.key)
+        while len(self._kept) > _KEPT:
+            self._kept.popitem(last=False)
+        if stage in known:
+            for event, data in known[stage].items():
+                self._tell(event, {"revision": asked.revision, **data})
+            return
+        self._at_work = asked.key, stage
+        told = await self._told(asked, stage)
+        self._at_work = None
+        if told is not None:
+            known[stage] = told
+
+    async def _told(self, asked: _Asked, stage: str) -> dict[str, Plain] | None:
+        """Return what the process told, None where it was stopped."""
+        assert self._child is not None
+        assert self._child.stdout is not None
+        told: dict[str, Plain] = {}
+        self._send({"stage": stage, "text": asked.text, "name": asked.name})
+        while line := await self._child.stdout.readline():
+            answer = json.loads(line)
+            if "done" in answer:
+                return told if answer["done"] else None
+            told[answer["event"]] = answer["data"]
+            self._tell(answer["event"], {"revision": asked.revision, **answer["data"]})
+        await self._restart(asked)
+        return told  # not asked again: the same text would end it again
+
+    async def _restart(self, asked: _Asked) -> None:
+        assert self._child is not None
+        assert self._child.stderr is not None
+        why, status = last_line(await self._child.stderr.read()), await self._child.wait()
+        sentence = (
+            f"One of the two processes that answer, {self._role}, ended by itself (status {status}: {why}); it was "
+            "started anew, and this text is not asked of it again"
+        )
+        self._tell("notice", {"revision": asked.revision, "sentence": sentence})
+        await self._start()
+
+
+class _StoppedError(KeyboardInterrupt):
+    """A stage is to end, since there is a newer text."""
+
+
+class _Service:
+    """The child's side: takes one request at a time, and alone writes to standard output."""
+
+    def __init__(self) -> None:
+        self._requests: queue.Queue[Plain] = queue.Queue()
+        self._in, self._out = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, 0)
+        os.dup2(nowhere, 1)
+        self._stoppable, self._stop = False, False
+
+    def run(self, stages: Mapping[str, Callable[[str, str, Callable[[str, Plain], None]], None]]) -> None:
+        """Answer requests until the parent ends, and this process with it."""
+        signal.signal(signal.SIGINT, self._interrupted)
+        threading.Thread(target=self._read, daemon=True).start()
+        while True:
+            request = self._requests.get()
+            try:
+                self._stoppable = True
+                self._interrupted()  # a stop may be there already
+                stages[request["stage"]](request["text"], request["name"], self._tell)
+                self._stoppable, done = False, True
+            except _StoppedError:
+                self._stoppable, done = False, False
+            self._write({"done": done})
+
+    def _interrupted(self, *_: object) -> None:
+        """Raise in the main thread, which alone takes signals and says whether it may be stopped."""
+        if self._stop and self._stoppable:
+            raise _StoppedError
+
+    def _read(self) -> None:
+        for line in self._in:
+            request = json.loads(line)
+            if "stop" in request:
+                self._stop = True
+                threading.Thread(target=self._press, daemon=True).start()
+            else:
+                self._stop = False
+                self._requests.put(request)
+        os._exit(1)
+
+    def _press(self) -> None:
+        while self._stop and self._stoppable:
+            interrupt_main(signal.SIGINT)
+            time.sleep(_AGAIN)
+
+    def _tell(self, event: str, data: Plain) -> None:
+        self._stoppable = False  # a line is whole or none
+        self._write({"event": event, "data": data})
+        self._stoppable = True
+        self._interrupted()
+
+    def _write(self, answer: Plain) -> None:
+        self._out.write(json.dumps(answer).encode() + b"\n")
+        self._out.flush()
+
+
+def main(role: str) -> None:
+    """Answer the requests of a role until the parent ends.
+
+    Parameters
+    ----------
+    role : str
+        One of ``ROLES``.
+    """
+    service = _Service()
+    service.run(import_module(f"alula.reports.workbench.{role}").STAGES)  # imported while the page loads
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
