@@ -15,7 +15,8 @@ from alula.loads.text.explain import printable
 from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.document import Document
 from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
-from alula.reports.workbench.stand_in import Solids, Workers
+from alula.reports.workbench.stand_in import Solids
+from alula.reports.workbench.workers import Workers
 
 PERIOD = 1.0
 """Seconds from one look at the disk to the next, and from one draft to the next."""
