@@ -154,8 +154,8 @@ function dragOf(handle, start) {
 function movingTo(handle) {
   const points = handle.kind === "joint" ? scene().joints.find((one) => one.name === handle.name).points : [key(handle.link, handle.point)];
   const what = handle.kind === "joint" ? { joint: handle.name } : { link: handle.link, point: handle.point };
-  return (place, free) => {
-    const to = snap(place, free);
+  return (place, free, exact = false) => {
+    const to = exact ? place : snap(place, free);
     return { operations: [{ op: "move", ...what, to }], held: { points, at: to, text: `${number(to[0], 5)}, ${number(to[1], 5)} mm` } };
   };
 }
@@ -372,7 +372,7 @@ function nudge(handle, way, free) {
   let pulled = null;
   if (handle.kind === "joint" || handle.kind === "point") {
     const from = handle.kind === "joint" ? now.joints.find((one) => one.name === handle.name).at : now.at.get(key(handle.link, handle.point));
-    pulled = movingTo(handle)(from.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), true);
+    pulled = movingTo(handle)(from.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), free, true);
   } else if (handle.kind === "load") {
     const load = now.loads.find((one) => same(one.path, handle.path));
     pulled = force(load, load.vector.map((one, k) => rounded(one + way[k] * forceStep() / (free ? 100 : 1), forceStep() / 100)));
