@@ -3,6 +3,7 @@
 import time
 import tomllib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from alula.loads.case.case_file import changed_case, folder_of
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.states.kinetostatics import dead_points
 from alula.reports.workbench.drawn import drawn, joint_forces
+from alula.reports.workbench.sketch import sketched
 
 Plain = dict[str, Any]
 Stage = Callable[[str, str, Callable[[str, Plain], None]], None]
@@ -65,7 +67,8 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
     Returns
     -------
     dict
-        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, None where nothing can be; ``forces`` as ``joint_forces``;
+        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, or ``sketched`` while there is no pose, None where nothing can
+        be; ``forces`` as ``joint_forces``;
         ``problem``, the sentence that says why either is missing, else None; ``ms``.
     """
     start, seen, forces, problem = time.perf_counter(), None, None, None
@@ -78,7 +81,14 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
         seen, forces = drawn(case, statics.pose, statics), joint_forces(statics)
     except AlulaError as error:
         problem = str(error)
+        seen = seen or _sketch(text)
     return _posed(seen, forces, problem, start)
+
+
+def _sketch(text: str) -> Plain | None:
+    with suppress(ValueError, RecursionError):
+        return sketched(tomllib.loads(text.removeprefix("\ufeff")))
+    return None
 
 
 def _posed(seen: Plain | None, forces: Plain | None, problem: str | None, start: float) -> Plain:

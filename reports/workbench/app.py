@@ -29,7 +29,7 @@ LARGEST_REQUEST = 8 << 20
 """Bytes: a case of 1 MiB, each of whose characters JSON may write with six."""
 KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 """Files that a page consists of, by how their names end."""
-ELSEWHERE = {"viewer.js": "alula.reports.turnable", "report.css": "alula.reports.templates"}
+ELSEWHERE = {"viewer.js": "alula.reports.turnable", "turnable.css": "alula.reports.templates"}
 """Files of the page that stand in other packages."""
 REPORT = "sandbox allow-scripts allow-downloads; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 """Policy of a report beside its own by hashes: it is of no origin, so that nothing in it can ask this server."""

@@ -39,7 +39,8 @@ export function mountDrop(holder, store) {
     let choices = [];
 
     function rows() {
-      const points = Object.keys(tables.links?.[link.value]?.points ?? {});
+      const stated = tables.links?.[link.value]?.points;
+      const points = typeof stated === "object" ? Object.keys(stated) : [];
       choices = told.bores.map((bore, place) => make("select", { "aria-label": `Point of ${bore.bore}` },
         make("option", { value: "" }, "none"),
         ...[...new Set([...points, ...(link.value ? [] : [bore.point])])].map((name) => make("option", { value: name, selected: link.value ? points[place] === name : true }, name))));

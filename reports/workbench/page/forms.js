@@ -333,6 +333,8 @@ class Forms {
       return box;
     }
     const option = optionOf(node, value);
+    if (typeof value === "string") box.append(this.input({ type: "string" }, value, path, table, { label: words(path.at(-1)) })); // such as "from-part"
+    if (typeof value === "string") return box;
     box.append(...this.kinds(node, value, path));
     if (isTable(option)) box.append(...this.fields(option, value, path));
     else if (isMap(option)) box.append(...this.map(option, value, path));
@@ -456,7 +458,8 @@ class Forms {
     if (refers === "points") {
       const link = path[2] === "held_at" ? path[1] : (table?.link ?? (table?.links && table.links[path.at(-1)]));
       const of = link ? [link] : Object.keys(this.tables.links ?? {});
-      return [...new Set(of.flatMap((one) => Object.keys(this.tables.links?.[one]?.points ?? {})))];
+      const pointsOf = (points) => (typeof points === "object" ? Object.keys(points) : []);
+      return [...new Set(of.flatMap((one) => pointsOf(this.tables.links?.[one]?.points)))];
     }
     const own = Object.keys(this.tables[refers] ?? {});
     const library = refers === "materials" ? (options(node)[0].examples ?? node.examples ?? []) : [];

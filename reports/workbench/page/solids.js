@@ -13,7 +13,7 @@ export function mount(holder, store) {
   const auto = make("input", { type: "checkbox", id: "solids-auto", onchange: later });
   const list = make("table", {}, make("caption", { class: "soft" }, "Links"), make("tbody"));
   const figures = make("div", { class: "models" });
-  const shown = new Map(); // link -> what its model was made of
+  let shown = null; // {name, revision} of the model that stands on the page
   let pause = null;
   let begun = -1; // the revision that solids were last started of by themselves
 
@@ -45,24 +45,26 @@ export function mount(holder, store) {
     const links = Object.entries(now?.links ?? {});
     list.hidden = !links.length;
     list.tBodies[0].replaceChildren(...links.map(([name, { state, seconds }]) => {
-      const turn = ["done", "kept"].includes(state) && make("button", { type: "button", onclick: () => model(name, true) }, "Model");
+      const turn = ["done", "kept"].includes(state) && make("button", { type: "button", onclick: () => model(name) }, "Model");
       return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, STATES[state] ?? state), make("td", { class: "num" }, seconds ? `${number(Number(seconds.toPrecision(2)))} s` : ""), make("td", {}, turn || null));
     }));
-    const ready = links.find(([name, { state }]) => ["done", "kept"].includes(state) && !shown.has(name));
-    if (ready && !shown.size) model(ready[0]);
+    const ready = links.filter(([, { state }]) => ["done", "kept"].includes(state)).map(([name]) => name);
+    const next = shown ? ready.find((name) => name === shown.name && now.revision !== shown.revision) : ready[0];
+    if (next) model(next);
   }
 
   /** Fetch the model of a link and let the viewer start it; one stands on the page at a time. */
   async function model(name) {
-    shown.set(name, true);
+    shown = { name, revision: store.state.solids.revision };
     try {
-      const { data } = await send(`model/${encodeURIComponent(name)}`);
+      const record = await send(`model/${encodeURIComponent(name)}`);
       const block = make("script", { type: "application/json", "data-model": "link" });
-      block.textContent = typeof data === "string" ? data : JSON.stringify(data);
+      block.textContent = JSON.stringify(record);
       const figure = make("figure", { "data-name": `link-${name}` }, block, make("figcaption", {}, name));
       figures.replaceChildren(figure);
       await viewer();
       window.alulaViewer.add(block);
+      if (figure.dataset.turnable === "still") figure.append("This browser shows no model, since it has no WebGL.");
     } catch (problem) {
       tell(problem.message);
     }
@@ -78,6 +80,7 @@ let loaded = null;
 /** The script that draws models, fetched when the first one is asked for. */
 function viewer() {
   loaded ??= new Promise((resolve, reject) => {
+    document.head.append(make("link", { rel: "stylesheet", href: "page/turnable.css" }));
     document.head.append(make("script", { src: "page/viewer.js", onload: resolve, onerror: () => reject(new Error("The viewer of models did not load; reload the page.")) }));
   });
   return loaded;
