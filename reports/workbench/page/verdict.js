@@ -39,7 +39,7 @@ export function mount(holder, store) {
     const subjectOf = (name) => (names("links").includes(name) ? { kind: "link", name } : names("joints").includes(name) ? { kind: "joint", name } : null);
     rest.replaceChildren(...[
       ...(found.sentences ?? []).map((sentence) => make("p", {}, sentence)),
-      found.verdict === "undecided" && found.stage === "whole" ? make("p", {}, make("button", { type: "button", onclick: solve }, "Check with solids")) : null,
+      found.verdict === "undecided" && found.stage === "whole" && found.checks.length ? make("p", {}, make("button", { type: "button", onclick: solve }, "Check with solids")) : null,
       changes(found),
       table(found, subjectOf),
       sideBySide(),
