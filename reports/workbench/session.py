@@ -16,7 +16,7 @@ from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.document import Document
 from alula.reports.workbench.edits import EMPTY
 from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
-from alula.reports.workbench.stand_in import Solids
+from alula.reports.workbench.solids import Solids
 from alula.reports.workbench.workers import Workers
 
 PERIOD = 1.0

@@ -14,6 +14,7 @@ export function mount(holder, store) {
   const list = make("table", {}, make("caption", { class: "soft" }, "Links"), make("tbody"));
   const figures = make("div", { class: "models" });
   let shown = null; // {name, revision} of the model that stands on the page
+  let turned = null; // what the viewer shows of it
   let pause = null;
   let begun = -1; // the revision that solids were last started of by themselves
 
@@ -53,18 +54,17 @@ export function mount(holder, store) {
     if (next) model(next);
   }
 
-  /** Fetch the model of a link and let the viewer start it; one stands on the page at a time. */
+  /** Fetch the model of a link and let the viewer show it; one stands on the page at a time. */
   async function model(name) {
     shown = { name, revision: store.state.solids.revision };
     try {
       const record = await send(`model/${encodeURIComponent(name)}`);
-      const block = make("script", { type: "application/json", "data-model": "link" });
-      block.textContent = JSON.stringify(record);
-      const figure = make("figure", { "data-name": `link-${name}` }, block, make("figcaption", {}, name));
-      figures.replaceChildren(figure);
       await viewer();
-      window.alulaViewer.add(block);
-      if (figure.dataset.turnable === "still") figure.append("This browser shows no model, since it has no WebGL.");
+      turned?.remove();
+      const figure = make("figure", {}, make("figcaption", {}, name));
+      figures.replaceChildren(figure);
+      turned = window.alulaViewer.show(figure, "link", JSON.stringify(record));
+      if (!turned) figure.append("This browser shows no model, since it has no WebGL.");
     } catch (problem) {
       tell(problem.message);
     }
