@@ -290,23 +290,33 @@ class Session:
             file = self.folder / plain_name(as_ if starter else path, ".toml")
             if starter:
                 write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
-            stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
-            if self._drafts is not None:
-                self._drafts.close()
-            self.path, self.document, self._drafts = file, Document(text), None
-            self.document.revision = revision  # answers about the case before are not taken for its own
-            self._always, self._problem, self._draft, self._last, self._pose = False, None, None, {}, ("", None)
-            self._stand(text, stamp)
-            self._drafts = Drafts(file)
-            if not self._drafts.alone:
-                self._say("this case is open in another alula as well; what is not saved here is not kept")
-            kept, base = self._drafts.kept()
-            if kept not in (None, text) and base != digest(text):
-                self._set_aside(kept or "", "was made from another text than the file has now")
-                kept = None
-            self._changed()
-            self._draft = None if kept == text else kept
-            self._tell_document()
+            self.load(file)
+
+    def load(self, file: Path) -> None:
+        """Open a case, and offer what was not saved of it.
+
+        Parameters
+        ----------
+        file : Path
+            In the session's folder.
+        """
+        stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
+        if self._drafts is not None:
+            self._drafts.close()
+        self.path, self.document, self._drafts = file, Document(text), None
+        self.document.revision = revision  # answers about the case before are not taken for its own
+        self._always, self._problem, self._draft, self._last, self._pose = False, None, None, {}, ("", None)
+        self._stand(text, stamp)
+        self._drafts = Drafts(file)
+        if not self._drafts.alone:
+            self._say("this case is open in another alula as well; what is not saved here is not kept")
+        kept, base = self._drafts.kept()
+        if kept not in (None, text) and base != digest(text):
+            self._set_aside(kept or "", "was made from another text than the file has now")
+            kept = None
+        self._changed()
+        self._draft = None if kept == text else kept
+        self._tell_document()
 
     async def save(self, always: bool | None = None) -> None:
         """Write the text into the file, from now on by itself if ``always`` says so."""
