@@ -27,6 +27,8 @@ _ARGUMENTS = (
     *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=<-loopback>"),  # a port at which nobody answers
 )
 NO_WEBGL = ("--disable-3d-apis",)
+THIS_MACHINE = ("--proxy-bypass-list=127.0.0.1",)
+"""Argument with which pages of this machine's own servers can be opened, and no others."""
 
 
 def programs() -> tuple[str, str] | None:
@@ -41,13 +43,13 @@ class Browser:
     def __init__(self, driver: Any) -> None:
         self.driver = driver
 
-    def open(self, page: Path, size: tuple[int, int] = DESKTOP) -> None:
-        """Open a page in a viewport of a size; what the browser said before is forgotten."""
+    def open(self, page: Path | str, size: tuple[int, int] = DESKTOP) -> None:
+        """Open a file or an address in a viewport of a size; what the browser said before is forgotten."""
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
         self.command("Emulation.setDeviceMetricsOverride", **metrics)
         self.messages(), self.requests()
-        self.driver.get(page.as_uri())
+        self.driver.get(page if isinstance(page, str) else page.as_uri())
 
     def command(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Give a command of the DevTools protocol."""
