@@ -48,7 +48,7 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[chromium.Browser]:
     """Chromium that reaches this machine, and nothing else."""
-    with chromium.chromium(tmp_path_factory.mktemp("profile"), *chromium.THIS_MACHINE) as started:
+    with chromium.chromium(tmp_path_factory.mktemp("profile"), *chromium.LOCAL) as started:
         yield started
 
 
@@ -171,3 +171,21 @@ def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench
         browser.driver.close()
         browser.driver.switch_to.window(page)
     assert [one for one in browser.messages() if "favicon" not in one] == []
+
+
+def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """The crank alone has a part, so that one link is solved: its model turns, and both bands are told."""
+    address, _ = bench
+    visit(browser, address)
+    bare = "[{op: 'remove', path: ['links', 'rocker', 'part']}, {op: 'remove', path: ['links', 'coupler', 'part']}]"
+    browser.run(f"import(document.baseURI + 'page/server.js').then(({{ edit }}) => edit({bare}))")
+    browser.wait(f"!{TEXT}.split('[links.rocker]')[1].split('points')[0].includes('part')")
+    open_panel(browser, "solids")
+    browser.run(PRESS, "Check with solids")
+    browser.wait("document.querySelector('#panel-solids .model canvas')")
+    assert browser.element("#panel-solids th").text == "crank"
+    open_panel(browser, "verdict")
+    browser.wait("document.querySelector('#panel-verdict svg.bands')")
+    told = browser.element("#panel-verdict svg.bands").get_attribute("aria-label")
+    assert told.startswith("crank: by hand ") and "; solid " in told
+    assert "with solids" in browser.element("#panel-verdict .stamp-line").text

@@ -104,6 +104,7 @@ function finish(parent, operations) {
 /** Put the form beside a place, where it is seen. */
 function beside(parent, [x, y]) {
   const { clientWidth, clientHeight } = parent;
+  form.classList.toggle("above", y > clientHeight / 2); // on a narrow page it takes the other half
   const left = x + 28 + form.offsetWidth < clientWidth ? x + 28 : x - 28 - form.offsetWidth;
   form.style.left = `${Math.min(Math.max(left, 4), Math.max(4, clientWidth - form.offsetWidth - 4))}px`;
   form.style.top = `${Math.min(Math.max(y + 14, 4), Math.max(4, clientHeight - form.offsetHeight - 4))}px`;

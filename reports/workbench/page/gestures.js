@@ -154,15 +154,15 @@ function dragOf(handle, start) {
 function movingTo(handle) {
   const points = handle.kind === "joint" ? scene().joints.find((one) => one.name === handle.name).points : [key(handle.link, handle.point)];
   const what = handle.kind === "joint" ? { joint: handle.name } : { link: handle.link, point: handle.point };
-  return (place, free) => {
-    const to = snap(place, free);
+  return (place, free, exact = false) => {
+    const to = exact ? place : snap(place, free);
     return { operations: [{ op: "move", ...what, to }], held: { points, at: to, text: `${number(to[0], 5)}, ${number(to[1], 5)} mm` } };
   };
 }
 
 /** N to which forces are rounded: a round number that is some 6 px of arrow. */
 const forceStep = (per = newtonLength()) => round125(6 / store.state.view.scale / per);
-const newtonLength = () => arrowLength() || (0.02 * store.state.drawn.size) || 1;
+const newtonLength = () => arrowLength() || (0.02 * store.state.drawn?.size) || 1;
 
 function forcing(handle, now) {
   const load = now.loads.find((one) => same(one.path, handle.path));
@@ -276,8 +276,9 @@ function endAt(handle, place, free) {
   if (handle?.kind === "link") {
     const link = now.links.find((one) => one.name === handle.name);
     const point = newPoint(link);
-    const value = toLocal(link, to).map((part) => `${Number(part.toFixed(6))} mm`);
-    return { end: { link: link.name, point }, at: to, operations: [{ op: "set", path: ["links", link.name, "points", point], value }], handle };
+    const spot = link.straight && !link.ground ? [rounded(toLocal(link, place)[0], snapStep()), 0] : toLocal(link, to);
+    const value = spot.map((part) => `${Number(part.toFixed(6))} mm`);
+    return { end: { link: link.name, point }, at: fromLocal(link, spot), operations: [{ op: "set", path: ["links", link.name, "points", point], value }], handle };
   }
   return { end: { at: to }, at: to, operations: [], handle: null };
 }
@@ -291,7 +292,7 @@ function finish(handle, place, free) {
   const second = endAt(handle, place, free);
   store.put("ends", null);
   if (!first || same(first.end, second.end)) return;
-  const part = store.state.drawn.links.find((link) => !link.ground && link.part)?.part ?? null;
+  const part = store.state.drawn?.links.find((link) => !link.ground && link.part)?.part ?? null;
   const made = [...first.operations, ...second.operations];
   if (store.state.tool === "link") edit([...made, { op: "link", name: null, from: first.end, to: second.end, part }]);
   else if (first.end.at || second.end.at) tell("A joint takes two points: press on one and release on the other.");
@@ -315,6 +316,7 @@ function use(handle, place, free) {
 function addLoad({ end, at, operations, to }) {
   const now = scene();
   let target = end;
+  if (!now) return;
   if (end.joint) {
     const points = now.joints.find((one) => one.name === end.joint).points.map((one) => now.links.flatMap((link) => (link.ground ? [] : link.points.map((point) => ({ link: link.name, point: point.name }))))
       .find(({ link, point }) => key(link, point) === one));
@@ -370,7 +372,7 @@ function nudge(handle, way, free) {
   let pulled = null;
   if (handle.kind === "joint" || handle.kind === "point") {
     const from = handle.kind === "joint" ? now.joints.find((one) => one.name === handle.name).at : now.at.get(key(handle.link, handle.point));
-    pulled = movingTo(handle)(from.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), true);
+    pulled = movingTo(handle)(from.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), free, true);
   } else if (handle.kind === "load") {
     const load = now.loads.find((one) => same(one.path, handle.path));
     pulled = force(load, load.vector.map((one, k) => rounded(one + way[k] * forceStep() / (free ? 100 : 1), forceStep() / 100)));

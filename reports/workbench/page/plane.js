@@ -26,7 +26,7 @@ export function mount(element) {
   svg.addEventListener("pointerover", (event) => hover(event.target.handle ?? null));
   svg.addEventListener("pointerleave", () => hover(null));
   new ResizeObserver(() => (store.state.fitted ? later() : fitAll())).observe(element);
-  store.on("drawn", () => store.state.fitted || fitAll());
+  store.on("drawn", (drawn) => drawn && (store.state.fitted || fitAll()));
   return svg;
 }
 
@@ -56,13 +56,16 @@ function later() {
 export function fitAll() {
   const { width, height } = svg.getBoundingClientRect();
   const now = scene();
-  if (!now || !width || !now.at.size) return;
+  if (!width) return;
+  if (!now?.at.size) return void store.put("view", { scale: 4, left: width / 4, top: height / 2 });
   perNewton = arrowScale(now);
   const tips = [...now.loads.map((load) => plus(load.at, load.vector, perNewton)), ...forcesOf(now).map((one) => plus(one.at, one.force, perNewton))];
   const rings = now.links.flatMap((link) => (link.ground ? [] : link.rings?.[0] ?? []));
   const paths = store.state.paths && store.state.motion?.points ? Object.values(store.state.motion.points).flat() : [];
+  const places = [...now.at.values()];
+  const room = now.drawn.sketch ? [0.5, -0.3].map((share) => plus(places[0], [0, share * now.drawn.size])) : []; // for what is drawn next
   store.put("fitted", true);
-  fit([...now.at.values(), ...tips, ...rings, ...paths], width, height);
+  fit([...places, ...room, ...tips, ...rings, ...paths], width, height);
 }
 
 /** mm of arrow for a newton; it stays as long as the largest arrow is neither tiny nor huge, so that tips stay where they are. */
@@ -85,7 +88,7 @@ function forcesOf(now) {
 /** The use of a link's strength, in words and as a colour. */
 export function useOf(link) {
   const { use = null, verdict } = shownVerdict(store.state.verdict)?.links?.[link.name] ?? {};
-  if (use === null || link.ground || store.state.instant !== null) return { text: "", colour: "#9fb1c1", over: false };
+  if (use === null || link.ground || store.state.instant !== null || store.state.drawn.sketch) return { text: "", colour: "#9fb1c1", over: false };
   const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
   return { text: `${number(100 * use, 2)} %${sign}`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
 }
@@ -93,7 +96,8 @@ export function useOf(link) {
 function drawAll() {
   const { state } = store;
   const now = scene();
-  svg.classList.toggle("old", Boolean(state.document?.problem));
+  svg.classList.toggle("old", Boolean(state.document?.problem) && state.drawn?.revision !== state.document.revision);
+  svg.classList.toggle("sketch", Boolean(state.drawn?.sketch));
   svg.dataset.tool = state.tool;
   if (now && state.view) {
     perNewton = arrowScale(now);

@@ -8,7 +8,7 @@ export function mount(element) {
   let shown = false;
   store.on("document", (now) => {
     element.hidden = now.path !== null;
-    element.nextElementSibling.hidden = !element.hidden;
+    for (const id of ["tools", "work"]) document.getElementById(id).hidden = !element.hidden;
     if (!element.hidden && !shown) show(element);
     shown = !element.hidden;
   });
