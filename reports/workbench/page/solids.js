@@ -13,7 +13,7 @@ export function mount(holder, store) {
   const auto = make("input", { type: "checkbox", id: "solids-auto", onchange: later });
   const list = make("table", {}, make("caption", { class: "soft" }, "Links"), make("tbody"));
   const figures = make("div", { class: "models" });
-  let shown = null; // {name, revision} of the model that stands on the page
+  let shown = null; // {name, model} of what stands on the page: the link, and the number of its model
   let turned = null; // what the viewer shows of it
   let pause = null;
   let begun = -1; // the revision that solids were last started of by themselves
@@ -45,18 +45,17 @@ export function mount(holder, store) {
     said.textContent = [now?.sentence, stale ? "The case has changed since." : ""].filter(Boolean).join(" ");
     const links = Object.entries(now?.links ?? {});
     list.hidden = !links.length;
-    list.tBodies[0].replaceChildren(...links.map(([name, { state, seconds }]) => {
-      const turn = ["done", "kept"].includes(state) && make("button", { type: "button", onclick: () => model(name) }, "Model");
-      return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, STATES[state] ?? state), make("td", { class: "num" }, seconds ? `${number(Number(seconds.toPrecision(2)))} s` : ""), make("td", {}, turn || null));
+    list.tBodies[0].replaceChildren(...links.map(([name, { state, seconds, model }]) => {
+      const turn = model ? make("button", { type: "button", "aria-pressed": String(name === shown?.name), onclick: () => show(name, model) }, "Model") : null;
+      return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, STATES[state] ?? state), make("td", { class: "num" }, seconds ? `${number(Number(seconds.toPrecision(2)))} s` : ""), make("td", {}, turn));
     }));
-    const ready = links.filter(([, { state }]) => ["done", "kept"].includes(state)).map(([name]) => name);
-    const next = shown ? ready.find((name) => name === shown.name && now.revision !== shown.revision) : ready[0];
-    if (next) model(next);
+    const [name, next] = links.find(([one, { model }]) => model && (!shown || (one === shown.name && model !== shown.model))) ?? [];
+    if (next) show(name, next.model);
   }
 
   /** Fetch the model of a link and let the viewer show it; one stands on the page at a time. */
-  async function model(name) {
-    shown = { name, revision: store.state.solids.revision };
+  async function show(name, model) {
+    shown = { name, model };
     try {
       const record = await send(`model/${encodeURIComponent(name)}`);
       await viewer();

@@ -19,14 +19,16 @@ export function mount(holder, store) {
   const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
 
   /** Put an element at a line; positions are set by script, since the page's policy knows no style attributes. */
-  function place(element, line, below = 0) {
-    element.style.setProperty("top", `${(line - 1 + below) * lines() - area.scrollTop + Number.parseFloat(getComputedStyle(area).paddingTop)}px`);
+  function place(element, line, beside = false) {
+    const top = (line - 1) * lines() - area.scrollTop + Number.parseFloat(getComputedStyle(area).paddingTop);
+    const below = top + lines() + element.offsetHeight <= area.clientHeight;
+    element.style.setProperty("top", `${beside ? (below ? top + lines() : top - element.offsetHeight) : top}px`);
   }
 
   function follow() {
     numbers.scrollTop = area.scrollTop;
     const line = store.state.document?.problem?.line;
-    if (line) place(wrong, line, 1);
+    if (line) place(wrong, line, true);
     if (marked) place(mark, marked);
   }
 
