@@ -1,27 +1,29 @@
 """What is answered to the text of a case while it is edited, as plain data: pose and joint forces, and its motion."""
 
+import math
 import time
 import tomllib
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError, CaseError
-from alula.geometry.linkage.motion import solve_motion
+from alula.geometry.linkage.continuation import DeadPointError
+from alula.geometry.linkage.motion import Motion, solve_motion
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import changed_case, folder_of
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.states.kinetostatics import dead_points
-from alula.reports.workbench.drawn import drawn, joint_forces
-from alula.reports.workbench.sketch import sketched
+from alula.reports.workbench.drawn import drawn, drawn_loosely, joint_forces
 
 Plain = dict[str, Any]
 Stage = Callable[[str, str, Callable[[str, Plain], None]], None]
 """Takes the text of a case, its path or built-in name, and what is told of events and their data."""
 
+_SHORT = 1e-3
+"""How far poses end before a dead point [rad], or over the longest link: less than can be seen."""
 _SLOW = 50.0
 """Time of a pose with its joint forces above which the next pose is told before they are known [ms]."""
 
@@ -45,10 +47,17 @@ def case_of(text: str, name: str) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
+    return _case(_tables(text), name)
+
+
+def _tables(text: str) -> dict[str, Any]:
     try:
-        tables = tomllib.loads(text.removeprefix("\ufeff"))
+        return tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:
         raise CaseError(f"this is not valid TOML: {error}; correct that line") from None
+
+
+def _case(tables: dict[str, Any], name: str) -> Case:
     return changed_case(tables, (), name, folder_of(name))
 
 
@@ -67,13 +76,16 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
     Returns
     -------
     dict
-        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, or ``sketched`` while there is no pose, None where nothing can
-        be; ``forces`` as ``joint_forces``;
-        ``problem``, the sentence that says why either is missing, else None; ``ms``.
+        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, loosely where no pose can be solved, None where nothing
+        can be read; ``forces`` as ``joint_forces``; ``problem``, the sentence that says why there is less, else None;
+        ``ms``.
     """
     start, seen, forces, problem = time.perf_counter(), None, None, None
+    tables: dict[str, Any] = {}
+    case: Case | None = None
     try:
-        case = case_of(text, name)
+        tables = _tables(text)
+        case = _case(tables, name)
         seen = drawn(case, case.solve_pose())
         if early is not None:
             early(_posed(seen, None, None, start))
@@ -81,14 +93,9 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
         seen, forces = drawn(case, statics.pose, statics), joint_forces(statics)
     except AlulaError as error:
         problem = str(error)
-        seen = seen or _sketch(text)
+    if seen is None and tables:
+        seen = drawn_loosely(tables, case)
     return _posed(seen, forces, problem, start)
-
-
-def _sketch(text: str) -> Plain | None:
-    with suppress(ValueError, RecursionError):
-        return sketched(tomllib.loads(text.removeprefix("\ufeff")))
-    return None
 
 
 def _posed(seen: Plain | None, forces: Plain | None, problem: str | None, start: float) -> Plain:
@@ -109,18 +116,19 @@ def motion_answer(text: str, name: str) -> Plain:
     -------
     dict
         ``values`` of the coordinate in ``unit``; ``points``: ``link.point`` -> places [mm]; ``angles``: link -> angles
-        [deg]; ``dead``, values at which the drive is at a dead point; ``range``, its ends; ``turns``, true for a full
-        turn. ``problem`` in their stead where the case does not move as it says.
+        [deg]; ``dead``, values at which the drive is at a dead point, or the coordinate goes no further; ``range``, the
+        ends that it reaches; ``turns``, true for a full turn. ``problem``: why it does not move, or not as far as the
+        case says, else None; without any motion it stands alone.
     """
     try:
         case = case_of(text, name)
         if case.motion is None:
             return {"problem": "motion: the case states none; add a [motion] with its range, or turn = true"}
-        pose, coordinate = case.solve_pose(), case.motion_coordinate
-        motion = solve_motion(pose, drive_angles(case, pose), coordinate=coordinate)
-        dead = () if case.pinned_drive is None else dead_points(motion, case.pinned_drive)
+        motion, stopped = _moved(case)
+        ends = [] if case.pinned_drive is None else dead_points(motion, case.pinned_drive)
     except AlulaError as error:
         return {"problem": str(error)}
+    dead = np.unique([*ends, *(one.angle for one in stopped)])
     return {
         "values": motion.told(motion.angles).tolist(),
         "unit": motion.unit,
@@ -130,10 +138,29 @@ def motion_answer(text: str, name: str) -> Plain:
             for point in one.points
         },
         "angles": {link: np.degrees(motion.angle(link)).round(4).tolist() for link in case.linkage.moving},
-        "dead": motion.told(np.array(dead, dtype=float)).tolist(),
+        "dead": motion.told(dead).tolist(),
         "range": motion.told(motion.angles[[0, -1]]).tolist(),
-        "turns": case.motion.turn,
+        "turns": case.motion.turn and not stopped,
+        "problem": str(stopped[0]) if stopped else None,
     }
+
+
+def _moved(case: Case) -> tuple[Motion, list[DeadPointError]]:
+    """Return the motion of a case as far as the linkage gets on either side of its pose, and where it is stopped."""
+    pose, coordinate = case.solve_pose(), case.motion_coordinate
+    values, stopped = drive_angles(case, pose), list[DeadPointError]()
+    start = float(pose.q[coordinate.column(pose.closure)])
+    if not coordinate.slides:
+        start += math.tau * round((0.5 * float(values[0] + values[-1]) - start) / math.tau)
+    while True:
+        try:
+            return solve_motion(pose, values, coordinate=coordinate), stopped
+        except DeadPointError as error:
+            stopped.append(error)
+            way = (values - error.angle) * np.sign(start - error.angle)
+            values = values[way > _SHORT * coordinate.measure.scale(case.linkage)]
+            if len(stopped) > 2 or len(values) < 2:
+                raise
 
 
 class _Pose:

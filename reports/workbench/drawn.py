@@ -3,27 +3,33 @@
 Lengths in mm, forces in N, angles in degrees, moments in N·mm; places in global axes unless said.
 """
 
+import cmath
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from alula.fea.standing.case_statics import CaseStatics
+from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import Body
 from alula.geometry.clearance.shape import link_shape
+from alula.geometry.joints.joint import Joint
+from alula.geometry.linkage.linkage import Link
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.heights import thickness
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import BodyForce, LineLoad, in_axes
-from alula.loads.records.load_case import LoadCase
+from alula.loads.records.load_case import LoadCase, PointForce, vector3
 from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.states.rubbing import is_of
 from alula.reports.figures.sprung import mark_line
 from alula.reports.words.numbers import number
+from alula.reports.workbench.moves import Frame, Plane, size
 
 Real = NDArray[np.float64]
 Plain = dict[str, Any]
@@ -52,19 +58,70 @@ def drawn(case: Case, pose: Pose, statics: CaseStatics | None = None) -> Plain:
     dict
         Plain data: links, joints, loads, springs, coordinate, drive, size and the names of load cases.
     """
-    corners = np.array([pose.position(link, point) for link, one in case.links.items() for point in one.points])
-    size = float(np.linalg.norm(np.ptp(corners, axis=0)))
-    load_cases = case.load_cases if statics is None else statics.case.load_cases
+    linkage, load_cases = pose.linkage, (case if statics is None else statics.case).load_cases
+    whole = _size([complex(*pose.position(link, point)) for link, one in case.links.items() for point in one.points])
+    frames = {link: (complex(*pose.origins[link]), pose.angles[link]) for link in case.links}
+    ends = {name: (joint.links[1], linkage.joint_points(name)[1]) for name, joint in linkage.joints.items()}
     return {
-        "links": [_link(case, pose, name, size) for name in case.links],
-        "joints": [_joint(pose, name) for name in case.joints],
+        "links": [_link(name, one, frames[name], whole, case) for name, one in case.links.items()],
+        "joints": [
+            _joint(name, linkage.joints[name], complex(*pose.position(*end)), complex(pose.placement.along(name)))
+            for name, end in ends.items()
+        ],
         "loads": [load for name, one in load_cases.items() for load in _loads(case, pose, name, one, statics)],
-        "springs": _springs(case, pose, size, statics),
+        "springs": _springs(case, pose, whole, statics),
         "coordinate": _coordinate(case, pose),
         "drive": None if case.drive is None else {"link": case.drive.link, "joint": case.drive.joint},
-        "size": size,
+        "size": whole,
         "load_cases": list(load_cases),
     }
+
+
+def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain | None:
+    """Return what is drawn of a case of which no pose can be solved: links where they lie as far as it is stated.
+
+    Parameters
+    ----------
+    tables : mapping
+        Of the case, whole or not.
+    case : Case, optional
+        Where they make one: then links have the outlines of their parts.
+
+    Returns
+    -------
+    dict or None
+        As ``drawn``, without springs; None where links, points and joints cannot be read.
+    """
+    try:
+        plane, pose = Plane(tables), tables.get("pose", {})
+        links = {name: Link.model_validate(one) for name, one in plane.links.items()}
+        ends = {name: plane.ends(name)[1] for name in plane.joints if plane.ends(name)[1] in plane.local}
+        whole = _size([plane.place(*key) for key in plane.local])
+        kind, text = ("travel", "length") if "travel" in pose else ("angle", "angle")
+        value = size(pose.get(kind, "0 deg"), text) if pose.get("coordinate") else 0.0
+        held = {"kind": kind, "value": math.degrees(value) if kind == "angle" else value, "least": None, "most": None}
+        load_cases, drive = tables.get("load_cases", {}), tables.get("drive", {})
+        return {
+            "links": [_link(name, one, plane.frames[name], whole, case) for name, one in links.items()],
+            "joints": [
+                _joint(
+                    name,
+                    joint,
+                    plane.place(*ends[name]),
+                    cmath.rect(1.0, plane.frames[joint.links[0]][1] + joint.direction),
+                )
+                for name, joint in plane.joints.items()
+                if name in ends
+            ],
+            "loads": [load for name, one in load_cases.items() for load in _loose_loads(plane, name, one)],
+            "springs": [],
+            "coordinate": {"name": pose["coordinate"], **held} if pose.get("coordinate") else None,
+            "drive": {"link": drive["link"], "joint": drive["joint"]} if drive.keys() >= {"link", "joint"} else None,
+            "size": whole,
+            "load_cases": list(load_cases),
+        }
+    except (CaseError, ValidationError, AttributeError, TypeError):  # tables of another form
+        return None
 
 
 def joint_forces(statics: CaseStatics) -> Plain:
@@ -82,12 +139,10 @@ def joint_forces(statics: CaseStatics) -> Plain:
     """
     found = {}
     for name, reactions in statics.reactions.items():
-        torque, force = reactions.driving
-        drive, driven = reactions.drive, None
+        drive, driven, (torque, force) = reactions.drive, None, reactions.driving
         if drive is not None and not (drive.stop or drive.idle):
-            effort = (
-                {"force": float(force)} if drive.coordinate(statics.pose.linkage).slides else {"torque": float(torque)}
-            )
+            pushes = drive.coordinate(statics.pose.linkage).slides
+            effort = {"force": float(force)} if pushes else {"torque": float(torque)}
             driven = {**effort, "link": drive.link, "joint": drive.joint}
         joints = {
             joint: {"force": one.force[:2].tolist(), "on": one.on, "magnitude": one.magnitude}
@@ -110,127 +165,116 @@ def _outline(body: Body) -> tuple[tuple[tuple[float, float], ...], ...]:
     return tuple(tuple((round(x, 4), round(y, 4)) for x, y in ring.coords) for ring in rings)
 
 
-def _link(case: Case, pose: Pose, name: str, size: float) -> Plain:
-    record = case.links[name]
-    part = None if record.part is None else case.part_of(name)
-    outline, *holes = (None,) if part is None else _outline(case.body(name))
+def _size(places: list[complex]) -> float:
+    return float(np.hypot(np.ptp(np.real(places)), np.ptp(np.imag(places))))
+
+
+def _pair(place: complex) -> list[float]:
+    return [place.real, place.imag]
+
+
+def _link(name: str, record: Link, frame: Frame, whole: float, case: Case | None) -> Plain:
+    part = None if record.part is None or case is None else case.part_of(name)
+    outline, *holes = (None,) if part is None or case is None else _outline(case.body(name))
+    (origin, angle), points = frame, record.points.items()
     return {
         "name": name,
         "ground": record.ground,
         "part": record.part,
         "layer": record.layer,
-        "z": case.heights.get(name, 0.0),
-        "angle": math.degrees(pose.angles[name]),
-        "origin": pose.origins[name].tolist(),
-        "straight": all(abs(y) <= 1e-9 * size for _, y in record.points.values()),
+        "z": 0.0 if case is None else case.heights.get(name, 0.0),
+        "angle": math.degrees(angle),
+        "origin": _pair(origin),
+        "straight": all(abs(y) <= 1e-9 * whole for _, y in record.points.values()),
         "points": [
-            {"name": point, "at": pose.position(name, point).tolist(), "local": list(place)}
-            for point, place in record.points.items()
+            {"name": point, "at": _pair(origin + cmath.rect(1.0, angle) * complex(*at)), "local": list(at)}
+            for point, at in points
         ],
         "pieces": [list(piece) for piece in record.pieces],
-        "width": _BAR * size if part is None else part.section.width,
-        "thickness": thickness(record, case.parts),
+        "width": _BAR * whole if part is None else part.section.width,
+        "thickness": thickness(record, {} if case is None else case.parts),
         "outline": outline,
         "holes": holes,
     }
 
 
-def _joint(pose: Pose, name: str) -> Plain:
-    joint, along = pose.linkage.joints[name], complex(pose.placement.along(name))
+def _joint(name: str, joint: Joint, at: complex, way: complex) -> Plain:
     kind = {"pin-in-slot": "slot", "slider": "slider"}.get(joint.type, "pin")
     if joint.fixed:
         kind = "fixed" if joint.clamped else "bonded"
-    return {
-        "name": name,
-        "kind": kind,
-        "links": list(joint.links),
-        "at": pose.position(joint.links[1], pose.linkage.joint_points(name)[1]).tolist(),
-        "way": [along.real, along.imag] if joint.slides else None,
-        "diameter": joint.pin_diameter,
-    }
+    own = {"name": name, "kind": kind, "links": list(joint.links), "at": _pair(at), "diameter": joint.pin_diameter}
+    return own | {"way": _pair(way) if joint.slides else None}
 
 
 def _coordinate(case: Case, pose: Pose) -> Plain | None:
     if (held := pose.coordinate) is None:
         return None
     spec, told = case.motion, held.measure.told
-    ends = (None, None) if spec is None or spec.ends is None or case.motion_coordinate != held else spec.ends
-    least, most = sorted(ends, key=lambda end: end or 0.0)
-    return {
-        "name": held.name,
-        "kind": held.measure.word,
-        "value": float(told(pose.held)),
-        "least": None if least is None else float(told(least)),
-        "most": None if most is None else float(told(most)),
-    }
+    ends = None if spec is None or case.motion_coordinate != held else spec.ends
+    least, most = (None, None) if ends is None else np.sort(told(ends)).tolist()
+    return {"name": held.name, "kind": held.measure.word, "value": float(told(pose.held)), "least": least, "most": most}
 
 
 def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseStatics | None) -> Iterator[Plain]:
     """Yield what acts under a load case, each with the path of its entry in the file."""
     own = next(one for one in case.load_cases if is_of(name, one))
-    entries = [
-        *(("force", "forces", one.at) for one in stated.forces),
-        *(("moment", "moments", one.at) for one in stated.moments),
-        *(("pressure", "pressures", one.at) for one in stated.pressures),
-        *(("spread", "spread", None) for _ in stated.spread),
-    ]
-    numbers: dict[str, int] = {}
+    kinds = (("force", "forces"), ("moment", "moments"), ("pressure", "pressures"), ("spread", "spread"))
+    entries = [(kind, table, i) for kind, table in kinds for i in range(len(getattr(stated, table)))]
     loads = stated_loads(case, stated.model_copy(update={"air": ()}))
-    for (kind, table, point), load in zip(entries, loads, strict=True):
-        i = numbers[table] = numbers.get(table, -1) + 1
-        seen = in_axes(load, "global", pose.placement)
+    for (kind, *entry), load in zip(entries, loads, strict=True):
+        seen, path = in_axes(load, "global", pose.placement), ["load_cases", own, *entry]
         if isinstance(seen, LineLoad):
-            at, wrench = (
-                _at(pose, load.link, np.array([0.5 * (seen.start + seen.end), 0.0])),
-                np.append(seen.force, np.zeros(3)),
-            )
+            at = _at(pose, seen.link, np.array([0.5 * (seen.start + seen.end), 0.0]))
+            yield _load(path, name, kind, seen.link, at, seen.force) | {"axes": load.axes}
         else:
-            at, wrench = pose.position(load.link, str(point)), seen.wrench
-        yield _load(["load_cases", own, table, i], name, kind, load.link, at, wrench, point) | {"axes": load.axes}
+            at, point = pose.position(seen.link, seen.point), seen.point
+            yield _load(path, name, kind, seen.link, at, seen.wrench, point) | {"axes": load.axes}
     for i, (air, forces) in enumerate(zip(stated.air, case.air_forces(own), strict=True)):
         for patch, share in zip(air.spread, shares(air, case.link_points), strict=True):
             ends = [pose.position(patch.link, p) for p in (patch.at, patch.start, patch.end) if p is not None]
-            at, wrench = np.mean(ends, axis=0), np.append(share * forces.total, np.zeros(3))
-            yield _load(["load_cases", own, "air", i], name, "air", patch.link, at, wrench, patch.at)
+            path, at = ["load_cases", own, "air", i], np.mean(ends, axis=0)
+            yield _load(path, name, "air", patch.link, at, share * forces.total, patch.at)
     for body in () if statics is None else statics.loads[name]:
         if isinstance(body, BodyForce):  # own weight, and inertia at a speed
-            force = body.resultant(pose.placement)[:3]
-            at = _at(pose, body.link, body.mass.centroid)
-            yield _load(
-                ["load_cases", own, "own_weight"], name, "weight", body.link, at, np.append(force, np.zeros(3)), None
-            )
+            path, at = ["load_cases", own, "own_weight"], _at(pose, body.link, body.mass.centroid)
+            yield _load(path, name, "weight", body.link, at, body.resultant(pose.placement)[:3])
+
+
+def _loose_loads(plane: Plane, name: str, tables: Mapping[str, Any]) -> Iterator[Plain]:
+    """Yield the forces of a load case that can be read."""
+    for i, stated in enumerate(tables.get("forces", [])):
+        try:
+            force = PointForce.model_validate(stated)
+        except ValidationError:
+            continue
+        if (force.link, force.at) in plane.local:
+            at, push = np.array(_pair(plane.place(force.link, force.at))), vector3(force.force)
+            if force.axes == "link":
+                turned = complex(*push[:2]) * cmath.rect(1.0, plane.frames[force.link][1])
+                push = np.array([*_pair(turned), 0.0])
+            path = ["load_cases", name, "forces", i]
+            yield _load(path, name, "force", force.link, at, push, force.at) | {"axes": force.axes}
 
 
 def _at(pose: Pose, link: str, local: Real) -> Real:
     return np.asarray(pose.origins[link] + pose.rotation(link) @ local)
 
 
-def _load(path: list[Any], load_case: str, kind: str, link: str, at: Real, wrench: Real, point: str | None) -> Plain:
-    return {
-        "path": path,
-        "load_case": load_case,
-        "kind": kind,
-        "link": link,
-        "point": point,
-        "at": at.tolist(),
-        "vector": wrench[:2].tolist(),
-        "moment": float(wrench[5]),
-    }
+def _load(
+    path: list[Any], load_case: str, kind: str, link: str, at: Real, wrench: Real, point: str | None = None
+) -> Plain:
+    what = {"path": path, "load_case": load_case, "kind": kind, "link": link, "point": point, "at": at.tolist()}
+    return what | {"vector": wrench[:2].tolist(), "moment": float(wrench[5]) if len(wrench) == 6 else 0.0}
 
 
-def _springs(case: Case, pose: Pose, size: float, statics: CaseStatics | None) -> list[Plain]:
+def _springs(case: Case, pose: Pose, whole: float, statics: CaseStatics | None) -> list[Plain]:
     """Return springs, tendons and stops as the drawings of reports show them."""
     standing = case if statics is None else next(iter(statics.standing.values())).case
+    marks = [mark for one in (*lasting(standing), *bounds(standing).values()) for mark in one.marks(pose.placement)]
     found = []
-    for one in (*lasting(standing), *bounds(standing).values()):
-        for mark in one.marks(pose.placement):
-            told = f"{number(abs(mark.effort), 3)} {'N·mm' if mark.turns else 'N'}" if mark.effort else "slack"
-            found.append(
-                {
-                    "name": mark.name,
-                    "kind": mark.kind,
-                    "line": mark_line(mark, pose, size).round(4).tolist(),
-                    "text": mark.name if mark.kind == "wall" else f"{mark.name}: {told}",
-                }
-            )
+    for mark in marks:
+        told = f"{number(abs(mark.effort), 3)} {'N·mm' if mark.turns else 'N'}" if mark.effort else "slack"
+        line = mark_line(mark, pose, whole).round(4).tolist()
+        text = mark.name if mark.kind == "wall" else f"{mark.name}: {told}"
+        found.append({"name": mark.name, "kind": mark.kind, "line": line, "text": text})
     return found

@@ -342,11 +342,13 @@ def _settled(
     root: tuple[str, str],
     to: complex,
 ) -> dict[tuple[str, str], complex]:
-    """Return all nodes after one was moved: the nearest places that keep joints in line, by Newton's steps of least norm."""
+    """Return all nodes after one was moved: near places that keep joints in line, by Newton's steps of least norm."""
     names, held = list(at), {plane.node[key] for key in plane.local if key[0] == plane.ground}
     held |= {plane.node[key] for key in plane.local if plane.shape(key[0]) in KINDS}
-    lines = [[names.index(plane.node[key]) for key in axis] for axis in axes.values() if len(axis) > 2]
-    lines = [(line[0], line[-1], middle, None) for line in lines for middle in line[1:-1]]
+    lines: list[tuple[int, int, int, complex | None]] = []
+    for axis in axes.values():
+        first, *middles, last = (names.index(plane.node[key]) for key in axis) if len(axis) > 2 else (0, 0)
+        lines += [(first, last, middle, None) for middle in middles]
     for name, joint in plane.joints.items():
         (carrier, slot), pin = plane.ends(name)
         if (

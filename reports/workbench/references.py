@@ -73,7 +73,7 @@ def references(tables: Mapping[str, Any], there: Any = None, path: Path = ()) ->
     inner = there.items() if isinstance(there, dict) else enumerate(there) if isinstance(there, list) else ()
     for key, value in inner:
         here, named = (*path, key), path[:1] == path and path and path[0] in NAMED
-        table, text = BY_KEY.get(key), BY_VALUE.get(key)
+        table, text = BY_KEY.get(str(key)), BY_VALUE.get(str(key))
         if named or key == "tolerances" or (not path and key in NAMED):
             pass
         elif table and isinstance(value, dict):
@@ -174,8 +174,7 @@ def _rename_point(draft: TomlText, link: str, name: str, to: str, joint: str) ->
         links = draft.tables["joints"][name]["links"]
         draft.put(("joints", name, "points"), [to if one == link else name for one in links])
     for one in _of_point(draft.tables, link, name):
-        if one.path[:2] != ("joints", name) or name == joint:
-            draft.rename(one.path, to) if one.by_key else draft.put(one.path, to)
+        draft.rename(one.path, to) if one.by_key else draft.put(one.path, to)
     draft.rename(path, to)
     _rename_tolerances(draft, path, to)
 
@@ -237,7 +236,7 @@ def remove(draft: TomlText, path: Path) -> None:
 def _record(tables: Mapping[str, Any], one: Reference) -> Path:
     """Return the path of what goes with a reference: its key, its place in a list, or its whole record."""
     path, table = one.path, one.path[0]
-    if one.by_key or table in ("pose", "motion", "massless") or path[-1] in ("part", "held_at"):
+    if one.by_key or table in ("pose", "motion", "massless", "links"):
         return path
     if table in ("drive", "flapping_wing", "ways_to_hold", "published_statics"):
         return path[:1]

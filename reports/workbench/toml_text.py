@@ -541,7 +541,7 @@ def _with(tables: Any, path: Path, value: Any) -> Any:
     return {one: kept for one, kept in tables.items() if one != key} if inner is None else {**tables, key: inner}
 
 
-def _ahead(tables: dict[str, Any], key: Key, value: Any, before: str) -> dict[str, Any]:
+def _ahead(tables: Any, key: Key, value: Any, before: str) -> dict[str, Any]:
     """Return a table with a new entry ahead of another one."""
     found: dict[str, Any] = {}
     for name, one in tables.items():

@@ -13,7 +13,7 @@ from alula.loads.case.case_file import read_case, read_text
 from alula.reports.check.changes import change_records
 from alula.reports.commands.statics import statics_sections
 from alula.reports.sentences.verdicts import first_lines
-from alula.reports.workbench.answers import pose_answer
+from alula.reports.workbench.answers import motion_answer, pose_answer
 from alula.reports.workbench.verdicts import whole_answer
 
 
@@ -26,7 +26,7 @@ def posed(name, *pairs):
     return json.loads(json.dumps(found, allow_nan=False))
 
 
-@pytest.mark.parametrize("name", ["owl-wing-static", "four-bar", "slider-crank"])
+@pytest.mark.parametrize("name", ["owl-wing-static", "four-bar", "knee"])
 def test_forces_are_those_of_alula_statics(name):
     answer, case = posed(name), read_case(name)
     pose, told = statics_sections(solve_case_statics(case, name), matrix=False)
@@ -37,7 +37,7 @@ def test_forces_are_those_of_alula_statics(name):
         for one in record["reactions"]:
             joint = found["joints"][one["joint"]]
             assert (joint["force"], joint["on"], joint["magnitude"]) == (one["force"], one["on"], one["magnitude"])
-        assert found["drive"]["torque"] == record["drive_torque"]
+        assert (found["drive"] or {"torque": 0.0})["torque"] == record["drive_torque"]  # a stop holds the knee
     for link in answer["drawn"]["links"]:
         assert link["angle"] % 360.0 == pytest.approx(pose.data["pose"]["angles"][link["name"]])
 
@@ -78,10 +78,19 @@ def test_what_balances_by_itself_is_drawn_where_it_stands():
 def test_a_problem_is_one_sentence_and_what_can_be_is_drawn():
     open_loop = posed("four-bar", ('points.B = ["120 mm"', 'points.B = ["320 mm"'))
     assert open_loop["problem"].startswith("pose: the linkage cannot be assembled")
-    assert open_loop["drawn"] is None
-    assert posed("four-bar", ("schema_version = 1", "schema_version ="))["problem"].startswith("this is not valid TOML")
+    assert open_loop["forces"] == {}
+    links = {link["name"]: link for link in open_loop["drawn"]["links"]}
+    assert [links[link]["angle"] for link in ("crank", "coupler", "rocker")] == pytest.approx([40.0, 20.0, 57.0])
+    assert np.ptp(links["coupler"]["outline"], axis=0)[0] == pytest.approx(320.0 + 1.6 * 8.0, abs=0.1)
+    assert links["coupler"]["origin"] == pytest.approx(links["crank"]["points"][1]["at"])
+    assert [load["path"] for load in open_loop["drawn"]["loads"]] == [["load_cases", "lift", "forces", 0]]
     held = posed("four-bar", ("[drive]\n", "[drive]\ntransfer = 5\n"))
     assert held["problem"].startswith("drive.transfer")
+    assert {link["name"] for link in held["drawn"]["links"]} == {"base", "crank", "coupler", "rocker"}
+    nothing = posed("four-bar", ("schema_version = 1", "schema_version ="))
+    assert nothing["problem"].startswith("this is not valid TOML")
+    assert nothing["drawn"] is None
+    assert posed("four-bar", ("schema_version = 1", "links = 5\nschema_version = 1"))["drawn"] is None
 
 
 def known(value):
@@ -108,3 +117,34 @@ def test_the_whole_verdict_is_that_of_alula_check(name):
     assert (soon["changes"], soon["checks"], soon["links"]) == ([], answer["checks"], answer["links"])
     assert [one["command"] for one in answer["changes"]][:1] == [one["command"] for one in change_records(told)][:1]
     json.dumps(answer, allow_nan=False)
+
+
+def test_motion_has_the_places_of_its_poses():
+    case, motion = read_case("four-bar"), motion_answer(read_text("four-bar")[0], "four-bar")
+    assert (motion["range"], motion["unit"], motion["turns"], motion["problem"]) == ([40.0, 400.0], "deg", True, None)
+    turned = case.with_values({"pose.angle": f"{motion['values'][30]} deg"})
+    at = turned.stated_pose.position("rocker", "P")
+    assert motion["points"]["rocker.P"][30] == pytest.approx(at.tolist(), abs=1e-3)
+    assert motion["points"]["crank.A"][0] == motion["points"]["crank.A"][-1]
+    assert len(motion["angles"]["coupler"]) == len(motion["values"]) == 361
+
+
+def test_motion_goes_as_far_as_the_linkage_does():
+    text = read_text("four-bar")[0]
+    for old, new in (
+        ("turn = true", 'range = ["-180 deg", "180 deg"]'),
+        ('points.A = ["40 mm"', 'points.A = ["120 mm"'),
+        ('coupler = "20 deg", rocker = "57 deg"', 'coupler = "-60 deg", rocker = "60 deg"'),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    motion = motion_answer(text, "four-bar")
+    # Coupler and rocker, 120 and 80 mm, are in line where the crank's pin is 200 or 40 mm from O4.
+    ends = [math.degrees(math.acos((120.0**2 + 100.0**2 - far**2) / (2.0 * 120.0 * 100.0))) for far in (40.0, 200.0)]
+    assert motion["dead"] == pytest.approx(ends, abs=1e-6)
+    assert ends[0] < motion["range"][0] < ends[0] + 1.1
+    assert ends[1] - 1.1 < motion["range"][1] < ends[1]
+    assert "dead point" in motion["problem"]
+    assert not motion["turns"]
+    none = motion_answer(text.replace("[motion]", "").replace('range = ["-180 deg", "180 deg"]', ""), "four-bar")
+    assert list(none) == ["problem"]
