@@ -1,22 +1,11 @@
 /** The verdict: what decides it, what would change it, and how hand and solid differ. */
 
 import { command, make, number } from "./elements.js";
-import { edit } from "./server.js";
+import { edit, send, tell } from "./server.js";
 import { same } from "./store.js";
 
 const STAGES = { linear: "so far, by hand; limit load and buckling follow", whole: "by hand, whole", solids: "with solids" };
-const ORDER = { fail: 0, undecided: 1, pass: 2 };
 const time = (seconds) => (seconds < 1 ? `${Math.round(1000 * seconds)} ms` : `${number(Number(seconds.toPrecision(2)))} s`);
-
-/** How much of its limit a check uses; above 1 it fails. Which side of the limit is safe tells the verdict's own sense. */
-function use(check) {
-  if (!(check.limit > 0) || !(check.value > 0)) return 0;
-  const least = /factor|frequency|gap|clearance|life|cycles/.test(check.type) || check.sense === "least";
-  return least ? check.limit / (check.low ?? check.value) : (check.high ?? check.value) / check.limit;
-}
-
-/** Checks with the worst first. */
-const sorted = (checks) => [...checks].sort((a, b) => (ORDER[a.verdict] ?? 1) - (ORDER[b.verdict] ?? 1) || use(b) - use(a));
 
 /** The verdict that is shown: solids where they are of the newest revision, otherwise the most that the hand knows. */
 export function shownVerdict({ linear, whole, solids }) {
@@ -24,7 +13,14 @@ export function shownVerdict({ linear, whole, solids }) {
   return [solids, whole, linear].find((one) => one && one.revision === newest) ?? null;
 }
 
-const band = ({ low, high }) => (low === null || low === undefined || high === null || high === undefined || low === high ? "" : `${number(low)} to ${number(high)}`);
+/** A band in words; an end that is null is not known, or there is none. */
+function band({ low, high, value }) {
+  const [known, most] = [low ?? null, high ?? null];
+  if (known === null && most === null) return "";
+  if (known === null) return `up to ${number(most)}`;
+  if (most === null) return `${number(known)} or more`;
+  return known === most && known === value ? "" : `${number(known)} to ${number(most)}`;
+}
 
 export function mount(holder, store) {
   const stamp = make("p", { class: "stamp-line", role: "status", "aria-live": "polite" });
@@ -39,14 +35,21 @@ export function mount(holder, store) {
     holder.classList.toggle("old", Boolean(late));
     stamp.replaceChildren(...badge(found, now));
     if (!found) return rest.replaceChildren();
-    const linkOf = (subject) => Object.keys(found.links ?? {}).find((name) => name === subject) ?? null;
+    const names = (table) => Object.keys(now?.tables?.[table] ?? {});
+    const subjectOf = (name) => (names("links").includes(name) ? { kind: "link", name } : names("joints").includes(name) ? { kind: "joint", name } : null);
     rest.replaceChildren(...[
       ...(found.sentences ?? []).map((sentence) => make("p", {}, sentence)),
+      found.verdict === "undecided" && found.stage === "whole" && found.checks.length ? make("p", {}, make("button", { type: "button", onclick: solve }, "Check with solids")) : null,
       changes(found),
-      table(found, linkOf),
+      table(found, subjectOf),
       sideBySide(),
       warnings(found),
     ].flat().filter(Boolean));
+  }
+
+  function solve() {
+    store.put("panel", "solids");
+    send("solids", { do: "start", fidelity: "solid" }).catch(({ message }) => tell(message));
   }
 
   function badge(found, now) {
@@ -66,24 +69,25 @@ export function mount(holder, store) {
     return [make("h2", {}, "What would change it"), make("ul", { class: "changes" }, ...found.changes.map(one))];
   }
 
-  function table(found, linkOf) {
+  function table(found, subjectOf) {
     const chosen = store.state.selected;
     const row = (check) => {
-      const link = linkOf(check.subject);
-      const subject = link
-        ? make("button", { type: "button", class: "plain", onclick: () => store.put("selected", { kind: "link", name: link }) }, check.subject)
+      const selected = subjectOf(check.subject);
+      const subject = selected
+        ? make("button", { type: "button", class: "plain", onclick: () => store.put("selected", selected) }, check.subject)
         : check.subject;
-      return make("tr", { class: link && same(chosen, { kind: "link", name: link }) ? "chosen" : null },
+      return make("tr", { class: selected && same(chosen, selected) ? "chosen" : null },
         make("td", {}, make("span", { class: `mark ${check.verdict}` }, check.verdict)),
-        make("td", {}, subject, make("small", {}, ` ${[check.check, check.load_case].filter(Boolean).join(", ")}`)),
+        make("td", {}, subject, make("small", {}, ` ${[check.quantity ?? check.check, check.load_case].filter(Boolean).join(", ")}`)),
         make("td", { class: "num" }, number(check.value), band(check) ? make("small", {}, ` ${band(check)}`) : null),
         make("td", { class: "num" }, `${number(check.limit)}${check.unit && check.unit !== "1" ? ` ${check.unit}` : ""}`),
       );
     };
-    const all = sorted(found.checks ?? []);
+    const why = (check) => (check.verdict === "pass" || !check.text ? null : make("tr", { class: "why" }, make("td", { colspan: 4 }, check.text)));
+    const all = found.checks ?? []; // the server has them with the worst first
     if (!all.length) return null;
     const head = make("tr", {}, ...["verdict", "of", "value, band", "limit"].map((title, place) => make("th", { scope: "col", class: place > 1 ? "num" : null }, title)));
-    return [make("h2", {}, "Checks, the worst first"), make("div", { class: "wide" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...all.map(row))))];
+    return [make("h2", {}, "Checks, the worst first"), make("div", { class: "wide" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...all.flatMap((check) => [row(check), why(check)]))))];
   }
 
   /** Bands by hand and of the solid on one scale, for each link that both have. */
@@ -93,7 +97,7 @@ export function mount(holder, store) {
     if (!hand || !solids) return null;
     const keyOf = (check) => [check.check, check.subject, check.load_case].join("\n");
     const by = new Map(hand.checks.map((check) => [keyOf(check), check]));
-    const pairs = sorted(solids.checks).map((solid) => [by.get(keyOf(solid)), solid]).filter(([one, other]) => one && other.value > 0 && one.value > 0);
+    const pairs = solids.checks.map((solid) => [by.get(keyOf(solid)), solid]).filter(([one, other]) => one && other.value > 0 && one.value > 0);
     if (!pairs.length) return null;
     const links = new Map();
     for (const pair of pairs) if (!links.has(pair[1].subject)) links.set(pair[1].subject, pair);
@@ -101,7 +105,7 @@ export function mount(holder, store) {
       const seconds = store.state.solids?.links?.[name]?.seconds;
       return seconds === null || seconds === undefined ? "" : `, ${time(seconds)}`;
     };
-    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other, took(name))));
+    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other, took(name))));
     return [
       make("h2", {}, "By hand and as a solid"),
       make("p", { class: "soft" }, `All links by hand took ${time((hand.ms ?? 0) / 1000)}. A bar is the band of a value; the upright line is the limit.`,
