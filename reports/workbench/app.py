@@ -23,7 +23,7 @@ from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
 from alula.reports.workbench import out
 from alula.reports.workbench.parts import dropped
-from alula.reports.workbench.session import ConflictError, Session
+from alula.reports.workbench.session import DRAWING, ConflictError, Session
 
 LARGEST_REQUEST = 8 << 20
 """Bytes: a case of 1 MiB, each of whose characters JSON may write with six."""
@@ -209,13 +209,15 @@ def application(session: Session) -> Starlette:
         "/out/step/{link}": step,
     }
     post: Mapping[str, Answer] = {"/drop/{name}": drop, "/{action}": act}
-    return Starlette(
+    app = Starlette(
         routes=[
             *(Route(path, answer, methods=["GET"]) for path, answer in get.items()),
             *(Route(path, answer, methods=["POST"]) for path, answer in post.items()),
         ],
         exception_handlers={AlulaError: _explained, HTTPException: _unknown, Exception: _broken},
     )
+    app.router.redirect_slashes = False  # it knows no token
+    return app
 
 
 def _page(name: str) -> Response:
@@ -230,7 +232,9 @@ def _page(name: str) -> Response:
 
 @cache
 def _starters() -> list[dict[str, str]]:
-    return [{"name": name, "title": str(read_tables(name)["title"])} for name in built_in_cases()]
+    titles = {DRAWING: "A ground link, and all else to be drawn"}
+    titles |= {name: read_tables(name)["title"] for name in built_in_cases()}
+    return [{"name": name, "title": title} for name, title in titles.items()]
 
 
 @cache

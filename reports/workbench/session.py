@@ -14,6 +14,7 @@ from alula.loads.compose.starting import case_files, write_new
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.document import Document
+from alula.reports.workbench.edits import EMPTY
 from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
 from alula.reports.workbench.stand_in import Solids
 from alula.reports.workbench.workers import Workers
@@ -24,6 +25,8 @@ QUIET = 15.0
 """Seconds after which a page that hears nothing is sent a comment, which tells whether it is still there."""
 MOST_PAGES = 16
 """Pages that hear of changes at once: each holds a connection."""
+DRAWING = "empty"
+"""What one starts from who draws all links, beside the built-in cases."""
 
 
 class ConflictError(AlulaError):
@@ -123,6 +126,7 @@ class Session:
         self._tell_document()
         for kind, message in self._last.items():
             page.put(kind, message)
+        self._last = {kind: message for kind, message in self._last.items() if not kind.startswith("notice")}
         return page
 
     def leave(self, page: Page) -> None:
@@ -153,7 +157,7 @@ class Session:
             self._tell_document()
         kind = f"{name} {data['sentence'] if name == 'notice' else data.get('stage', '')}"
         message = f"event: {name}\ndata: {json.dumps(data, ensure_ascii=False, allow_nan=False)}\n\n"
-        if name not in ("notice", "document"):
+        if name not in ("notice", "document") or (name == "notice" and not self._pages):
             self._last[kind] = message
         for page in self._pages:
             page.put(kind, message)
@@ -190,6 +194,8 @@ class Session:
 
     async def edit(self, revision: int, operations: Sequence[Mapping[str, Any]], gesture: str) -> None:
         """Change the case by operations, which were made on a revision and are undone with others of their gesture."""
+        if not all(isinstance(one, Mapping) for one in operations):
+            raise CaseError("operations: each must be an object")
         text = self._open(revision).text
         pose = await asyncio.to_thread(self._posed, text)
         self._open(revision).apply(operations, pose, gesture)
@@ -283,7 +289,7 @@ class Session:
                 raise ConflictError("changes of the open case are not saved; save it first")
             file = self.folder / plain_name(as_ if starter else path, ".toml")
             if starter:
-                write_new(case_files(starter, file))
+                write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
             stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
             if self._drafts is not None:
                 self._drafts.close()

@@ -4,7 +4,7 @@
 // where there is no WebGL, and on paper. A figure's data-turnable is "waiting", "ready" or, without WebGL, "still"; that of
 // the whole page is "ready" as soon as all models near the visible part are drawn.
 //
-// A page that gets models later puts such a figure into itself and calls window.alulaViewer.add(its data block).
+// A page that gets models later, such as that of alula open, shows each by window.alulaViewer.show(parent, kind, text).
 //
 // Tests read window.alulaViewer.models: each has name, kind, figure and start(), which returns what it is made of. Of a link:
 // nodes (how many), value(node) with value, unit, place and displacement, screen(node) with x and y in the window and
@@ -25,34 +25,42 @@ function modelOf(block) {
   figure.dataset.turnable = "waiting";
   model.start = () => {
     if (model.started || figure.dataset.turnable === "still") return model.started;
-    const holder = element("div", { class: "model" });
-    figure.insertBefore(holder, figure.firstChild);
-    figure.classList.add("turned");
-    try {
-      model.started = STARTS[model.kind](holder, JSON.parse(block.textContent));
-      figure.dataset.turnable = "ready";
-    } catch (error) {
-      figure.classList.remove("turned");
-      holder.remove();
-      figure.dataset.turnable = "still";
-      console.error(error);
-    }
+    model.started = show(figure, model.kind, block.textContent);
+    figure.dataset.turnable = model.started ? "ready" : "still";
     return model.started;
   };
   return model;
 }
 
-/** Start a model that came after the page; those whose figures are gone are let go. */
-function add(models, block) {
-  const model = modelOf(block);
-  models.splice(0, models.length, ...models.filter(({ figure }) => figure.isConnected), model);
-  if (renderer()) model.start();
-  else model.figure.dataset.turnable = "still";
+/** Shows a model, by its kind and its record as text, first in an element; null without WebGL. `remove` takes it away. */
+function show(parent, kind, text) {
+  if (!renderer()) return null;
+  const holder = element("div", { class: "model" });
+  parent.prepend(holder);
+  parent.classList.add("turned");
+  const remove = () => {
+    holder.remove();
+    parent.classList.remove("turned");
+  };
+  try {
+    const started = STARTS[kind](holder, JSON.parse(text));
+    return {
+      ...started,
+      remove: () => {
+        started.stage.end();
+        remove();
+      },
+    };
+  } catch (error) {
+    remove();
+    console.error(error);
+    return null;
+  }
 }
 
 function begin() {
   const models = [...document.querySelectorAll('script[type="application/json"][data-model]')].map(modelOf);
-  window.alulaViewer = { models, add: (block) => add(models, block) };
+  window.alulaViewer = { models, show };
   if (!renderer()) {
     models.forEach(({ figure }) => (figure.dataset.turnable = "still"));
     page.turnable = "still";

@@ -57,7 +57,7 @@ export class Stage {
     holder.append(this.picture, this.tools, help);
     letTurn(this.canvas, this);
     new ResizeObserver(() => this.redraw()).observe(this.picture);
-    stages.splice(0, stages.length, ...stages.filter((stage) => stage.canvas.isConnected), this); // figures may go
+    stages.push(this);
   }
 
   /** Set the first view: the points [[x, y, z], ...] to be seen, and the directions to the viewer and up. */
@@ -158,6 +158,14 @@ export class Stage {
     this.bar(pen, height);
     if (this.cut) this.write(pen, "cut open", 12, 16);
     for (const overlay of this.overlays) overlay(pen, this);
+  }
+
+  /** Draw no more, and free what the graphics card holds of the model. */
+  end() {
+    cancelAnimationFrame(this.waiting);
+    this.waiting = -1;
+    stages.splice(stages.indexOf(this), 1);
+    this.scene.traverse(({ geometry, material }) => [geometry, ...[material ?? []].flat()].forEach((one) => one?.dispose()));
   }
 
   place(aspect) {
