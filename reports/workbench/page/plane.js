@@ -309,7 +309,7 @@ function moments({ now, texts, taken }) {
 }
 
 /** What a hand, a finger or the keyboard takes hold of: at least 24 px wide. */
-function handles({ now }) {
+function handles({ now, taken }) {
   const put = (key, handle, [x, y], label, more = {}) => {
     const target = groups.handles.put(key, "circle", { cx: x, cy: y, r: 14, tabindex: 0, role: "button", "aria-label": label, ...more });
     target.handle = handle;
@@ -330,6 +330,7 @@ function handles({ now }) {
     const way = pose.way ? angle([pose.way[0], -pose.way[1]]) : angle(minus(at, toScreen(pose.pivot))) + Math.PI / 2;
     arrow(groups.joints, "pose a", plus(at, turned([8, 0], way)), plus(at, turned([15, 0], way)), "pose");
     arrow(groups.joints, "pose b", plus(at, turned([-8, 0], way)), plus(at, turned([-15, 0], way)), "pose");
+    taken.push(...along(plus(at, turned([-15, 0], way)), plus(at, turned([15, 0], way))));
     put("pose", { kind: "pose" }, at, `Pose: ${coordinate.kind} of ${coordinate.name} ${number(coordinate.value, 5)}${unit}`);
   }
 }
