@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case_file import changed_case
@@ -249,9 +250,12 @@ class Session:
         return self.document
 
     def _posed(self, text: str) -> Pose | None:
-        """Return the pose of a text; None where it has none, and links are shown as far as they are stated."""
+        """Return the pose of a text that balances by itself; other poses an edit finds on its own."""
         with suppress(AlulaError):
-            return changed_case(Document(text).tables(), (), str(self.path), str(self.folder)).solve_pose()
+            tables = Document(text).tables()
+            if tables.get("pose", {}).get("equilibrium"):
+                case = changed_case(tables, (), str(self.path), str(self.folder))
+                return solve_case_statics(case, str(self.path)).pose
         return None
 
     def _changed(self) -> None:

@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 import served
 
-from alula.loads.case.case_file import read_text
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.geometry.base.units import parse
+from alula.loads.case.case_file import read_case, read_tables, read_text
 from alula.reports.workbench import session
 from alula.reports.workbench.app import LARGEST_REQUEST
 from alula.reports.workbench.document import Document
@@ -452,13 +454,17 @@ def test_without_a_cache_all_else_works(case, monkeypatch):
         assert bench.post("save")[0] == 200
 
 
-def test_a_place_is_told_in_the_pose_that_is_shown(bench):
-    """The crank's pin goes where it is drawn to, which its length and the angle of the pose follow."""
-    move = {"op": "move", "joint": "A", "to": [0.0, 50.0]}
-    assert bench.post("edit", revision=0, operations=[move], gesture="")[0] == 200
-    tables = bench.document()["tables"]
-    assert tables["links"]["crank"]["points"]["A"] == ["50 mm", "0 mm"]
-    assert tables["pose"]["angle"] == "90 deg"
+def test_a_place_is_told_in_the_pose_that_balances(tmp_path):
+    """A point of the pedal that is drawn at another one's place gets that one's entry, since the pose is the same."""
+    case = tmp_path / "pedal.toml"
+    case.write_text(read_text("spring-pedal")[0], encoding="utf-8")
+    link, (point, stated) = "pedal", list(read_tables(str(case))["links"]["pedal"]["points"].items())[-1]
+    pose = solve_case_statics(read_case(str(case)), str(case)).pose
+    with served.serving_of(case, tmp_path) as bench:
+        move = {"op": "move", "link": link, "point": point, "to": list(pose.position(link, point))}
+        assert bench.post("edit", revision=0, operations=[move], gesture="")[0] == 200
+        told = bench.document()["tables"]["links"][link]["points"][point]
+    assert [parse(one, "length") for one in told] == pytest.approx([parse(one, "length") for one in stated], abs=1e-3)
 
 
 def test_open_streams_do_not_hold_up_the_end(case):
