@@ -159,10 +159,10 @@ function bodies(sheet) {
     if (link.ground && !link.part) {
       groups.links.put(link.name, "path", { d: lines, class: `ground ${chosen}` });
     } else if (link.rings) {
-      groups.links.put(link.name, "path", { d: link.rings.map((ring) => trace(ring, true)).join(""), class: `part ${chosen} ${use.over ? "over" : ""}`, fill, "fill-rule": "evenodd", "fill-opacity": 0.6 + 0.4 * depth });
+      groups.links.put(`${link.name} part`, "path", { d: link.rings.map((ring) => trace(ring, true)).join(""), class: `part ${chosen} ${use.over ? "over" : ""}`, fill, "fill-rule": "evenodd", "fill-opacity": 0.6 + 0.4 * depth });
     } else {
       groups.links.put(`${link.name} edge`, "path", { d: lines, class: `edge ${chosen} ${use.over ? "over" : ""}`, "stroke-width": wide + 2 });
-      groups.links.put(link.name, "path", { d: lines, class: "bar", stroke: use.colour, "stroke-width": wide });
+      groups.links.put(`${link.name} bar`, "path", { d: lines, class: "bar", stroke: use.colour, "stroke-width": wide });
     }
     if (!lines) continue;
     const target = groups.bodies.put(link.name, "path", { d: lines, "stroke-width": Math.max(wide, 24), tabindex: 0, role: "button", "aria-label": said(link, use) });
