@@ -40,7 +40,7 @@ class Workbench:
 
     def raw(self, method: str, path: str, body: bytes | None = None, **headers: str) -> tuple[int, Any, bytes]:
         """The same for a whole path."""
-        line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+        line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
         try:
             line.request(method, path, body, {name.replace("_", "-"): value for name, value in headers.items()})
             answer = line.getresponse()
@@ -55,9 +55,9 @@ class Workbench:
         return status, json.loads(found)
 
     @contextmanager
-    def events(self) -> Iterator["Events"]:
-        """Listen as a page does."""
-        line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+    def events(self, patience: float = 5.0) -> Iterator["Events"]:
+        """Listen as a page does; silence ends the test after a time [s]."""
+        line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=patience)
         line.request("GET", f"/{self.token}/events")
         try:
             yield Events(line.getresponse())

@@ -1,5 +1,6 @@
 """``alula open``: a page to work in, for the browser of this machine."""
 
+import threading
 from pathlib import Path
 from typing import Annotated
 
@@ -34,23 +35,26 @@ def open_case(
 
     def ready(address: str) -> None:
         print(f"The page: {address}\nCtrl-C ends it.", flush=True)
-        if browser:
-            _show(address)
+        if browser:  # which may come back only when it is closed
+            threading.Thread(target=show, args=(address,), daemon=True).start()
 
-    serve(case, Path.cwd() if case is None else case.absolute().parent, port, ready)
+    serve(
+        None if case is None else case.absolute(), Path.cwd() if case is None else case.absolute().parent, port, ready
+    )
 
 
-def _show(address: str) -> None:
-    """Have a browser show the page, without waiting for it."""
-    import threading
+def show(address: str) -> None:
+    """Have a browser show a page, and say where there is none.
+
+    Parameters
+    ----------
+    address : str
+    """
     import webbrowser
 
-    def show() -> None:
-        try:
-            shown = webbrowser.open(address)
-        except webbrowser.Error:
-            shown = False
-        if not shown:
-            progress("No browser was found; open the address above in one.")
-
-    threading.Thread(target=show, daemon=True).start()
+    try:
+        shown = webbrowser.open(address)
+    except (webbrowser.Error, OSError):
+        shown = False
+    if not shown:
+        progress("No browser was found; open the address above in one.")

@@ -169,21 +169,19 @@ class _Pose:
     slow = False
 
     def __call__(self, text: str, name: str, tell: Callable[[str, Plain], None]) -> None:
-        def tell_drawn(answer: Plain) -> None:
-            if answer["drawn"] is not None:
-                kept = {one: answer[one] for one in ("forces", "problem", "ms")}
-                tell("drawn", {**answer["drawn"], **kept})
+        def seen(answer: Plain) -> None:
+            if (what := answer.pop("drawn")) is not None:
+                tell("drawn", what | answer)
 
-        answer = pose_answer(text, name, tell_drawn if self.slow else None)
-        tell_drawn(answer)
+        answer = pose_answer(text, name, seen if self.slow else None)
         self.slow = answer["ms"] > _SLOW
+        seen(answer)
         if answer["problem"] is not None:
             tell("problem", {"sentence": answer["problem"]})
 
 
-def _motion(text: str, name: str, tell: Callable[[str, Plain], None]) -> None:
-    tell("motion", motion_answer(text, name))
-
-
-STAGES: Mapping[str, Stage] = {"pose": _Pose(), "motion": _motion}
+STAGES: Mapping[str, Stage] = {
+    "pose": _Pose(),
+    "motion": lambda text, name, tell: tell("motion", motion_answer(text, name)),
+}
 """What a process may be asked, one after the other: each tells events with their data."""

@@ -10,7 +10,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 from alula.loads.text.nesting import refuse_deep
 from alula.reports.workbench.moves import SAME, Plane, lengthen, loose_positions, move, told, turn
-from alula.reports.workbench.references import remove, rename
+from alula.reports.workbench.references import free, remove, rename
 from alula.reports.workbench.toml_text import TomlText, value_at
 
 __all__ = ["EMPTY", "loose_positions", "perform"]
@@ -22,8 +22,8 @@ BAR = {
     "thickness": "5 mm",
     "fillet_radius": "1.5 mm",
 }
-"""Part and, below, pins of the built-in six-bar, for the first link and joint of a case without any. A load's usual patch
-of 5 mm on bars of this width is within what hand calculation is calibrated for."""
+"""Part and, below, pins of the built-in six-bar, for the first link and joint of a case. On bars of this width a load's
+usual patch of 5 mm is within what hand calculation is calibrated for."""
 EMPTY = f"""# A linkage to be drawn. Every quantity carries its unit.
 
 schema_version = 1
@@ -182,8 +182,7 @@ def _link(draft: TomlText, plane: Plane, operation: Mapping[str, Any], *ends: Ma
         raise CaseError("edit link: it has no length; end it elsewhere")
     links = draft.tables.get("links", {})
     name = operation.get("name") or next(n for i in range(1, 1000) if (n := f"link-{i}") not in links)
-    if name in links:
-        raise CaseError(f"links.{name}: there is such a link already; choose another name")
+    free(draft, ("links", ""), name)
     parts = draft.tables.get("parts", {})
     part = operation.get("part") or next((n for n, one in parts.items() if one.get("shape") in ("bar", "tube")), None)
     if part is None:
@@ -267,7 +266,7 @@ def _join(draft: TomlText, pose: Pose | None, first: Mapping[str, Any], second: 
 
 
 def _layer(draft: TomlText, link: str, to: int) -> None:
-    """Lay a link in a layer; where none has one so far, the others lie in layer 0, with washers as the starters have."""
+    """Lay a link in a layer; where none has one so far, the others lie in layer 0, with washers as starters have."""
     links = draft.tables["links"]
     if link not in links:
         raise CaseError(f"links.{link}: there is no such link; choose one that is there")

@@ -20,6 +20,7 @@ from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.pose import Pose, solve_pose
 from alula.loads.case.part_points import KINDS
+from alula.loads.text.explain import sentence
 from alula.reports.workbench.toml_text import Path, TomlText, value_at
 
 Frame = tuple[complex, float]
@@ -124,13 +125,19 @@ class Plane:
 
     def __post_init__(self) -> None:
         """Read links and joints, and find where they lie."""
-        try:
-            self.joints = {name: Joint.model_validate(one) for name, one in self.tables.get("joints", {}).items()}
-        except (ValidationError, AttributeError):
-            raise CaseError("joints: they cannot be read; correct them in the text first") from None
+        for table in ("links", "joints"):
+            stated = self.tables.get(table, {})
+            if not isinstance(stated, dict) or not all(isinstance(one, dict) for one in stated.values()):
+                raise CaseError(f"{table}: they are no tables; correct them in the text first")
+        self.joints = {}
+        for name, one in self.tables.get("joints", {}).items():
+            try:
+                self.joints[name] = Joint.model_validate(one)
+            except ValidationError as wrong:
+                raise CaseError(f"joints.{name}.{sentence(wrong, Joint)}") from None
         self.local = {}
         for name, link in self.links.items():
-            points = link.get("points", {}) if isinstance(link, dict) else {}
+            points = link.get("points", {})
             for point, at in points.items() if isinstance(points, dict) else ():
                 entry = ("links", name, "points", point)
                 if not isinstance(at, list) or len(at) != 2:
@@ -285,9 +292,10 @@ def move(draft: TomlText, plane: Plane, key: tuple[str, str], to: complex) -> No
     Points of plates, of the ground and of links without a part take the place in the frame of their link. A straight
     link keeps its points on its axis: with one other joint it gets a new length and a new direction, and its points
     without a joint keep their distance from that joint. Where three or more joints stand on one axis, the others give
-    way by as little as keeps them in line (joints of the ground do not), so these alone are not where they were. Where
-    that cannot be, and on a guide, the joint itself stands at the nearest place that it can have; so does a load point on
-    the axis of a link that two joints hold.
+    way by about as little as keeps them in line (joints of the ground do not), so these alone are not where they were.
+    Where that cannot be, and on a guide, the joint itself stands at the nearest place that it can have; so does a load
+    point on the axis of a link that two joints hold. Slots and rows of holes follow the origin of their link; centroids
+    of masses and spans of wings stay as they are stated.
 
     Parameters
     ----------

@@ -3,7 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from pydantic import TypeAdapter, ValidationError
+
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.model import Name
 from alula.loads.case.case_file import keys_of
 from alula.reports.workbench.toml_text import Path, TomlText, value_at
 
@@ -149,7 +152,7 @@ def rename(draft: TomlText, path: Path, to: str) -> None:
         raise CaseError(
             f"edit {told}: there is no link, joint, point or the like of this name; choose one that is there"
         )
-    _free(draft, path, to)
+    free(draft, path, to)
     if path[0] == "joints" and "points" not in value_at(draft.tables, path):
         links = value_at(draft.tables, (*path, "links"))
         if any(value_at(draft.tables, ("links", link, "points", to)) is not None for link in links):
@@ -169,7 +172,7 @@ def _rename_point(draft: TomlText, link: str, name: str, to: str, joint: str) ->
     path = ("links", link, "points", name)
     if value_at(draft.tables, path) is None:
         raise CaseError(f"edit {'.'.join(path)}: there is no such point; choose one of the link's points")
-    _free(draft, path, to)
+    free(draft, path, to)
     if _of_own_name(draft.tables, link, name) and name != joint:
         links = draft.tables["joints"][name]["links"]
         draft.put(("joints", name, "points"), [to if one == link else name for one in links])
@@ -183,7 +186,27 @@ def _is_point(path: Path) -> bool:
     return len(path) == 4 and path[0] == "links" and path[2] == "points"
 
 
-def _free(draft: TomlText, path: Path, to: str) -> None:
+def free(draft: TomlText, path: Path, to: str) -> None:
+    """Refuse a new name that is none, or that another has.
+
+    Parameters
+    ----------
+    draft : TomlText
+        The case.
+    path : tuple
+        Of what is named, or would be with an old name.
+    to : str
+        The name.
+
+    Raises
+    ------
+    CaseError
+        For such a name.
+    """
+    try:
+        TypeAdapter(Name).validate_python(to)
+    except ValidationError as wrong:
+        raise CaseError(f"edit {'.'.join(map(str, path))}: {wrong.errors()[0]['msg']}") from None
     if to != path[-1] and value_at(draft.tables, (*path[:-1], to)) is not None:
         raise CaseError(f"edit {'.'.join(map(str, path))}: '{to}' is there already; choose another name")
 

@@ -87,7 +87,7 @@ async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: C
     session = Session(folder)
     try:
         if case is not None:
-            await session.open(case.name)
+            session.load(case)
     except BaseException:
         await session.close()
         raise

@@ -6,6 +6,7 @@ new case files, takes eight times as long to read one as ``tomllib`` does: too l
 
 import json
 import re
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,10 +16,10 @@ from alula.geometry.base.errors import CaseError
 Key = str | int
 Path = tuple[Key, ...]
 _TRIVIA = re.compile(r"(?:[ \t\r\n]+|#[^\n]*)*")
-_KEY = re.compile(r"""[ \t]*(?:([A-Za-z0-9_-]+)|"((?:[^"\\\n]|\\.)*)"|'([^'\n]*)')[ \t]*""")
+_KEY = re.compile(r"""[ \t]*([A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')[ \t]*""")
 _STRING = re.compile(r'''"""(?:[^\\]|\\.)*?"{3,5}|\'\'\'.*?'{3,5}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*\'''', re.DOTALL)
 _BARE = re.compile(r"[^,\]}#\r\n]*[^,\]}#\r\n \t]")
-_LINE_END = re.compile(r"[^\n]*(?:\n|\Z)")
+_LINE = re.compile(r"[^\n]*(?:\n|\Z)")
 
 
 @dataclass(slots=True)
@@ -65,22 +66,18 @@ class _Layout:
                 if array:
                     counts[path] = counts.get(path, -1) + 1
                     path = (*path, counts[path])
-                end = self._line_end(at)
+                end = self._after(at, _LINE)
                 self.sections.append(_Block(path, begin, end, array=array))
             else:
                 start = at
                 path, at = self._dotted(at, self.sections[-1].path, {})
-                end = self._line_end(self._value(path, start, self._after(at + 1)))
+                end = self._after(self._value(path, start, self._after(at + 1)), _LINE)
                 self.statements.append(_Block(path, begin, end, len(self.sections) - 1, start))
                 self.sections[-1].end = end
             at = self._after(end)
 
-    def _after(self, at: int) -> int:
-        found = _TRIVIA.match(self.text, at)
-        return found.end() if found else at
-
-    def _line_end(self, at: int) -> int:
-        found = _LINE_END.match(self.text, at)
+    def _after(self, at: int, what: re.Pattern[str] = _TRIVIA) -> int:
+        found = what.match(self.text, at)
         return found.end() if found else at
 
     def _dotted(self, at: int, path: Path, counts: dict[Path, int]) -> tuple[Path, int]:
@@ -91,13 +88,9 @@ class _Layout:
             found = _KEY.match(self.text, at)
             if found is None:
                 raise ValueError("no key")
-            name = found[1] or found[3] or ""
-            if found[2] is not None:
-                name = json.loads(f'"{found[2]}"') if "\\U" not in found[2] else found[2]
+            name = found[1].strip("'") if found[1][0] != '"' else tomllib.loads(f"key = {found[1]}")["key"]
             path = (*path, name)
-            self.keys.append((path, *(found.span(found.lastindex or 1))))
-            if found.lastindex != 1:  # with its quotes
-                self.keys[-1] = (path, found.start(found.lastindex or 1) - 1, found.end(found.lastindex or 1) + 1)
+            self.keys.append((path, *found.span(1)))
             at = found.end()
             if self.text[at] != ".":
                 return path, at
@@ -123,8 +116,7 @@ class _Layout:
                     item.comma, at = at + 1, self._after(at + 1)
             item.end = at + 1
         else:
-            found = (_STRING if text[at] in "\"'" else _BARE).match(text, at)
-            item.end = found.end() if found else at
+            item.end = self._after(at, _STRING if text[at] in "\"'" else _BARE)
         return item.end
 
 
@@ -258,7 +250,7 @@ class TomlText:
             self._splices, self._layout = {}, None
         return self._text
 
-    def put(self, path: Sequence[Key], value: Any, before: str | None = None) -> None:
+    def put(self, path: Sequence[Key], value: Any) -> None:
         """Set an entry, or remove it where the value is None. Missing tables are made; a list grows by one at its end.
 
         Parameters
@@ -267,8 +259,6 @@ class TomlText:
             Keys, and numbers in lists.
         value : object
             What shall stand there.
-        before : str, optional
-            Of a new entry: the key before which it stands; else it stands last.
 
         Raises
         ------
@@ -282,7 +272,7 @@ class TomlText:
         if value is None:
             self.remove(path)
         elif old is None:
-            self._add(path, value, before)
+            self._add(path, value)
         elif type(old) is type(value) and old == value:
             return
         elif isinstance(old, dict) and isinstance(value, dict):
@@ -300,7 +290,7 @@ class TomlText:
             self._keep(path, value)
         else:
             self.remove(path)
-            self._add(path, value, None)
+            self._add(path, value)
 
     def remove(self, path: Sequence[Key]) -> None:
         """Remove an entry, if it is there; comments on lines of their own stay.
@@ -316,8 +306,6 @@ class TomlText:
         layout = self._read(fresh=True)
         if (above := layout.items.get(path[:-1])) is not None and path in above.inner:
             self._remove_inner(above, path)
-        elif outer := next((path[:n] for n in range(1, len(path)) if path[:n] in layout.items), None):
-            self._write(outer, path, None)
         else:
             gone = [one for one in layout.sections if one.path and _below(one.path, path)]
             loose = [
@@ -392,11 +380,6 @@ class TomlText:
             self._keep(path, None)
             path = path[:-1]
 
-    def _write(self, outer: Path, path: Path, value: Any) -> None:
-        """Write braces with dotted keys anew, with another value at a path within them."""
-        item = self._read().items[outer]
-        self._splice(item.start, item.end, literal(_with(value_at(self.tables, outer), path[len(outer) :], value)))
-
     def _cut(self, spans: list[tuple[int, int]]) -> None:
         """Remove whole lines; of the empty lines around them one stays."""
         text = self._text
@@ -421,7 +404,7 @@ class TomlText:
         else:
             self._splices[item.begin, items[above.inner[1]].begin] = ""
 
-    def _add(self, path: Path, value: Any, before: str | None) -> None:
+    def _add(self, path: Path, value: Any) -> None:
         """Add an entry below the deepest table or list that is there."""
         depth = next(n for n in range(len(path) - 1, -1, -1) if n == 0 or value_at(self.tables, path[:n]) is not None)
         above, key, there = path[:depth], path[depth], value_at(self.tables, path[:depth])
@@ -433,73 +416,59 @@ class TomlText:
         for one in reversed(path[depth + 1 :]):
             nested = [nested] if one == 0 else {one: nested}
         layout = self._read(fresh=True)
-        outer = next((path[:n] for n in range(1, depth) if path[:n] in layout.items), None)
-        if outer and above not in layout.items:
-            self._write(outer, (*above, key), nested)
-        elif above in layout.items:
-            self._add_inner(layout.items[above], key, nested, before)
+        if above in layout.items:
+            self._add_inner(layout.items[above], key, nested)
         elif isinstance(key, int):
             self._add_section(above, _section(above, nested, array=True))
         else:
-            self._add_entry(above, key, nested, path, value, before)
-        self._keep(above, _ahead(there, key, nested, before)) if before else self._keep((*above, key), nested)
+            self._add_entry(above, key, nested, path, value)
+        self._keep((*above, key), nested)
         self._read(fresh=True)
 
-    def _add_inner(self, above: _Item, key: Key, value: Any, before: str | None) -> None:
+    def _add_inner(self, above: _Item, key: Key, value: Any) -> None:
         """Add to an inline table or to a list that stands in the text as one."""
-        text, items = self._text, self._read().items
+        text = self._text
         new = literal(value) if isinstance(key, int) else f"{_key(key)} = {literal(value)}"
-        follows = [path for path in above.inner if path[-1] == before]
         if not above.inner:
             space = " " if text[above.start] == "{" else ""
             self._splice(above.start + 1, above.end - 1, f"{space}{new}{space}")
-        elif follows:
-            self._splice(items[follows[0]].begin, items[follows[0]].begin, f"{new}, ")
-        else:
-            last = items[above.inner[-1]]
-            line = text.rfind("\n", 0, last.begin) + 1
-            alone = not text[line : last.begin].strip() and line > above.start
-            if not alone:
-                self._splice(last.end, last.end, f", {new}")
-            else:
-                if above.comma is None:
-                    self._splice(last.end, last.end, ",")
-                end = re.compile(r"[^\r\n]*").match(text, above.comma or last.end)
-                place = end.end() if end else last.end
-                self._splice(place, place, f"\n{text[line : last.begin]}{new}{',' if above.comma else ''}")
+            return
+        last = self._read().items[above.inner[-1]]
+        line = text.rfind("\n", 0, last.begin) + 1
+        if text[line : last.begin].strip() or line <= above.start:
+            self._splice(last.end, last.end, f", {new}")
+        else:  # one a line
+            end = re.compile(r"[^\r\n]*").match(text, above.comma or last.end)
+            rest = end[0] if end and not above.comma else ""
+            place = end.end() if end else last.end
+            comma = "," if above.comma else ""
+            ahead = "" if above.comma else ","
+            self._splice(place - len(rest), place, f"{ahead}{rest}\n{text[line : last.begin]}{new}{comma}")
 
-    def _add_entry(self, above: Path, key: str, value: Any, path: Path, leaf: Any, before: str | None) -> None:
+    def _add_entry(self, above: Path, key: str, value: Any, path: Path, leaf: Any) -> None:
         """Add to a table with a heading, with dotted keys, or that only headings below it state."""
         layout, text = self._read(), self._text
         own = next((n for n, one in enumerate(layout.sections) if one.path == above), None)
-        spread = [one for one in layout.statements if _below(one.path, above) and len(one.path) > len(above)]
-        dotted = [one for one in spread if len(layout.sections[one.section].path) < len(above)]
-        headed = any(
-            one.path[:-1] == above and not one.array for one in layout.sections if one.path
-        )  # tables beside it have headings
+        below = [one for one in layout.statements if _below(one.path, above) and len(one.path) > len(above)]
+        dotted = [one for one in below if len(layout.sections[one.section].path) < len(above)]
+        headed = any(one.path[:-1] == above and not one.array for one in layout.sections[1:])
         table = isinstance(value, dict) and (not above or headed or not (own is not None or dotted))
         if table or (_of_tables(value) and not dotted) or (own is None and not dotted):
-            if isinstance(leaf, dict):
-                self._add_section(above, _section(path, leaf))
-            elif _of_tables(leaf):
-                made = [] if len(path) == len(above) + 1 else [f"[{_dots(path[:-1])}]"]
-                self._add_section(above, [*made, *(line for one in leaf for line in _section(path, one, array=True))])
-            else:
-                self._add_section(above, _section(path[:-1], {str(path[-1]): leaf}))
+            made = [] if not _of_tables(leaf) or len(path) == len(above) + 1 else [f"[{_dots(path[:-1])}]"]
+            tables = leaf if _of_tables(leaf) else [leaf if isinstance(leaf, dict) else {str(path[-1]): leaf}]
+            path = path if isinstance(leaf, dict) or _of_tables(leaf) else path[:-1]
+            lines = (line for one in tables for line in _section(path, one, array=_of_tables(leaf)))
+            self._add_section(above, [*made, *lines])
             return
-        follows = [one for one in spread if one.path == (*above, before)]
+        new = f"{_key(key)} = {literal(value)}"
         if dotted:
-            last = (follows or dotted)[-1]
+            last = dotted[-1]
             end = next(end for one, start, end in layout.keys if one == above and start >= last.start)
-            lines = [f"{text[last.start : end]}.{_key(key)} = {literal(value)}"]
+            new = f"{text[last.start : end]}.{new}"
         else:
-            section = layout.sections[own or 0]
             inside = [one for one in layout.statements if one.section == own]
-            last = (follows or inside or [section])[-1]
-            lines = [f"{_key(key)} = {literal(value)}"]
-        indent = text[last.begin : last.start] if last.start else ""
-        place = last.begin if follows else last.end
-        self._insert(place, "".join(f"{indent}{line}\n" for line in lines))
+            last = inside[-1] if inside else layout.sections[own or 0]
+        self._insert(last.end, f"{text[last.begin : last.start] if last.start else ''}{new}\n")
 
     def _add_section(self, above: Path, lines: list[str]) -> None:
         """Add a heading and its lines after all that stands below a table, or at the end of the file."""
@@ -539,11 +508,3 @@ def _with(tables: Any, path: Path, value: Any) -> Any:
         return [*tables[:key], *([] if inner is None else [inner]), *tables[key + 1 :]]
     inner = _with(tables.get(key, {}), rest, value)
     return {one: kept for one, kept in tables.items() if one != key} if inner is None else {**tables, key: inner}
-
-
-def _ahead(tables: Any, key: Key, value: Any, before: str) -> dict[str, Any]:
-    """Return a table with a new entry ahead of another one."""
-    found: dict[str, Any] = {}
-    for name, one in tables.items():
-        found |= {str(key): value, name: one} if name == before else {name: one}
-    return found if key in found else {**tables, str(key): value}

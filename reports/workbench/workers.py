@@ -17,23 +17,22 @@ from _thread import interrupt_main
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from alula.geometry.base.child import environment, last_line, module_command
+from alula.geometry.base.child import environment, module_command
 
 Plain = dict[str, Any]
 Tell = Callable[[str, Plain], None]
 Key = tuple[object, ...]
-Kept = OrderedDict[Key, dict[str, dict[str, Plain]]]
-"""Text -> stage -> event -> what was told last."""
+Kept = OrderedDict[Key, dict[str, dict[str, bytes]]]
+"""Text -> stage -> event -> the line that told it last."""
 
 ROLES: Mapping[str, tuple[str, ...]] = {"answers": ("pose", "motion"), "verdicts": ("linear", "whole")}
 """What each process answers, stage after stage, by the name of the module that does."""
-_KEPT = 200
-"""Texts whose answers are kept: some ten kilobytes each, the last steps of undo and a drag."""
+_KEPT = 100
+"""Texts whose answers are kept, some 200 kilobytes each: the last steps of undo and a drag."""
 _LONGEST = 1 << 26
 """Longest line of a child [bytes]."""
 _AGAIN = 0.5
@@ -88,8 +87,7 @@ def _files(folder: Path, text: str) -> list[tuple[str, int, int]]:
     return sorted((name, found.st_mtime_ns, found.st_size) for name, found in named)
 
 
-@dataclass(kw_only=True, eq=False)
-class _Asked:
+class _Asked(NamedTuple):
     revision: int
     text: str
     name: str
@@ -142,7 +140,7 @@ class _Line:
     async def _start(self) -> None:
         pipe, command = asyncio.subprocess.PIPE, module_command(__name__, self._role)
         self._child = await asyncio.create_subprocess_exec(
-            *command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment(), limit=_LONGEST
+            *command, stdin=pipe, stdout=pipe, stderr=asyncio.subprocess.DEVNULL, env=environment(), limit=_LONGEST
         )
 
     async def _answer(self, asked: _Asked, stage: str) -> None:
@@ -152,8 +150,8 @@ class _Line:
         while len(self._kept) > _KEPT:
             self._kept.popitem(last=False)
         if stage in known:
-            for event, data in known[stage].items():
-                self._tell(event, {"revision": asked.revision, **data})
+            for line in known[stage].values():
+                self._heard(asked, json.loads(line))
             return
         self._at_work = asked.key, stage
         told = await self._told(asked, stage)
@@ -161,31 +159,26 @@ class _Line:
         if told is not None:
             known[stage] = told
 
-    async def _told(self, asked: _Asked, stage: str) -> dict[str, Plain] | None:
+    def _heard(self, asked: _Asked, answer: Plain) -> None:
+        self._tell(answer["event"], {"revision": asked.revision, **answer["data"]})
+
+    async def _told(self, asked: _Asked, stage: str) -> dict[str, bytes] | None:
         """Return what the process told, None where it was stopped."""
         assert self._child is not None
         assert self._child.stdout is not None
-        told: dict[str, Plain] = {}
+        told: dict[str, bytes] = {}
         self._send({"stage": stage, "text": asked.text, "name": asked.name})
         while line := await self._child.stdout.readline():
             answer = json.loads(line)
             if "done" in answer:
                 return told if answer["done"] else None
-            told[answer["event"]] = answer["data"]
-            self._tell(answer["event"], {"revision": asked.revision, **answer["data"]})
-        await self._restart(asked)
-        return told  # not asked again: the same text would end it again
-
-    async def _restart(self, asked: _Asked) -> None:
-        assert self._child is not None
-        assert self._child.stderr is not None
-        why, status = last_line(await self._child.stderr.read()), await self._child.wait()
-        sentence = (
-            f"One of the two processes that answer, {self._role}, ended by itself (status {status}: {why}); it was "
-            "started anew, and this text is not asked of it again"
-        )
-        self._tell("notice", {"revision": asked.revision, "sentence": sentence})
+            told[answer["event"]] = line
+            self._heard(asked, answer)
+        ended = f"the process that answers the {stage} of a text ended by itself (status {await self._child.wait()})"
+        again = f"{ended}; it is started anew, and this text is not asked of it again"
+        self._tell("notice", {"revision": asked.revision, "sentence": again})
         await self._start()
+        return told  # the same text would end it again
 
 
 class _StoppedError(KeyboardInterrupt):
@@ -216,6 +209,10 @@ class _Service:
                 self._stoppable, done = False, True
             except _StoppedError:
                 self._stoppable, done = False, False
+            except Exception as error:  # a mistake of alula's own, which leaves the next text to be answered
+                self._stoppable, done = False, True
+                wrong = f"the {request['stage']} of this text was not found: {type(error).__name__}: {error}"
+                self._write({"event": "notice", "data": {"sentence": wrong}})
             self._write({"done": done})
 
     def _interrupted(self, *_: object) -> None:
@@ -246,21 +243,9 @@ class _Service:
         self._interrupted()
 
     def _write(self, answer: Plain) -> None:
-        self._out.write(json.dumps(answer).encode() + b"\n")
+        self._out.write(json.dumps(answer, allow_nan=False).encode() + b"\n")
         self._out.flush()
 
 
-def main(role: str) -> None:
-    """Answer the requests of a role until the parent ends.
-
-    Parameters
-    ----------
-    role : str
-        One of ``ROLES``.
-    """
-    service = _Service()
-    service.run(import_module(f"alula.reports.workbench.{role}").STAGES)  # imported while the page loads
-
-
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    _Service().run(import_module(f"alula.reports.workbench.{sys.argv[1]}").STAGES)  # imported while the page loads

@@ -63,7 +63,7 @@ export function fitAll() {
   const rings = now.links.flatMap((link) => (link.ground ? [] : link.rings?.[0] ?? []));
   const paths = store.state.paths && store.state.motion?.points ? Object.values(store.state.motion.points).flat() : [];
   const places = [...now.at.values()];
-  const room = now.drawn.sketch ? [0.5, -0.3].map((share) => plus(places[0], [0, share * now.drawn.size])) : []; // for what is drawn next
+  const room = now.drawn.problem ? [0.5, -0.3].map((share) => plus(places[0], [0, share * now.drawn.size])) : []; // for what is drawn next
   store.put("fitted", true);
   fit([...places, ...room, ...tips, ...rings, ...paths], width, height);
 }
@@ -88,7 +88,7 @@ function forcesOf(now) {
 /** The use of a link's strength, in words and as a colour. */
 export function useOf(link) {
   const { use = null, verdict } = shownVerdict(store.state.verdict)?.links?.[link.name] ?? {};
-  if (use === null || link.ground || store.state.instant !== null || store.state.drawn.sketch) return { text: "", colour: "#9fb1c1", over: false };
+  if (use === null || link.ground || store.state.instant !== null || store.state.drawn.problem) return { text: "", colour: "#9fb1c1", over: false };
   const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
   return { text: `${number(100 * use, 2)} %${sign}`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
 }
@@ -97,7 +97,7 @@ function drawAll() {
   const { state } = store;
   const now = scene();
   svg.classList.toggle("old", Boolean(state.document?.problem) && state.drawn?.revision !== state.document.revision);
-  svg.classList.toggle("sketch", Boolean(state.drawn?.sketch));
+  svg.classList.toggle("sketch", Boolean(state.drawn?.problem));
   svg.dataset.tool = state.tool;
   if (now && state.view) {
     perNewton = arrowScale(now);
@@ -309,7 +309,7 @@ function moments({ now, texts, taken }) {
 }
 
 /** What a hand, a finger or the keyboard takes hold of: at least 24 px wide. */
-function handles({ now }) {
+function handles({ now, taken }) {
   const put = (key, handle, [x, y], label, more = {}) => {
     const target = groups.handles.put(key, "circle", { cx: x, cy: y, r: 14, tabindex: 0, role: "button", "aria-label": label, ...more });
     target.handle = handle;
@@ -330,6 +330,7 @@ function handles({ now }) {
     const way = pose.way ? angle([pose.way[0], -pose.way[1]]) : angle(minus(at, toScreen(pose.pivot))) + Math.PI / 2;
     arrow(groups.joints, "pose a", plus(at, turned([8, 0], way)), plus(at, turned([15, 0], way)), "pose");
     arrow(groups.joints, "pose b", plus(at, turned([-8, 0], way)), plus(at, turned([-15, 0], way)), "pose");
+    taken.push(...along(plus(at, turned([-15, 0], way)), plus(at, turned([15, 0], way))));
     put("pose", { kind: "pose" }, at, `Pose: ${coordinate.kind} of ${coordinate.name} ${number(coordinate.value, 5)}${unit}`);
   }
 }

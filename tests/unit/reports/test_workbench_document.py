@@ -108,7 +108,7 @@ def test_new_entries_are_written_as_those_beside_them() -> None:
 ODD = """# odd but legal
 "a b".'c' = 1 # one
 list = [ # of lines
-  { x = 1, y.z = "2" }, # first
+  { x = 1, 'y' = "2" }, # first
   { x = 2 }, # second
 ]
 text = '''
@@ -139,6 +139,23 @@ def test_odd_but_legal_writings() -> None:
     document = Document(ODD)
     document.apply([{"op": "set", "path": ["d", "e", "f"], "value": "D:\\x"}], None)
     assert changed(ODD, document.text) == ["-f = 'C:\\dir'\n", "+f = 'D:\\x'\n"]
+
+
+def test_a_list_of_lines_grows_by_a_line() -> None:
+    for text in ("a = [\n  1,\n  2\n]", "a = [\n  1,\n  2 # two\n]", "a = [\n  1,\n  2, # two\n]"):
+        document = Document(text)
+        document.apply([{"op": "append", "path": ["a"], "value": 3}], None)
+        assert document.tables() == {"a": [1, 2, 3]}
+        assert document.text.startswith(text[:13])
+        assert len(document.text.splitlines()) == 5
+
+
+def test_braces_with_dotted_keys_are_refused_where_they_would_be_written_anew() -> None:
+    document = Document("a = { b.c = 1, d = 2 }")
+    assert edited(document, {"op": "set", "path": ["a", "b", "c"], "value": 3})[1] == "+a = { b.c = 3, d = 2 }"
+    for path in (["a", "b", "e"], ["a", "b", "c"]):
+        with pytest.raises(CaseError, match="write it in the text"):
+            document.apply([{"op": "set", "path": path, "value": 5 if path[-1] == "e" else None}], None)
 
 
 def test_edits_of_one_gesture_are_one_step() -> None:

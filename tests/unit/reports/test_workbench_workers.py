@@ -1,11 +1,14 @@
 """The workbench's processes: the newest text first, older work ends, answers are kept, a process may end by itself."""
 
 import asyncio
+import json
 import random
+import subprocess
 from pathlib import Path
 
 import pytest
 
+from alula.geometry.base.child import environment, module_command
 from alula.loads.case.case_file import read_text
 from alula.reports.workbench import workers
 from alula.reports.workbench.answers import pose_answer
@@ -128,6 +131,20 @@ def test_a_process_that_ends_by_itself_is_told_and_started_anew(told):
         assert timeless(await page.until("verdict", 301, "linear")) == timeless(linear_answer(turned(50), NAME))
 
     told(story)
+
+
+def test_a_mistake_is_told_the_next_text_is_answered_and_the_end_of_requests_is_its_own():
+    requests = [{"stage": "pose", "text": 5, "name": NAME}, {"stage": "pose", "text": TEXT, "name": NAME}]
+    command = module_command("alula.reports.workbench.workers", "answers")
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, env=environment(), stdin=pipe, stdout=pipe, stderr=pipe, text=True) as child:
+        for request in requests:
+            print(json.dumps(request), file=child.stdin, flush=True)
+        answers = [json.loads(child.stdout.readline()) for _ in range(4)]
+        child.stdin.close()
+        assert child.wait(10) == 1
+    assert "the pose of this text was not found: AttributeError" in answers[0]["data"]["sentence"]
+    assert [answer.get("event", answer.get("done")) for answer in answers] == ["notice", True, "drawn", True]
 
 
 def test_changed_files_of_parts_are_not_taken_for_the_same(tmp_path):
