@@ -29,6 +29,7 @@ export function mount(element) {
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
   store.on("drawn", settle);
+  store.on("drawn", entry.refresh);
   store.on("document", settle);
 }
 
@@ -255,7 +256,9 @@ function pull({ operations, held }, gesture) {
 function settle() {
   const { document: now, drawn, held } = store.state;
   const known = now?.problem ? now.revision : drawn?.revision;
-  if (held && !grab?.moved && known >= newest) store.put("held", null);
+  if (!held || grab?.moved || known < newest) return;
+  store.put("held", null);
+  entry.refresh();
 }
 
 /* Tools that make something. */

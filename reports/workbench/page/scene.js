@@ -52,7 +52,8 @@ function pointsOf(joint, drawn) {
   for (const name of joint.links) {
     const link = drawn.links.find((one) => one.name === name);
     const close = (link?.points ?? []).filter((point) => size(minus(point.at, joint.at)) <= near);
-    const point = close.find((one) => one.name === joint.name) ?? close[0];
+    const named = link?.points.find((one) => one.name === joint.name); // where the loop does not close, not all are close
+    const point = close.find((one) => one === named) ?? close[0] ?? (drawn.problem && named);
     if (point) found.push(key(name, point.name));
   }
   return found;
