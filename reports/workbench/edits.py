@@ -9,7 +9,8 @@ from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 from alula.loads.text.nesting import refuse_deep
-from alula.reports.workbench.moves import SAME, Plane, lengthen, loose_positions, move, told, turn
+from alula.reports.workbench.moves import lengthen, move, turn
+from alula.reports.workbench.plane import SAME, Plane, Point, loose_positions, told
 from alula.reports.workbench.references import free, remove, rename
 from alula.reports.workbench.toml_text import TomlText, value_at
 
@@ -115,7 +116,7 @@ def _perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) -
         case {"op": "turn", "to": int() | float() as to}:
             turn(draft, to)
         case {"op": "link", "from": start, "to": end}:
-            _link(draft, Plane(draft.tables, pose), operation, start, end)
+            _link(draft, pose, operation, start, end)
         case {"op": "join", "ends": [first, second]}:
             _join(draft, pose, first, second)
         case {"op": "split", "joint": str(joint)}:
@@ -143,7 +144,7 @@ def _names(tables: Mapping[str, Any]) -> Iterator[str]:
                 yield name
 
 
-def _ground_point(draft: TomlText, plane: Plane, at: complex) -> tuple[str, str]:
+def _ground_point(draft: TomlText, plane: Plane, at: complex) -> Point:
     name = next(_names(draft.tables))
     if not plane.ground:
         raise CaseError("links: no link is the ground; write ground = true in one")
@@ -151,13 +152,13 @@ def _ground_point(draft: TomlText, plane: Plane, at: complex) -> tuple[str, str]
     return plane.ground, name
 
 
-def _end(draft: TomlText, plane: Plane, end: Mapping[str, Any]) -> tuple[str, str]:
+def _end(draft: TomlText, plane: Plane, end: Mapping[str, Any]) -> Point:
     """Return link and point of an end on what is there; a new point of the ground is made."""
     match end:
         case {"joint": str(joint)}:
             if joint not in plane.joints:
                 raise CaseError(f"joints.{joint}: there is no such joint; choose one that is there")
-            first, second = plane.ends(joint)
+            first, second = plane.ends[joint]
             return second if plane.joints[joint].slides else first
         case {"link": str(link), "point": str(point)}:
             plane.place(link, point)
@@ -167,8 +168,9 @@ def _end(draft: TomlText, plane: Plane, end: Mapping[str, Any]) -> tuple[str, st
     raise CaseError("edit: an end is a joint, a point of a link, a place of the ground, or a free place of a new link")
 
 
-def _link(draft: TomlText, plane: Plane, operation: Mapping[str, Any], *ends: Mapping[str, Any]) -> None:
+def _link(draft: TomlText, pose: Pose | None, operation: Mapping[str, Any], *ends: Mapping[str, Any]) -> None:
     """Draw a link; the first that is drawn from the ground turns the linkage, unless something does already."""
+    plane = Plane(draft.tables, pose)
     keys = [None if "at" in end else _end(draft, plane, end) for end in ends]
     if keys == [None, None]:
         raise CaseError("edit link: it hangs nowhere; begin it at the ground, at a joint or at a point of another link")
@@ -176,7 +178,7 @@ def _link(draft: TomlText, plane: Plane, operation: Mapping[str, Any], *ends: Ma
         raise CaseError(
             f"edit link: both ends are on link '{keys[0][0]}', so it could not move; end it on another link"
         )
-    plane = Plane(draft.tables, plane.pose)
+    plane = Plane(draft.tables, pose)
     first, last = (plane.place(*key) if key else complex(*end["at"]) for key, end in zip(keys, ends, strict=True))
     if abs(last - first) < SAME:
         raise CaseError("edit link: it has no length; end it elsewhere")
@@ -214,9 +216,9 @@ def _link(draft: TomlText, plane: Plane, operation: Mapping[str, Any], *ends: Ma
         draft.put(("drive",), {"link": name, "joint": shaft})
 
 
-def _joint(draft: TomlText, plane: Plane, first: tuple[str, str], second: tuple[str, str]) -> None:
+def _joint(draft: TomlText, plane: Plane, first: Point, second: Point) -> None:
     """Add a joint of two points, with what joints beside it state: one at the same hole, or the first of the case."""
-    alike = [*plane.pinned(*first), *plane.pinned(*second), *plane.joints]
+    alike = [name for end in (first, second) for name in plane.joints if end in plane.ends[name]] + [*plane.joints]
     models = [name for name in alike if not plane.joints[name].slides and not plane.joints[name].fixed]
     model = draft.tables["joints"][models[0]] if models else {"links": ["", ""], "pin_diameter": PIN}
     links = dict(zip(model["links"], (first[0], second[0]), strict=True))
@@ -259,7 +261,8 @@ def _join(draft: TomlText, pose: Pose | None, first: Mapping[str, Any], second: 
         raise CaseError(
             f"edit join: {one[0]}.{one[1]} and {other[0]}.{other[1]} are joined already; choose another point"
         )
-    still, moved = (other, one) if plane.pinned(*other) and not plane.pinned(*one) else (one, other)
+    held = {end for ends in plane.ends.values() for end in ends}
+    still, moved = (other, one) if other in held and one not in held else (one, other)
     if abs(plane.place(*moved) - plane.place(*still)) > SAME:
         move(draft, plane, moved, plane.place(*still))
     _joint(draft, plane, one, other)
@@ -267,7 +270,7 @@ def _join(draft: TomlText, pose: Pose | None, first: Mapping[str, Any], second: 
 
 def _layer(draft: TomlText, link: str, to: int) -> None:
     """Lay a link in a layer; where none has one so far, the others lie in layer 0, with washers as starters have."""
-    links = draft.tables["links"]
+    links = draft.tables.get("links", {})
     if link not in links:
         raise CaseError(f"links.{link}: there is no such link; choose one that is there")
     if not any("layer" in one for one in links.values()):

@@ -1,7 +1,7 @@
 """Edits of TOML text in place: an entry is set, added, removed or renamed, and every other byte stays as it is.
 
-The text is read once for where its keys and values stand; an edit puts new text at such a place. tomlkit, which writes
-new case files, takes eight times as long to read one as ``tomllib`` does: too long at every move of a pointer.
+The text is read once for where its keys and values stand; an edit puts new text at such a place. ``tomlkit``, which
+writes new case files, takes eight times as long to read one as ``tomllib`` does: too long at every move of a pointer.
 """
 
 import json
@@ -126,7 +126,7 @@ def value_at(tables: Any, path: Sequence[Key]) -> Any:
     Parameters
     ----------
     tables : object
-        Nested dicts and lists.
+        Nested tables and lists.
     path : sequence of str and int
         Keys, and numbers in lists.
 

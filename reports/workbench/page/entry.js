@@ -6,10 +6,16 @@ import { add } from "./svg.js";
 import { minus, number, size, toScreen } from "./view.js";
 
 let form = null;
+let renew = null;
 
 export function close() {
   form?.remove();
   form = null;
+}
+
+/** Show the numbers as they are now, unless somebody writes. */
+export function refresh() {
+  if (form && !form.contains(document.activeElement)) renew();
 }
 
 export const isOpen = () => form !== null;
@@ -71,6 +77,7 @@ function asked(handle) {
 /** Open the form of a thing; with `focus` the first number is ready to be overwritten. */
 export function open(parent, handle, focus) {
   close();
+  renew = () => open(parent, handle, false);
   const what = asked(handle);
   if (!what?.fields.length) return;
   form = add(parent, "form", { class: "entry", "aria-label": what.title, autocomplete: "off", novalidate: "" });

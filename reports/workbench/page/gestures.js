@@ -29,6 +29,7 @@ export function mount(element) {
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
   store.on("drawn", settle);
+  store.on("drawn", entry.refresh);
   store.on("document", settle);
 }
 
@@ -64,7 +65,7 @@ function down(event) {
     grab.pans = !grab.drag;
   } else if ([...TWO_ENDS, "load"].includes(tool)) {
     grab.second = store.state.ends !== null && tool !== "load";
-    if (!grab.second) begin(handle, toPlane(at), event.altKey);
+    if (!grab.second) store.put("ends", endAt(handle, toPlane(at), event.altKey));
   }
 }
 
@@ -255,7 +256,9 @@ function pull({ operations, held }, gesture) {
 function settle() {
   const { document: now, drawn, held } = store.state;
   const known = now?.problem ? now.revision : drawn?.revision;
-  if (held && !grab?.moved && known >= newest) store.put("held", null);
+  if (!held || grab?.moved || known < newest) return;
+  store.put("held", null);
+  entry.refresh();
 }
 
 /* Tools that make something. */
@@ -281,10 +284,6 @@ function endAt(handle, place, free) {
     return { end: { link: link.name, point }, at: fromLocal(link, spot), operations: [{ op: "set", path: ["links", link.name, "points", point], value }], handle };
   }
   return { end: { at: to }, at: to, operations: [], handle: null };
-}
-
-function begin(handle, place, free) {
-  store.put("ends", endAt(handle, place, free));
 }
 
 function finish(handle, place, free) {
@@ -353,7 +352,7 @@ function enter(handle, target) {
   const where = thing?.kind === "link" ? middle(thing) : place;
   if (!TWO_ENDS.includes(tool)) use(thing, where, true);
   else if (store.state.ends) finish(thing, where, true);
-  else begin(thing, where, true);
+  else store.put("ends", endAt(thing, where, true));
 }
 
 function middle(handle) {

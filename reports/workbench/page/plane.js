@@ -20,7 +20,7 @@ export function mount(element) {
   marks(draw(svg, "defs"));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
-  for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "paths"]) {
+  for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "cursor", "paths"]) {
     store.on(name, later);
   }
   svg.addEventListener("pointerover", (event) => hover(event.target.handle ?? null));
@@ -97,6 +97,7 @@ function drawAll() {
   const { state } = store;
   const now = scene();
   svg.classList.toggle("old", Boolean(state.document?.problem) && state.drawn?.revision !== state.document.revision);
+  svg.classList.toggle("late", shownVerdict(state.verdict)?.revision < state.document?.revision);
   svg.classList.toggle("sketch", Boolean(state.drawn?.problem));
   svg.dataset.tool = state.tool;
   if (now && state.view) {
@@ -159,10 +160,10 @@ function bodies(sheet) {
     if (link.ground && !link.part) {
       groups.links.put(link.name, "path", { d: lines, class: `ground ${chosen}` });
     } else if (link.rings) {
-      groups.links.put(link.name, "path", { d: link.rings.map((ring) => trace(ring, true)).join(""), class: `part ${chosen} ${use.over ? "over" : ""}`, fill, "fill-rule": "evenodd", "fill-opacity": 0.6 + 0.4 * depth });
+      groups.links.put(`${link.name} part`, "path", { d: link.rings.map((ring) => trace(ring, true)).join(""), class: `part ${chosen} ${use.over ? "over" : ""}`, fill, "fill-rule": "evenodd", "fill-opacity": 0.6 + 0.4 * depth });
     } else {
       groups.links.put(`${link.name} edge`, "path", { d: lines, class: `edge ${chosen} ${use.over ? "over" : ""}`, "stroke-width": wide + 2 });
-      groups.links.put(link.name, "path", { d: lines, class: "bar", stroke: use.colour, "stroke-width": wide });
+      groups.links.put(`${link.name} bar`, "path", { d: lines, class: "bar", stroke: use.colour, "stroke-width": wide });
     }
     if (!lines) continue;
     const target = groups.bodies.put(link.name, "path", { d: lines, "stroke-width": Math.max(wide, 24), tabindex: 0, role: "button", "aria-label": said(link, use) });

@@ -40,13 +40,16 @@ export class Group {
     return element;
   }
 
-  /** Take away what was not drawn since this was last called. */
+  /** Take away what was not drawn since this was last called, and put the rest in order; what has the focus stays. */
   end() {
     for (const [key, element] of this.kept) {
       if (this.seen.has(key)) continue;
       element.remove();
       this.kept.delete(key);
     }
+    const order = [...this.seen].map((key) => this.kept.get(key));
+    const apart = order.some((element, k) => element !== this.element.children[k]);
+    if (apart && !this.element.contains(document.activeElement)) this.element.append(...order);
     this.seen.clear();
   }
 }

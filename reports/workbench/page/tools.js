@@ -21,7 +21,6 @@ export function mount(element) {
   const chosen = group(element, "What a press does");
   for (const [name, label, key, hint] of TOOLS) {
     const one = button(chosen, label, key, hint, () => choose(name));
-    one.setAttribute("aria-keyshortcuts", key);
     store.on("tool", (tool) => one.setAttribute("aria-pressed", String(tool === name)));
   }
   const steps = group(element, "Steps");
@@ -51,8 +50,9 @@ function group(element, label) {
 }
 
 function button(parent, label, key, title, act) {
-  const one = add(parent, "button", { type: "button", ...(title && { title }) }, `${label} `);
-  add(one, "kbd", {}, named(key));
+  const one = add(parent, "button", { type: "button", title: title || `${label}: ${key}` }, `${label} `);
+  if (!key.startsWith("Ctrl")) add(one, "kbd", {}, named(key));
+  one.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
   one.addEventListener("click", act);
   return one;
 }
