@@ -21,7 +21,7 @@ help: ## show this list
 setup: $(INSTALLED) ## system libraries, .venv, locked packages, alula itself
 
 demo: setup ## check the built-in owl wing, all links as solids, and say where its report is
-	@$(BIN)/alula check owl-wing-static --fidelity solid -o $(DEMO); status=$$?; \
+	@$(BIN)/alula check owl-wing-static --fidelity solid --fresh -o $(DEMO); status=$$?; \
 	case $$status in \
 	  0|1|3) echo "The report: $(CURDIR)/$(DEMO)/report.html" ;; \
 	  *) exit $$status ;; \

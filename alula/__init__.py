@@ -573,8 +573,8 @@ def inspect(path: "str | PathLike[str]", *, material: str | None = None, unit: s
     CaseError, CannotRunError
         For a file that holds no single solid, and where the geometry kernel fails.
     """
-    from alula.reports.commands.inspect_part import inspect_file
     from alula.reports.notebook.part_report import PartReport
+    from alula.reports.tools.part import inspect_file
 
     return PartReport(inspect_file(Path(path), material, unit))
 

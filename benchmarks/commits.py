@@ -93,6 +93,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", default=list(COMMANDS), help="commands")
     options = parser.parse_args()
     os.environ.pop("PYTHONPATH", None)
+    os.environ["ALULA_CACHE"] = ""  # each run solves all anew
     trees = {"before": tree(options.before), "now": ROOT}
     commits = {"before": git("rev-parse", "--short", options.before), "now": git("rev-parse", "--short", "HEAD")}
     changed = bool(git("status", "--porcelain", "--untracked-files=no", "--", "*.py", "*.toml"))

@@ -37,7 +37,7 @@ new MutationObserver((_, watch) => {
 
 def written(case: str, fidelity: str, folder: Path) -> Path:
     """Check a case and return its report."""
-    command = [sys.executable, "-m", "alula", "check", case, "--fidelity", fidelity, "--output", str(folder)]
+    command = [sys.executable, "-m", "alula", "check", case, "--fresh", "--fidelity", fidelity, "--output", str(folder)]
     ended = subprocess.run(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
     if ended.returncode not in (0, 1, 3):
         raise SystemExit(f"the check ended with status {ended.returncode}")

@@ -41,7 +41,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
 def run(name: str, arguments: list[str]) -> tuple[int, float]:
     """Exit status and wall seconds of one benchmark."""
     command = [sys.executable, str(HERE / f"{name}.py"), *arguments]
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "ALULA_BENCH_LOAD": str(LOAD)}
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "ALULA_BENCH_LOAD": str(LOAD), "ALULA_CACHE": ""}
     start = time.perf_counter()
     if BENCHMARKS[name][0]:
         one_thread = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}

@@ -1,4 +1,4 @@
-"""Chromium without a window, driven by selenium: pages are opened as files, and nothing can be reached from them."""
+"""Chromium without a window, driven by selenium: pages are opened as files, or from a server of this machine alone."""
 
 import base64
 import io
@@ -27,6 +27,8 @@ _ARGUMENTS = (
     *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=<-loopback>"),  # a port at which nobody answers
 )
 NO_WEBGL = ("--disable-3d-apis",)
+LOCAL = ("--proxy-bypass-list=127.0.0.1",)
+"""Pages of this machine's own servers are reached; all else is as before."""
 
 
 def programs() -> tuple[str, str] | None:
@@ -41,13 +43,13 @@ class Browser:
     def __init__(self, driver: Any) -> None:
         self.driver = driver
 
-    def open(self, page: Path, size: tuple[int, int] = DESKTOP) -> None:
-        """Open a page in a viewport of a size; what the browser said before is forgotten."""
+    def open(self, page: Path | str, size: tuple[int, int] = DESKTOP) -> None:
+        """Open a page, a file or an address, in a viewport of a size; what the browser said before is forgotten."""
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
         self.command("Emulation.setDeviceMetricsOverride", **metrics)
         self.messages(), self.requests()
-        self.driver.get(page.as_uri())
+        self.driver.get(page if isinstance(page, str) else page.as_uri())
 
     def command(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Give a command of the DevTools protocol."""

@@ -33,6 +33,7 @@ def as_on_a_bare_machine(event, arguments):
 def pytest_configure(config):
     """Make the folder by which the processes of a run share what they solve (``solved``); watch what tests start."""
     sys.addaudithook(as_on_a_bare_machine)
+    os.environ["ALULA_CACHE"] = ""  # what an earlier run solved would hide what has changed
     if not hasattr(config, "workerinput"):
         os.environ["ALULA_TESTS_SHARE"] = tempfile.mkdtemp(prefix="alula-tests-")
 

@@ -18,7 +18,7 @@ from alula.fea.outcomes.point_displacement import meshes_to_refine
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_task import LinkTask
-from alula.fea.refine.refinement import Effort, RefinedSolid
+from alula.fea.refine.refinement import Effort, RefinedSolid, Watch
 from alula.fea.solid.solution import SolidSolution, require_compressible
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
@@ -51,6 +51,8 @@ class Deciding:
     threads : int
     progress : callable
         Called with a sentence before every stage that may take long.
+    watch : callable
+        As of ``refine_links``.
     begun : float
         When it was [s].
     """
@@ -64,6 +66,7 @@ class Deciding:
     only: Collection[str] | None
     threads: int
     progress: Progress
+    watch: Watch = lambda link, found: None
     begun: float = field(default_factory=time.perf_counter)
     _answers: dict[tuple[str, str], tuple[SolidSolution, SolvedAnswers | None]] = field(default_factory=dict)
 
@@ -103,13 +106,21 @@ class Deciding:
             },
             threads=self.threads,
             told=ranges,
+            watch=self.watch,
             progress=self.progress,
         )
         tasks = {link: task.without(lost) for link, task in tasks.items()}
         for _ in range(POINT_ROUNDS if self.only is None else 0):
             wanted, spent = _wanted(held, decided), replace(self.effort, time_limit=self._left)
             closer = decide_point(
-                decided, tasks, wanted, self.start, spent, threads=self.threads, progress=self.progress
+                decided,
+                tasks,
+                wanted,
+                self.start,
+                spent,
+                threads=self.threads,
+                watch=self.watch,
+                progress=self.progress,
             )
             if not closer:
                 break

@@ -284,14 +284,28 @@ class LoadCaseByHand:
         -------
         dict of str to LinkResult
         """
-        found = {}
-        for link, plates in self.plates.items():
-            own = self.case, link, self.load_case
-            uneven, shares = self.doubts_on(link, (solved or {}).get(link))
-            found[link] = worse_plate(
-                [link_result(*own, hand, decided.get(link), uneven, shares, name=loads.name) for loads, hand in plates]
-            )
-        return found
+        return {link: self.link(link, decided.get(link), (solved or {}).get(link)) for link in self.plates}
+
+    def link(self, link: str, decided: DecidedLink | None, solved: SolvedAnswers | None = None) -> LinkResult:
+        """Return the result of a link; of a pair, that of its worse plate.
+
+        Parameters
+        ----------
+        link : str
+        decided : DecidedLink or None
+            None where nothing acts on it.
+        solved : SolvedAnswers, optional
+            As of ``links``.
+
+        Returns
+        -------
+        LinkResult
+        """
+        uneven, shares = self.doubts_on(link, solved)
+        own = self.case, link, self.load_case
+        return worse_plate(
+            [link_result(*own, hand, decided, uneven, shares, name=loads.name) for loads, hand in self.plates[link]]
+        )
 
     def with_growth(self, outcome: CheckOutcome) -> CheckOutcome:
         """Return the buckling factor of a link with what its compression may be in its band.

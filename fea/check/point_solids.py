@@ -6,7 +6,7 @@ from dataclasses import replace
 from alula.fea.common.reason import reason
 from alula.fea.links.fidelity import DecidedLink, Decision
 from alula.fea.refine.link_task import LinkTask
-from alula.fea.refine.refinement import Effort, Progress, refine_links
+from alula.fea.refine.refinement import Effort, Progress, Watch, refine_links
 from alula.geometry.meshing.mesh import MeshSettings
 
 
@@ -18,6 +18,7 @@ def decide_point(
     effort: Effort,
     *,
     threads: int | None = None,
+    watch: Watch = lambda link, found: None,
     progress: Progress = lambda message: None,
 ) -> dict[str, DecidedLink]:
     """Take solids, or refine them, where the displacement of a point of the linkage asks for it.
@@ -33,6 +34,8 @@ def decide_point(
     effort : Effort
         What it may cost.
     threads : int, optional
+    watch : callable, optional
+        As of ``refine_links``.
     progress : callable
 
     Returns
@@ -50,7 +53,8 @@ def decide_point(
     earlier = {link: solid for link in closer if (solid := decided[link].solid) is not None and link not in part}
     why = reason("solid_for_point")
     found = {}
-    for link, solid in refine_links(closer, start, effort, earlier=earlier, threads=threads, progress=progress).items():
+    solids = refine_links(closer, start, effort, earlier=earlier, threads=threads, watch=watch, progress=progress)
+    for link, solid in solids.items():
         solved = decided[link].solid is not None
         decision = decided[link].decision if solved else Decision(model="solid", why=why, next_cost=None)
         under = {loads.name for loads in tasks[link].loads}

@@ -1,7 +1,7 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import reduce
 
 from pydantic_core import PydanticCustomError
@@ -21,23 +21,44 @@ from alula.fea.doubts.other_case import on_shape
 from alula.fea.doubts.play_doubt import play_warnings, shaken
 from alula.fea.doubts.tight_pins import tight_pin_warnings
 from alula.fea.judging.linkage_numbers import left_stops
+from alula.fea.links.fidelity import DecidedLink, Decision
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.outcomes.result import CheckResult, LinkResult
 from alula.fea.outcomes.unchecked import unusual_materials
 from alula.fea.outcomes.unloaded import nothing_acts
-from alula.fea.refine.refinement import START, Effort
+from alula.fea.refine.refinement import START, Effort, RefinedSolid
 from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
 from alula.fea.standing.joint_forces import LAYERED_FRAME
 from alula.fea.whole.layer_gaps import layer_gap_outcomes
 from alula.fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.kept import tally
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
 from alula.loads.text.shares import parse_accuracy
 
+Watch = Callable[["WatchedLink"], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
+
+
+@dataclass(frozen=True, kw_only=True)
+class WatchedLink:
+    """A link whose solid is begun, or whose meshes have ended.
+
+    Attributes
+    ----------
+    link : str
+    results : mapping of str to LinkResult
+        Load case -> its result, with what causes make by hand in its bands; empty where it is begun.
+    kept : bool
+        True where all its solutions were kept from earlier checks.
+    """
+
+    link: str
+    results: Mapping[str, LinkResult] = field(default_factory=dict)
+    kept: bool = False
 
 
 def effort_of(
@@ -88,6 +109,7 @@ def check_case(
     only: Collection[str] | None = None,
     bare: bool = False,
     told: Sequence[str] | None = None,
+    watch: Watch | None = None,
     linear: bool = False,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
@@ -115,6 +137,8 @@ def check_case(
     told : sequence of str, optional
         Links by hand whose bands are wanted; those of others leave out that pins may tilt and stand otherwise in their
         holes. All when left out.
+    watch : callable, optional
+        Called with every link whose solid is begun, and with what was found as its meshes end, before all is judged.
     linear : bool, optional
         True for what linear theory says by hand of the loads as stated, which takes a tenth of the time: what ``bare``
         leaves out is left out, and so are large displacement, buckling of the linkage and its limit load. Bands leave
@@ -135,7 +159,7 @@ def check_case(
     """
     if fidelity not in FIDELITIES:
         raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
-    clock = Clock()
+    clock, before = Clock(), tally()
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
@@ -182,6 +206,7 @@ def check_case(
         only=only,
         threads=threads,
         progress=progress,
+        watch=lambda link, solid: watch and watch(_watched(link, solid, by_hand)),
     )
     decided = deciding.decided()
     if fidelity not in BY_HAND:
@@ -228,8 +253,17 @@ def check_case(
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
+        kept=(tally()[0] - before[0], tally()[1] - before[1]),
         warnings=warnings,
     )
+
+
+def _watched(link: str, solid: RefinedSolid | None, load_cases: Mapping[str, LoadCaseByHand]) -> WatchedLink:
+    if solid is None:
+        return WatchedLink(link=link)
+    decided = DecidedLink(decision=Decision(model="solid", why="", next_cost=None), solid=solid)
+    results = {x: one.link(link, decided if one.acts_on(link) else None) for x, one in load_cases.items()}
+    return WatchedLink(link=link, results=results, kept=solid.kept)
 
 
 def links_by_hand(

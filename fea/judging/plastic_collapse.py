@@ -28,6 +28,7 @@ from alula.fea.plastic.yield_law import YieldLaw
 from alula.fea.refine.link_task import ElasticLink
 from alula.fea.superposition.solid_shares import Shares
 from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.kept import NotKept, kept
 from alula.geometry.materials.material import Material
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
@@ -122,12 +123,13 @@ def find_collapses(
             for loads in links.get(link, ()):
                 progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
                 try:
-                    one: Collapse = collapse_of(
+                    one: Collapse = _collapse(
                         ElasticLink.of(body, material),
                         yield_law(material),
                         loads,
-                        mesh,
-                        largest_strain=largest_strain(material),
+                        start,
+                        largest_strain(material),
+                        mesh=mesh,
                         threads=threads,
                         until=until,
                     )
@@ -135,6 +137,23 @@ def find_collapses(
                     one = str(error)
                 found[load_case][link] = _worse(found[load_case].get(link), one)
     return found
+
+
+@kept(but=("mesh", "threads", "until"))
+def _collapse(
+    link: ElasticLink,
+    law: YieldLaw,
+    loads: LinkLoads,
+    start: MeshSettings,
+    largest: float,
+    *,
+    mesh: Callable[[float], TaggedMesh],
+    threads: int | None,
+    until: float,
+) -> LinkCollapse | NotKept[LinkCollapse]:
+    """As ``collapse_of``, with meshes of the link that settings make; what time cut short is not kept."""
+    found = collapse_of(link, law, loads, mesh, largest_strain=largest, threads=threads, until=until)
+    return found if time.perf_counter() < until else NotKept(found)
 
 
 def as_elastic(one: Asked) -> Asked:

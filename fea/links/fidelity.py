@@ -21,7 +21,7 @@ from alula.fea.common.source import CONTACT, Source, SourceKind
 from alula.fea.refine.beyond_meshes import Ends, OpenRanges, is_open, mesh_may_decide, none_decides
 from alula.fea.refine.link_series import PeakQuantity
 from alula.fea.refine.link_task import LinkTask
-from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, Told, refine_links
+from alula.fea.refine.refinement import Effort, Progress, RefinedSolid, Told, Watch, refine_links
 from alula.fea.solid.layers import in_worst_direction
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import extent, reference_line
@@ -138,6 +138,7 @@ def decide(
     doubted: Mapping[str, Mapping[str, OpenRanges]] | None = None,
     threads: int | None = None,
     told: Told | None = None,
+    watch: Watch = lambda link, found: None,
     progress: Progress = lambda message: None,
 ) -> dict[str, DecidedLink]:
     """Decide every link by hand where that can, else by a solid.
@@ -165,7 +166,7 @@ def decide(
         Link -> name of loads -> within what numbers by hand its checks are open; by default the ``open_ranges`` of its
         task, which leave out loads under which meshes are made finer all the same.
     threads : int, optional
-    told : callable, optional
+    told, watch : callable, optional
         As of ``refine_links``.
     progress : callable
 
@@ -208,7 +209,7 @@ def decide(
         if decision is not None:
             del rest[link]
             found[link] = DecidedLink(decision=decision, hands=hands[link], left=left[link])
-    solids = refine_links(rest, start, effort, first=first, threads=threads, told=told, progress=progress)
+    solids = refine_links(rest, start, effort, first=first, threads=threads, told=told, watch=watch, progress=progress)
     for link, solid in solids.items():
         decision = Decision(model="solid", why=reasons[link] or "", next_cost=None)
         found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid, left=left[link])

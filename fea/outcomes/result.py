@@ -379,6 +379,8 @@ class CheckResult:
         CalculiX beside our solid models, where it was asked for.
     frequencies : CaseFrequencies or None
         Natural frequencies, where a check asks for them.
+    kept : tuple of 2 int
+        How many meshes and solutions were kept from earlier checks, and how many there are; zeros where none are kept.
     changes : tuple of VerdictChange
         What would change the verdict of the check that decides. This and what follows is what a report tells besides;
         ``alula.fea.findings.of_check`` finds it, and a check by itself leaves it out.
@@ -405,6 +407,7 @@ class CheckResult:
     warnings: tuple[Reason | str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
     frequencies: CaseFrequencies | None = None
+    kept: tuple[int, int] = (0, 0)
     changes: tuple[VerdictChange, ...] = ()
     motion: Motion | None = None
     in_air: AirRange | None = None

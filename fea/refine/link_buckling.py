@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from alula.fea.buckling.solid_holding import SolidHolding
+from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.nonlinear.large_displacement import LEAST_LINEAR
 from alula.fea.refine.error_estimate import estimate_error
@@ -12,6 +14,7 @@ from alula.fea.solid.buckling_factor import BucklingProblem
 from alula.fea.solid.solution import SolidCase, SolidSolution
 from alula.fea.solid.stress import stress_field
 from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.kept import NotKept, kept
 from alula.loads.records.bearing import WIDE
 
 LARGEST_ERROR = 0.5
@@ -84,30 +87,39 @@ def link_buckling(solution: SolidSolution, task: LinkTask, chord: float) -> dict
     dict of str to SolidBuckling
         By load case; empty where beams stand for the link.
     """
-    if task.holding is None:
-        return {}
+    return {} if task.holding is None else _buckling(solution, task.loads, task.holding, chord)
+
+
+@kept()
+def _buckling(
+    solution: SolidSolution, loads: tuple[LinkLoads, ...], holding: SolidHolding, chord: float
+) -> dict[str, SolidBuckling] | NotKept[dict[str, SolidBuckling]]:
+    """As ``link_buckling``, of a link that joints hold; limits do not enter."""
     chosen = {case.load: case for case in reversed(solution.cases) if case.span == WIDE.span}
     try:
         problem = BucklingProblem(
             solution.space,
-            task.holding.places,
+            holding.places,
             E=solution.E,
             nu=solution.nu,
             halved=all(case.symmetric for case in chosen.values()),
         )
-        return {loads.name: _factors(solution, problem, task, chosen[loads.name], chord) for loads in task.loads}
+        return {one.name: _factors(solution, problem, one, holding, chosen[one.name], chord) for one in loads}
     except CannotRunError as error:
-        return {loads.name: SolidBuckling.unknown(str(error)) for loads in task.loads}
+        return NotKept({one.name: SolidBuckling.unknown(str(error)) for one in loads})
 
 
 def _factors(
-    solution: SolidSolution, problem: BucklingProblem, task: LinkTask, solved: SolidCase, chord: float
+    solution: SolidSolution,
+    problem: BucklingProblem,
+    loads: LinkLoads,
+    holding: SolidHolding,
+    solved: SolidCase,
+    chord: float,
 ) -> SolidBuckling:
-    assert task.holding is not None
-    [loads] = [loads for loads in task.loads if loads.name == solved.load]
     prestress = problem.prestress(solved.displacement, loads)
     stress = stress_field(solution.space, solved.displacement, E=solution.E, nu=solution.nu)
-    found = [problem.least(prestress, conditions) for conditions in (task.holding.value, *task.holding.alone)]
+    found = [problem.least(prestress, conditions) for conditions in (holding.value, *holding.alone)]
     errors = [estimate_error(stress, solved.displacement, E=solution.E, nu=solution.nu).relative]
     for buckled in (buckled for buckled in found if math.isfinite(buckled.factor)):
         field = stress_field(solution.space, buckled.mode, E=solution.E, nu=solution.nu)
@@ -116,12 +128,12 @@ def _factors(
     if error > LARGEST_ERROR:
         return SolidBuckling.unknown(TOO_COARSE)
     most = math.inf
-    if task.holding.most is not None and found[0].factor < LEAST_LINEAR:
-        most = problem.least(prestress, task.holding.most).factor
+    if holding.most is not None and found[0].factor < LEAST_LINEAR:
+        most = problem.least(prestress, holding.most).factor
     return SolidBuckling(
         value=found[0].factor,
         least=min(buckled.factor for buckled in found),
         most=max(most, found[0].factor),
         error=error,
-        holding=task.holding.how,
+        holding=holding.how,
     )

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 from alula.fea.buckling.solid_holding import SolidHolding
 from alula.fea.common.link_loads import LinkLoads
@@ -117,6 +117,11 @@ class LinkTask(ElasticLink):
         LinkTask
         """
         return replace(self, loads=tuple(loads for loads in self.loads if loads.name not in names))
+
+    @property
+    def link(self) -> ElasticLink:
+        """The link alone, which its solution depends on besides its loads."""
+        return ElasticLink(**{one.name: getattr(self, one.name) for one in fields(ElasticLink)})
 
     @property
     def measures(self) -> tuple[Measure, ...]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.threads import bounded
 from alula.fea.refine.beyond_meshes import OpenRanges, none_decides
@@ -29,12 +30,13 @@ from alula.fea.refine.link_series import (
     goals,
     precision,
 )
-from alula.fea.refine.link_task import LinkTask
+from alula.fea.refine.link_task import ElasticLink, LinkTask
 from alula.fea.refine.singular import NEARLY, element_exponents, loaded_edge
 from alula.fea.refine.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction, series_ratio
 from alula.fea.solid.solution import SolidSolution, solve_solid
 from alula.geometry.base import child
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.base.kept import kept
 from alula.geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 
@@ -45,6 +47,7 @@ ROUGH = 0.25
 START = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
 """The first mesh: coarse, since the next ones become finer where it matters."""
 Progress = Callable[[str], None]
+Watch = Callable[[str, "RefinedSolid | None"], None]
 Told = Callable[[str, "RefinedSolid"], Mapping[str, OpenRanges]]
 NONE_DECIDES = reason("no_finer_mesh_decides")
 """Why refinement of a link ends whose checks are open for other causes."""
@@ -132,6 +135,8 @@ class RefinedSolid:
         Load case -> factors on the first mesh that tells them; empty where beams stand for the link.
     beyond : frozenset of int
         Numbers of the cases whose checks no finer mesh decides, for which none was made.
+    kept : bool
+        True where no mesh was solved for it now: all solutions were kept from earlier checks.
     """
 
     solution: SolidSolution
@@ -145,6 +150,7 @@ class RefinedSolid:
     settings: MeshSettings = START
     buckling: Mapping[str, SolidBuckling] = field(default_factory=dict)
     beyond: frozenset[int] = frozenset()
+    kept: bool = False
 
     @property
     def may_go_on(self) -> bool:
@@ -161,6 +167,7 @@ def refine_links(
     earlier: Mapping[str, RefinedSolid] | None = None,
     threads: int | None = None,
     told: Told | None = None,
+    watch: Watch = lambda link, found: None,
     progress: Progress = lambda message: None,
 ) -> dict[str, RefinedSolid]:
     """Mesh and solve every link as often as its numbers need it, as many links side by side as there may be threads.
@@ -182,6 +189,8 @@ def refine_links(
         their own choice, and takes one link after another.
     told : callable, optional
         Returns the ``open_ranges`` of a link by what its first mesh tells, before a second one is made.
+    watch : callable, optional
+        Called with every link as it is begun, and with what was found as it ends.
     progress : Progress, optional
         Called with a sentence before each step.
 
@@ -202,8 +211,11 @@ def refine_links(
     with bounded(own, children=threads), ThreadPoolExecutor(2) as meshers, ThreadPoolExecutor(beside) as solvers:
         try:
             for link in links:
+                watch(link.name, None)
                 if link.levels:
                     link.go_on(meshers, begun)
+                    if link.done:
+                        watch(link.name, link.result())
                 else:
                     link.order_mesh(meshers, (first or {}).get(link.name))
             # Links take turns, mesh by mesh, so that a limit of time leaves each of them with about as many.
@@ -212,13 +224,26 @@ def refine_links(
                 for turn in wait(turns, return_when=FIRST_COMPLETED).done:
                     link = turns.pop(turn)
                     turn.result()
-                    if not link.done:
+                    if link.done:
+                        watch(link.name, link.result())
+                    else:
                         turns[solvers.submit(link.advance, meshers, begun, progress)] = link
         except BaseException:
             solvers.shutdown(wait=False, cancel_futures=True)
             meshers.shutdown(wait=False, cancel_futures=True)
             raise
     return {link.name: link.result() for link in links}
+
+
+@kept(but=("begin",))
+def _on_mesh(
+    mesh: TaggedMesh, link: ElasticLink, loads: tuple[LinkLoads, ...], begin: Callable[[], None]
+) -> tuple[SolidSolution, Level, float]:
+    """Solve a link on a mesh, and condense what is kept of it, in so many seconds; limits and efforts do not enter."""
+    begin()
+    begun = time.perf_counter()
+    solution = solve_solid(mesh, E=link.E, nu=link.nu, density=link.density, loads=loads, line=link.line)
+    return solution, level_of(solution, mesh.volume, link.layers), time.perf_counter() - begun
 
 
 class _Link:
@@ -242,6 +267,7 @@ class _Link:
         self.solution: SolidSolution | None = earlier.solution if earlier else None
         self.stopped: Reason | None = None
         self.done = False
+        self.kept = earlier is None or earlier.kept
         self.far = earlier is not None and earlier.far
         self.buckling = earlier.buckling if earlier else {}
         self._mesh: Callable[[], TaggedMesh] | None = None
@@ -263,21 +289,20 @@ class _Link:
             mesh = self._mesh()
             if child.stopped():
                 raise CannotRunError("interrupted")
-            begun = time.perf_counter()
-            solution = self._solved(mesh, progress)
+            solved = self._solved(mesh, progress)
         except (AlulaError, MemoryError) as error:
             if not self.levels:
                 raise type(error)(f"{self.name}: {error}") from None
             self._stop(reason("finer_mesh_unusable", why=str(error) or reason("memory_ran_out")))
             return
-        if solution is None:
+        if solved is None:
             return
-        self.solution = solution
-        self.levels.append(level_of(solution, mesh.volume, self.task.layers))
+        self.solution, level, taken = solved
+        self.levels.append(level)
         if not self._told:
-            self.buckling = link_buckling(solution, self.task, self.levels[-1].chord)
+            self.buckling = link_buckling(self.solution, self.task, level.chord)
         self._judge()
-        seconds = [*(mesh.seconds for mesh in self.meshes), time.perf_counter() - begun]
+        seconds = [*(mesh.seconds for mesh in self.meshes), taken]
         self.meshes = [
             MeshRecord(elements=len(level.cells), unknowns=3 * len(level.nodes), error=error, seconds=taken)
             for level, error, taken in zip(self.levels, energy_errors(self.levels), seconds, strict=True)
@@ -332,16 +357,20 @@ class _Link:
             settings=self.settings,
             buckling=self.buckling,
             beyond=self._beyond,
+            kept=self.kept,
         )
 
-    def _solved(self, mesh: TaggedMesh, progress: Progress) -> SolidSolution | None:
+    def _solved(self, mesh: TaggedMesh, progress: Progress) -> tuple[SolidSolution, Level, float] | None:
         unknowns = 3 * len(mesh.points)
         if self.levels and unknowns > self.effort.max_unknowns:
             self._stop(reason("next_mesh_too_large", unknowns=unknowns, allowed=self.effort.max_unknowns))
             return None
-        progress(f"Solving {self.name}, mesh {len(self.levels) + 1}: {len(mesh.cells)} elements ...")
-        task = self.task
-        return solve_solid(mesh, E=task.E, nu=task.nu, density=task.density, loads=task.loads, line=task.line)
+
+        def begin() -> None:
+            self.kept = False
+            progress(f"Solving {self.name}, mesh {len(self.levels) + 1}: {len(mesh.cells)} elements ...")
+
+        return _on_mesh(mesh, self.task.link, self.task.loads, begin)
 
     def _stop(self, why: Reason) -> None:
         self.stopped, self.done = why, True

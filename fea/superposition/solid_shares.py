@@ -7,19 +7,21 @@ mesh. What comes out are factors on the band that the link has as stated, for ea
 of an answer lies at a place that no mesh was refined for, the fourfold estimate there counts beside the factor.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.scatter import Scatter
-from alula.fea.refine.link_series import STRESS, PeakQuantity
-from alula.fea.refine.link_task import LinkTask
+from alula.fea.elements.space import DisplacementSpace
+from alula.fea.refine.link_series import STRESS, CasePrecision, PeakQuantity
+from alula.fea.refine.link_task import ElasticLink, LinkTask
 from alula.fea.refine.refinement import RefinedSolid
 from alula.fea.superposition.link_answers import LinkAnswers, Rule
 from alula.fea.superposition.link_measure import LinkMeasure, StatePeaks
 from alula.geometry.base.errors import CannotRunError
+from alula.geometry.base.kept import kept
 
 Real = NDArray[np.float64]
 Shares = Mapping[PeakQuantity, Scatter]
@@ -51,10 +53,25 @@ def solid_shares(
     CannotRunError
         Where memory does not suffice or a solver fails.
     """
+    solved = tuple(one.load for one in refined.solution.cases)
+    return _shares(task.link, refined.solution.space, solved, refined.precision, tuple(causes), threads=threads)
+
+
+@kept(but=("threads",))
+def _shares(
+    link: ElasticLink,
+    space: DisplacementSpace,
+    solved: tuple[str, ...],
+    precision: tuple[CasePrecision, ...],
+    causes: tuple[LinkAnswers, ...],
+    *,
+    threads: int | None,
+) -> tuple[Shares, ...]:
+    """As ``solid_shares``, of a link on its finest mesh; ``solved`` are the names of loads whose precision is given."""
     every = [(i, j, plate) for i, cause in enumerate(causes) for j, way in enumerate(cause.every) for plate in way]
-    measure = LinkMeasure.of_loads(task, refined.solution.space, [plate for *_, plate in every], threads=threads)
+    measure = LinkMeasure.of_loads(link, space, [plate for *_, plate in every], threads=threads)
     of_cause, answers = np.array([every[one.record][:2] for one in measure.variants]).T
-    wanted: list[PeakQuantity] = ["displacement", *STRESS.values(), *(("layers",) if task.layers is not None else ())]
+    wanted: list[PeakQuantity] = ["displacement", *STRESS.values(), *(("layers",) if link.layers is not None else ())]
     found: list[dict[PeakQuantity, Scatter]] = [{} for _ in causes]
     for quantity in wanted:
         peaks = measure.peaks(quantity)
@@ -63,7 +80,7 @@ def solid_shares(
             rule = cause.displacement if quantity == "displacement" else cause.stress
             factors, largest = _factors(peaks.value[own], answers[own], rule), int(own[np.argmax(peaks.value[own])])
             if quantity != "displacement" and answers[largest] > 0:
-                most = _elsewhere(measure, refined, quantity, peaks, cause, largest)
+                most = _elsewhere(measure, zip(precision, solved, strict=True), quantity, peaks, cause, largest)
                 factors = replace(factors, high=max(factors.high, most))
             found[number][quantity] = factors
     return tuple(found)
@@ -71,7 +88,7 @@ def solid_shares(
 
 def _elsewhere(
     measure: LinkMeasure,
-    refined: RefinedSolid,
+    precision: Iterable[tuple[CasePrecision, str]],
     quantity: PeakQuantity,
     peaks: StatePeaks,
     cause: LinkAnswers,
@@ -79,8 +96,7 @@ def _elsewhere(
 ) -> float:
     """Return a peak of another answer with its error, over the upper end as stated; 0 where that is unknown."""
     names = {plate.name for plate in cause.stated}
-    precision = zip(refined.precision, refined.solution.cases, strict=True)
-    tops = [one.high(quantity) for one, case in precision if case.load in names]
+    tops = [one.high(quantity) for one, load in precision if load in names]
     if not tops or not 0.0 < max(tops) < np.inf:
         return 0.0
     return measure.ends(quantity, largest, int(peaks.node[largest]), float(peaks.value[largest]))[1] / max(tops)

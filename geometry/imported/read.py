@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.kept import kept
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
 
@@ -72,6 +73,7 @@ def part_surface(path: Path, mesh_unit: float | None = None) -> PartSurface:
     return found
 
 
+@kept()
 def _ask(task: str, path: Path, digest: str, mesh_unit: float | None) -> Any:
     words = KernelWords(
         who=f"the geometry kernel, reading '{path.name}',",

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import AlulaError
+from alula.geometry.base.kept import kept
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.bodies.body_rules import check_body
 from alula.geometry.bodies.cut_section import CutSection
@@ -99,7 +100,7 @@ def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
     """
     settings = settings or MeshSettings()
     check_body(body)
-    mesh: TaggedMesh = _run("mesh", body, settings, time_limit=settings.time_limit, memory=settings.memory_limit)
+    mesh: TaggedMesh = _known("mesh", body, settings, time_limit=settings.time_limit, memory=settings.memory_limit)
     return mesh
 
 
@@ -144,7 +145,7 @@ def mass_properties(body: Body) -> MassProperties:
         Its volume integrals.
     """
     check_body(body)
-    volume, centroid, inertia = _run("mass", body)
+    volume, centroid, inertia = _known("mass", body)
     return MassProperties(volume=volume, centroid=centroid, inertia=inertia)
 
 
@@ -164,7 +165,7 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
         The edges.
     """
     check_body(body)
-    edges: list[ReentrantEdge] = _run("reentrant", body)
+    edges: list[ReentrantEdge] = _known("reentrant", body)
     return edges
 
 
@@ -187,7 +188,7 @@ def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[Cu
     rings : list of float
         Outer diameter of the flat ring about each pin's hole; 0 where there is none [mm].
     """
-    sections, rings = _run("sections", body, stations)
+    sections, rings = _known("sections", body, stations)
     return sections, rings
 
 
@@ -246,3 +247,6 @@ def _run(
 ) -> Any:
     words = _IMPORTED if isinstance(body.part, ImportedPart) else _WORDS
     return ask_kernel(task, body, *arguments, words=words, time_limit=time_limit, memory=memory)
+
+
+_known = kept(but=("time_limit", "memory"))(_run)

@@ -10,6 +10,15 @@ from pydantic import BaseModel
 from alula.geometry.base.units import INTERNAL_UNITS, as_text
 
 Schema = Mapping[str, Any]
+REFERS = {
+    **dict.fromkeys(("link", "links", "tight_in", "coordinate", "massless"), "links"),
+    **dict.fromkeys(("joint", "joints"), "joints"),
+    **dict.fromkeys(("material", "pin_material"), "materials"),
+    **dict.fromkeys(("at", "start", "end", "points", "held_at"), "points"),
+    "part": "parts",
+    "load_case": "load_cases",
+}
+"""Entries that name what stands elsewhere: in which table of the case, or among the points of a link."""
 
 
 def alike(name: str, known: Iterable[str]) -> str:
@@ -71,15 +80,15 @@ def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     root = file_schema(model)
     nodes = [node for node in _at(model, path) if "x-names" not in node]
     free = [node["additionalProperties"] for node in nodes if node.get("additionalProperties")]
-    return any(node.get("type") in ("object", "array") for child in free for node in _options(child, root))
+    return any(node.get("type") in ("object", "array") for child in free for node in options(child, root))
 
 
 def _at(model: type[BaseModel], path: Sequence[object]) -> list[Schema]:
     """Return the nodes of the schema at a path, all that a union leaves open."""
     root = file_schema(model)
-    nodes = _options(root, root)
+    nodes = options(root, root)
     for step in path:
-        nodes = [found for node in nodes for child in _children(node, step) for found in _options(child, root)]
+        nodes = [found for node in nodes for child in _children(node, step) for found in options(child, root)]
     return nodes
 
 
@@ -94,15 +103,26 @@ def _children(node: Schema, step: object) -> list[Schema]:
     return [free] if free else []
 
 
-def _options(node: Schema, root: Schema) -> list[Schema]:
-    """Return what a node may be: references followed, unions taken apart; a kind stands beside its node."""
+def options(node: Schema, root: Schema) -> list[Schema]:
+    """Return what a node may be: references followed, unions taken apart; a kind stands beside its node.
+
+    Parameters
+    ----------
+    node, root : mapping
+        A node, and the schema that it belongs to.
+
+    Returns
+    -------
+    list of mapping
+        Nodes that are neither.
+    """
     if "$ref" in node:
-        return _options(root["$defs"][node["$ref"].rpartition("/")[2]], root)
+        return options(root["$defs"][node["$ref"].rpartition("/")[2]], root)
     kinds = node.get("discriminator", {}).get("mapping")
     if kinds:
-        return [{**found, "kind": kind} for kind, at in kinds.items() for found in _options({"$ref": at}, root)]
+        return [{**found, "kind": kind} for kind, at in kinds.items() for found in options({"$ref": at}, root)]
     several = node.get("oneOf") or node.get("anyOf")
-    return [found for option in several for found in _options(option, root)] if several else [node]
+    return [found for option in several for found in options(option, root)] if several else [node]
 
 
 @cache
@@ -117,13 +137,22 @@ def file_schema(model: type[BaseModel]) -> Schema:
     Returns
     -------
     mapping
-        pydantic's schema; in place of numbers in alula's units, defaults of quantities are text with a unit.
+        pydantic's schema; in place of numbers in alula's units, defaults of quantities are text with a unit. What an
+        entry refers to is its ``x-refers``.
     """
     schema = model.model_json_schema()
     for table in (schema, *schema.get("$defs", {}).values()):
-        for entry in table.get("properties", {}).values():
+        for name, entry in table.get("properties", {}).items():
+            if name in REFERS and _is_name(entry):
+                entry["x-refers"] = REFERS[name]
             if isinstance(entry.get("default"), float) and entry.get("format") in INTERNAL_UNITS:
                 entry["default"] = as_text(entry["default"], entry["format"])
             elif isinstance(entry.get("default"), dict):
                 entry["default"] = {}  # a table whose own entries have their defaults
     return schema
+
+
+def _is_name(node: Schema) -> bool:
+    inside = [node[key] for key in ("items", "additionalProperties") if isinstance(node.get(key), Mapping)]
+    several = (*node.get("anyOf", ()), *node.get("prefixItems", ()), *inside)
+    return node.get("format") == "name" or any(_is_name(one) for one in several)

@@ -10,7 +10,7 @@ LARGEST_FILE = 1 << 20
 """Bytes; a case file is some kilobytes."""
 
 
-def file_text(path: str, what: str, *, missing: str, empty: str) -> str:
+def file_text(path: str, what: str, *, missing: str, empty: str, mark: bool = False) -> str:
     """Read a text file.
 
     Parameters
@@ -21,6 +21,8 @@ def file_text(path: str, what: str, *, missing: str, empty: str) -> str:
         What it should be, such as ``case``, for sentences.
     missing, empty : str
         What is the matter, and the remedy, where there is no such file and where nothing stands in it.
+    mark : bool, optional
+        True to keep a byte order mark, for a text that is written back.
 
     Returns
     -------
@@ -44,7 +46,7 @@ def file_text(path: str, what: str, *, missing: str, empty: str) -> str:
     try:
         if file.stat().st_size > LARGEST_FILE:
             raise CaseError(f"{shown}: the file is larger than 1 MiB, the limit; check that it is a {what} file")
-        text = file.read_bytes().decode("utf-8-sig")  # Windows editors put a byte order mark
+        text = file.read_bytes().decode("utf-8" if mark else "utf-8-sig")  # Windows editors put a byte order mark
     except OSError as error:
         raise CaseError(f"{shown}: it cannot be read ({error.strerror}); check its permissions") from None
     except UnicodeDecodeError:

@@ -72,6 +72,7 @@ def case_section(result: CheckResult, published: str = "") -> Section:
             "assumptions": list(case.assumptions),
             "warnings": data(result.warnings),
             "timings": dict(result.timings),
+            "kept": {"results": result.kept[0], "of": result.kept[1]},
         },
         not_covered=(
             ("Other poses", "Only this pose was checked; another pose can give higher stresses"

@@ -136,6 +136,8 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
     picture = linkage_picture(result, governing_load_cases(result)[0])
     case = f" Case {code(result.name)}." if result.name else ""
     times = ", ".join(f"{stage} {fixed(seconds, 1)} s" for stage, seconds in result.timings.items())
+    if result.kept[0]:
+        times += f"; {result.kept[0]} of {result.kept[1]} meshes and solutions were kept from earlier checks"
     return Page(
         title=f"{result.verdict.value.capitalize()}: {result.case.title}",
         kind="Structural check of a planar linkage",

@@ -11,6 +11,7 @@ from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
 from alula.reports.commands.materials import app as materials
+from alula.reports.commands.open import app as opening
 from alula.reports.commands.size import app as size
 from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
@@ -72,6 +73,9 @@ def check(
     accuracy: AccuracyOption = None,
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Mesh and solve all links anew, and keep nothing of it for later checks.")
+    ] = False,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print all numbers; without it what decides, on one screen.")
     ] = False,
@@ -87,6 +91,7 @@ def check(
     """Check a case: pose, joint forces, stress, verdict."""
     from alula.fea.check.run import check_case, effort_of
     from alula.fea.findings.of_check import with_findings
+    from alula.geometry.base.kept import keeping
     from alula.reports.check.folder import report_names
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
@@ -94,10 +99,13 @@ def check(
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
     beginning = begun("check", case, overrides, output, threads=threads, memory=memory, names=report_names)
-    with beginning as parsed, ExitStack() as scratch:
+    with keeping(anew=fresh), beginning as parsed, ExitStack() as scratch:
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
         told = progress if output is None or threads == 1 else _solving
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=told)
+        if result.kept[0]:
+            found, asked = result.kept
+            progress(f"{found} of {asked} meshes and solutions were kept from earlier checks; --fresh finds them anew")
         decks = None
         if second_opinion:
             from alula.fea.calculix.second_opinion import second_opinions
@@ -287,6 +295,7 @@ def synth(
     write("synth", output, partial(as_brief_record, sections), fill, what="\nRecord and drawing", json=json)
 
 
+app.add_typer(opening)
 app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
@@ -309,9 +318,10 @@ def inspect(
     json: options.JsonOption = False,
 ) -> None:
     """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
-    from alula.reports.commands.inspect_part import inspect_file, tell_inspection
+    from alula.reports.commands.inspect_part import tell_inspection
     from alula.reports.figures.figures import start_renderer
     from alula.reports.page.output import refuse_unusable
+    from alula.reports.tools.part import inspect_file
 
     refuse_unusable(output, "inspect")
     if output is not None:

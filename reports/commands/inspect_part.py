@@ -3,11 +3,7 @@
 from functools import partial
 from pathlib import Path
 
-from alula.geometry.base.errors import AlulaError, CaseError
-from alula.geometry.imported.facts import MESH_FORMATS
-from alula.geometry.imported.read import part_facts
-from alula.geometry.materials.material import library
-from alula.geometry.parts.mesh_part import UNITS
+from alula.geometry.base.errors import AlulaError
 from alula.loads.exchange.part import part_entries
 from alula.reports.commands.ending import progress
 from alula.reports.commands.telling import tell, write
@@ -16,42 +12,6 @@ from alula.reports.tools.part import Inspection, part_section
 
 ENTRIES, PICTURE = "parts.toml", "part.png"
 """Files that go to the output folder."""
-
-
-def inspect_file(path: Path, material: str | None, unit: str | None = None) -> Inspection:
-    """Look into a STEP file or a mesh.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    material : str, optional
-        Name of a material of the library.
-    unit : str, optional
-        Unit of length of a mesh, as the case file names it, or "inch"; mm unless stated.
-
-    Returns
-    -------
-    Inspection
-        What is found.
-
-    Raises
-    ------
-    CaseError
-        For an unknown material or unit, for a unit of a STEP file, and where the file holds no single solid.
-    CannotRunError
-        Where the geometry kernel fails.
-    """
-    if material is not None and material not in library():
-        raise CaseError(f"--material: there is no material '{material}'; the library has {', '.join(library())}")
-    if path.suffix.lower() not in MESH_FORMATS:
-        if unit is not None:
-            raise CaseError("--unit: it is that of a mesh, but a STEP file states its own unit; leave it out")
-        return Inspection(path=path, facts=part_facts(path), material=material)
-    unit = "in" if unit == "inch" else unit or "mm"
-    if unit not in UNITS:
-        raise CaseError(f"--unit: '{unit}' is no unit of a mesh; name one of {', '.join(UNITS)}")
-    return Inspection(path=path, facts=part_facts(path, UNITS[unit]), material=material, unit=unit)
 
 
 def tell_inspection(found: Inspection, output: Path | None = None, *, json: bool = False) -> None:

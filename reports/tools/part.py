@@ -3,13 +3,17 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from alula.geometry.base.errors import CaseError
 from alula.geometry.imported.arrangement import angle_between, coaxial, parallel_groups
-from alula.geometry.imported.facts import Bore, PartFacts, Vector
+from alula.geometry.imported.facts import MESH_FORMATS, Bore, PartFacts, Vector
+from alula.geometry.imported.read import part_facts
 from alula.geometry.materials.material import Material, library
+from alula.geometry.parts.mesh_part import UNITS
 from alula.loads.exchange.part import FoundPart, part_entries
 from alula.loads.text.explain import printable
 from alula.reports.sections.data import entries
@@ -37,6 +41,42 @@ class Inspection(FoundPart):
     def mass(self) -> float | None:
         """Mass [tonne]; None without a material."""
         return None if self.card is None else self.facts.volume * self.card.density
+
+
+def inspect_file(path: Path, material: str | None, unit: str | None = None) -> Inspection:
+    """Look into a STEP file or a mesh.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    material : str, optional
+        Name of a material of the library.
+    unit : str, optional
+        Unit of length of a mesh, as the case file names it, or "inch"; mm unless stated.
+
+    Returns
+    -------
+    Inspection
+        What is found.
+
+    Raises
+    ------
+    CaseError
+        For an unknown material or unit, for a unit of a STEP file, and where the file holds no single solid.
+    CannotRunError
+        Where the geometry kernel fails.
+    """
+    if material is not None and material not in library():
+        raise CaseError(f"--material: there is no material '{material}'; the library has {', '.join(library())}")
+    if path.suffix.lower() not in MESH_FORMATS:
+        if unit is not None:
+            raise CaseError("--unit: it is that of a mesh, but a STEP file states its own unit; leave it out")
+        return Inspection(path=path, facts=part_facts(path), material=material)
+    unit = "in" if unit == "inch" else unit or "mm"
+    if unit not in UNITS:
+        raise CaseError(f"--unit: '{unit}' is no unit of a mesh; name one of {', '.join(UNITS)}")
+    return Inspection(path=path, facts=part_facts(path, UNITS[unit]), material=material, unit=unit)
 
 
 def part_section(found: Inspection) -> Section:

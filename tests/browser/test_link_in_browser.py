@@ -80,6 +80,30 @@ def test_it_is_drawn_and_turns_with_a_drag(shown):
     assert [address for address in shown.requests() if not ADDRESS.search(address)] == []
 
 
+def test_a_model_that_comes_later_is_shown_and_taken_away(shown):
+    """A page may get a model after it was opened, and others in its place: as drawn by itself, and nothing stays."""
+    shown.run(
+        f"const block = document.querySelector('{FIGURE} script'); const late = document.createElement('div');"
+        "late.id = 'late'; document.querySelector('main, body').prepend(late);"
+        "window.late = window.alulaViewer.show(late, 'link', block.textContent); late.scrollIntoView()"
+    )
+    shown.run("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert len(np.unique(pixels(shown.element("#late .picture canvas")).reshape(-1, 3), axis=0)) > 50
+    assert shown.run("return window.late.hottest()") == shown.run(f"return {MODEL}.start().hottest()")
+    assert shown.run("return window.late.reading()")
+    shown.run("window.late.remove()")
+    shown.run("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert not shown.elements("#late *")
+    shown.run("document.querySelector('#late').remove()")
+    assert shown.messages() == []
+    shown.run(
+        f"const block = document.querySelector('{FIGURE} script'); window.late = "
+        "window.alulaViewer.show(document.body.appendChild(document.createElement('div')), 'link', '{}')"
+    )
+    assert shown.run("return window.late") is None
+    shown.run("window.alulaKept = false")
+
+
 def test_the_legend_agrees_with_the_result(shown, page):
     """Unit, ends and the largest value; each variant that a button chooses has its own."""
     record = page.record["load_cases"]["weight"]["links"][SOLID_LINK]

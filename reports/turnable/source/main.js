@@ -4,6 +4,8 @@
 // where there is no WebGL, and on paper. A figure's data-turnable is "waiting", "ready" or, without WebGL, "still"; that of
 // the whole page is "ready" as soon as all models near the visible part are drawn.
 //
+// A page that gets models later, such as that of alula open, shows each by window.alulaViewer.show(parent, kind, text).
+//
 // Tests read window.alulaViewer.models: each has name, kind, figure and start(), which returns what it is made of. Of a link:
 // nodes (how many), value(node) with value, unit, place and displacement, screen(node) with x and y in the window and
 // whether it is seen, hottest() (node of the largest stress), face(node) (looks at it from near), reading() and legend() (texts), and its stage.
@@ -23,26 +25,42 @@ function modelOf(block) {
   figure.dataset.turnable = "waiting";
   model.start = () => {
     if (model.started || figure.dataset.turnable === "still") return model.started;
-    const holder = element("div", { class: "model" });
-    figure.insertBefore(holder, figure.firstChild);
-    figure.classList.add("turned");
-    try {
-      model.started = STARTS[model.kind](holder, JSON.parse(block.textContent));
-      figure.dataset.turnable = "ready";
-    } catch (error) {
-      figure.classList.remove("turned");
-      holder.remove();
-      figure.dataset.turnable = "still";
-      console.error(error);
-    }
+    model.started = show(figure, model.kind, block.textContent);
+    figure.dataset.turnable = model.started ? "ready" : "still";
     return model.started;
   };
   return model;
 }
 
+/** Shows a model, by its kind and its record as text, first in an element; null without WebGL. `remove` takes it away. */
+function show(parent, kind, text) {
+  if (!renderer()) return null;
+  const holder = element("div", { class: "model" });
+  parent.prepend(holder);
+  parent.classList.add("turned");
+  const remove = () => {
+    holder.remove();
+    parent.classList.remove("turned");
+  };
+  try {
+    const started = STARTS[kind](holder, JSON.parse(text));
+    return {
+      ...started,
+      remove: () => {
+        started.stage.end();
+        remove();
+      },
+    };
+  } catch (error) {
+    remove();
+    console.error(error);
+    return null;
+  }
+}
+
 function begin() {
   const models = [...document.querySelectorAll('script[type="application/json"][data-model]')].map(modelOf);
-  window.alulaViewer = { models };
+  window.alulaViewer = { models, show };
   if (!renderer()) {
     models.forEach(({ figure }) => (figure.dataset.turnable = "still"));
     page.turnable = "still";

@@ -160,6 +160,14 @@ export class Stage {
     for (const overlay of this.overlays) overlay(pen, this);
   }
 
+  /** Draw no more, and free what the graphics card holds of the model. */
+  end() {
+    cancelAnimationFrame(this.waiting);
+    this.waiting = -1;
+    stages.splice(stages.indexOf(this), 1);
+    this.scene.traverse(({ geometry, material }) => [geometry, ...[material ?? []].flat()].forEach((one) => one?.dispose()));
+  }
+
   place(aspect) {
     const camera = this.camera;
     const away = 10 * this.radius + this.target.length();

@@ -18,8 +18,8 @@ from alula.geometry.meshing.file_mesh import read_mesh
 from alula.geometry.meshing.mesh import export_step, mass_properties, mesh_body, reentrant_edges
 from alula.loads.case.case_file import read_case
 from alula.loads.exchange.part import part_entries
-from alula.reports.commands.inspect_part import inspect_file
 from alula.reports.sentences import told
+from alula.reports.tools.part import inspect_file
 
 FORMATS = {"msh": "gmsh", "vtu": "vtu", "inp": "abaqus"}
 STAND = Rotation.from_rotvec(np.radians(50.0) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))

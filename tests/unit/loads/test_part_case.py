@@ -15,8 +15,8 @@ from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.exchange.part import part_case, part_entries
-from alula.reports.commands.inspect_part import inspect_file
 from alula.reports.figures.drawings import _Drawing
+from alula.reports.tools.part import inspect_file
 
 LIGHT = ["load_cases.load.own_weight=false"]
 

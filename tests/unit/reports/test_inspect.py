@@ -21,12 +21,11 @@ from alula.geometry.placement.match import place, points_of_part
 from alula.geometry.placement.placed_body import bores_of
 from alula.loads.exchange.part import part_entries
 from alula.reports.commands.cli import app
-from alula.reports.commands.inspect_part import inspect_file
 from alula.reports.figures import figures
 from alula.reports.figures.part_picture import part_picture
 from alula.reports.figures.sheet import style
 from alula.reports.renderers.record import as_brief_record
-from alula.reports.tools.part import part_section
+from alula.reports.tools.part import inspect_file, part_section
 
 FILES = Path(__file__).parents[2] / "data" / "step"
 

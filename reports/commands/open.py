@@ -1,0 +1,60 @@
+"""``alula open``: a page to work in, for the browser of this machine."""
+
+import threading
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from alula.reports.commands.ending import progress
+
+app = typer.Typer()
+
+
+@app.command("open")
+def open_case(
+    case: Annotated[
+        Path | None, typer.Argument(help="Path to a case file; without it the page offers what to start from.")
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of 127.0.0.1; 0: one that is free.")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
+) -> None:
+    """Open a page to work in: draw, drag, and see the verdict change."""
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.case.case_file import built_in_cases
+    from alula.reports.workbench.app import serve
+    from alula.reports.workbench.keeping import case_text
+
+    if case is not None:
+        if not case.exists() and str(case) in built_in_cases():
+            raise CaseError(
+                f"case '{case}': it is a built-in case; write one of your own with "
+                f"'alula new my-case.toml --from {case}', and open that"
+            )
+        case_text(case)
+
+    def ready(address: str) -> None:
+        print(f"The page: {address}\nCtrl-C ends it.", flush=True)
+        if browser:  # which may come back only when it is closed
+            threading.Thread(target=show, args=(address,), daemon=True).start()
+
+    serve(
+        None if case is None else case.absolute(), Path.cwd() if case is None else case.absolute().parent, port, ready
+    )
+
+
+def show(address: str) -> None:
+    """Have a browser show a page, and say where there is none.
+
+    Parameters
+    ----------
+    address : str
+    """
+    import webbrowser
+
+    try:
+        shown = webbrowser.open(address)
+    except (webbrowser.Error, OSError):
+        shown = False
+    if not shown:
+        progress("No browser was found; open the address above in one.")

@@ -1,0 +1,249 @@
+"""Files of an open case: what stands on the disk, saving it whole, and drafts of what is not saved yet."""
+
+import contextlib
+import hashlib
+import importlib.util
+import json
+import os
+import secrets
+import shutil
+from pathlib import Path
+from typing import NamedTuple
+
+from alula.geometry.base.cache_folder import cache_folder
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.base.locks import locked
+from alula.loads.text.explain import printable
+from alula.loads.text.file_text import file_text
+
+_DRAFT = "draft.json"
+
+
+class Stamp(NamedTuple):
+    """What the disk says of a file without reading it: another content comes with another stamp."""
+
+    inode: int
+    size: int
+    modified: int
+    changed: int
+    writable: bool
+
+
+def stamp_of(path: Path) -> Stamp | None:
+    """Return the stamp of a file.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    Stamp or None
+        None where there is no such file.
+    """
+    try:
+        state = path.stat()
+    except (OSError, ValueError):
+        return None
+    # The bits count for those as well whom the system lets write all the same.
+    writable = bool(state.st_mode & 0o222) and os.access(path, os.W_OK)
+    return Stamp(state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns, writable)
+
+
+def case_text(path: Path) -> str:
+    """Return the text of a case file as it stands there, with its line ends and its byte order mark.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    CaseError
+        As ``file_text``.
+    """
+    missing = "there is no such file; name a case file, or start from 'alula open' alone"
+    return file_text(str(path), "case", missing=missing, empty="the file is empty; start from 'alula new'", mark=True)
+
+
+def plain_name(name: str, suffix: str) -> str:
+    """Return the name of a file in the folder of a case.
+
+    Parameters
+    ----------
+    name : str
+        As a page sends it.
+    suffix : str
+        How it has to end, such as ``.toml``.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    CaseError
+        For a path, a hidden file, another suffix, and what no system takes for a name.
+    """
+    plain = name.isprintable() and not set(name) & set('/\\:*?"<>|') and not name.startswith(".") and len(name) <= 120
+    if not plain or Path(name).name != name or not name.lower().endswith(suffix) or len(name) == len(suffix):
+        raise CaseError(f"'{printable(name)}' must be the plain name of a file that ends in {suffix}; write another")
+    return name
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file, all of it or nothing; a link is followed, and owner and permissions stay.
+
+    Parameters
+    ----------
+    path : Path
+        Missing, or a file.
+    data : bytes
+
+    Raises
+    ------
+    CannotRunError
+        Where the disk refuses; the file is as it was then.
+    """
+    shown, target = printable(path.name), Path(os.path.realpath(path))
+    made = target.with_name(f".{target.name[:80]}.{secrets.token_hex(4)}")
+    try:
+        before = stamp_of(target)
+        if before is not None and not before.writable:
+            raise CannotRunError(f"'{shown}' is read-only; allow writing to it, and save again")
+        try:
+            with open(os.open(made, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "wb") as stream:
+                stream.write(data)
+                stream.flush()
+                os.fsync(stream.fileno())
+            if before is not None:
+                with contextlib.suppress(OSError):  # the file of another user, who lets this one write
+                    shutil.chown(made, target.stat().st_uid, target.stat().st_gid)
+                shutil.copymode(target, made)
+            os.replace(made, target)
+        except BaseException:
+            made.unlink(missing_ok=True)
+            raise
+        _flush(target.parent)
+    except OSError as error:
+        raise CannotRunError(
+            f"'{shown}' cannot be written ({error.strerror or error}); the file is as it was, your changes stay here"
+        ) from None
+
+
+def _flush(folder: Path) -> None:
+    """Have the disk hold the entries of a folder, where a system can be asked to."""
+    with contextlib.suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def digest(text: str) -> str:
+    """Return the SHA-256 of a text.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+class Drafts:
+    """Where unsaved changes of a case are kept: a folder of alula's cache, which one server holds at a time.
+
+    Parameters
+    ----------
+    path : Path
+        Of the case.
+
+    Attributes
+    ----------
+    alone : bool
+        False where another server has the case open as well, whose draft stays as it is.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.alone = True
+        self._folder: Path | None = None
+        self._lock: int | None = None
+        home = cache_folder("drafts")
+        if home is not None:
+            folder = home / digest(os.path.realpath(path))[:32]
+            with contextlib.suppress(OSError):
+                folder.mkdir(mode=0o700, exist_ok=True)
+                self._lock = locked(folder, wait=False)
+                self.alone = self._lock is not None or importlib.util.find_spec("fcntl") is None
+                self._folder = folder if self.alone else None
+
+    def kept(self) -> tuple[str | None, str]:
+        """Return what an earlier server kept.
+
+        Returns
+        -------
+        tuple of str
+            The text, None where there is none, and the digest of the text on the disk that it was made from.
+        """
+        try:
+            text, base = json.loads((self._folder / _DRAFT).read_text(encoding="utf-8")) if self._folder else (None, "")
+        except (OSError, ValueError):
+            return None, ""
+        return text, base
+
+    def keep(self, text: str, base: str) -> None:
+        """Keep a text.
+
+        Parameters
+        ----------
+        text : str
+        base : str
+            The text on the disk that it was made from.
+        """
+        if self._folder is not None:
+            write_whole(self._folder / _DRAFT, json.dumps((text, digest(base))).encode())
+
+    def drop(self) -> None:
+        """Keep nothing any more."""
+        if self._folder is not None:
+            with contextlib.suppress(OSError):
+                (self._folder / _DRAFT).unlink(missing_ok=True)
+
+    def set_aside(self, text: str) -> Path | None:
+        """Give a draft that is not taken a file of its own, which no later one replaces.
+
+        Parameters
+        ----------
+        text : str
+
+        Returns
+        -------
+        Path or None
+            Where it stands; None where there is no place.
+        """
+        if self._folder is None:
+            return None
+        aside = self._folder / f"{digest(text)[:8]}.toml"
+        with contextlib.suppress(AlulaError):
+            write_whole(aside, text.encode())
+            self.drop()
+            return aside
+        return None
+
+    def close(self) -> None:
+        """Let another server have the place."""
+        if self._folder is not None:
+            with contextlib.suppress(OSError):
+                self._folder.rmdir()  # unless something is kept
+        if self._lock is not None:
+            os.close(self._lock)
+        self._folder = self._lock = None

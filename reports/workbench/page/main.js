@@ -1,0 +1,97 @@
+/** Makes the parts of the page and joins them to the store. */
+
+import { store } from "./store.js";
+import { change, connect } from "./server.js";
+import * as plane from "./plane.js";
+import * as gestures from "./gestures.js";
+import * as tools from "./tools.js";
+import * as side from "./side.js";
+import * as motion from "./motion.js";
+import * as start from "./start.js";
+import * as verdict from "./verdict.js";
+import * as forms from "./forms.js";
+import * as text from "./text.js";
+import * as solids from "./solids.js";
+import * as out from "./out.js";
+import { add } from "./svg.js";
+
+const find = (id) => document.getElementById(id);
+const MODULES = { verdict, forms, text, solids, out };
+const PANELS = Object.keys(MODULES);
+
+/** Tabs as a keyboard expects them: arrows go from tab to tab, Tab goes into the panel. */
+function tabs() {
+  for (const [place, name] of PANELS.entries()) {
+    const tab = find(`tab-${name}`);
+    tab.addEventListener("click", () => store.put("panel", name));
+    tab.addEventListener("keydown", (event) => {
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!step) return;
+      const other = PANELS[(place + step + PANELS.length) % PANELS.length];
+      store.put("panel", other);
+      find(`tab-${other}`).focus();
+    });
+  }
+  store.on("panel", (shown) => {
+    for (const name of PANELS) {
+      const open = name === shown;
+      find(`tab-${name}`).setAttribute("aria-selected", String(open));
+      find(`tab-${name}`).tabIndex = open ? 0 : -1;
+      find(`panel-${name}`).hidden = !open;
+    }
+  });
+}
+
+/** The name of the file, what is wrong with it, and what happened. */
+function said() {
+  store.on("document", (now) => {
+    const name = (now.name ?? "alula") + (now.saved ? "" : " (not saved)");
+    find("name").textContent = name;
+    document.title = now.name ? `${name} - alula` : name;
+    const line = now.problem?.line ? `Line ${now.problem.line}: ` : "";
+    find("problem").textContent = now.problem ? line + now.problem.sentence : "";
+    find("problem").hidden = !now.problem;
+    asked(now);
+  });
+  store.on("notice", (notice) => {
+    find("notice").textContent = notice?.sentence ?? "";
+    find("notice").hidden = !notice?.sentence;
+  });
+  find("notice").addEventListener("click", () => store.put("notice", null));
+}
+
+const DISK = {
+  changed: ["Another program has changed the file.", ["Take its text over", "reload"], ["Keep mine", "overwrite"]],
+  deleted: ["The file is gone from the disk.", ["Write it anew", "overwrite"]],
+  "read-only": ["The file may not be written: Out has the case as a copy."],
+};
+const DRAFT = ["Changes of last time were not saved.", ["Take them", "draft", { take: true }], ["Let them go", "draft", { take: false }]];
+
+/** What the page has to ask the reader about the file. */
+function asked(now) {
+  const [sentence, ...answers] = now.draft ? DRAFT : DISK[now.disk] ?? [""];
+  const bar = find("asked");
+  bar.hidden = !sentence;
+  if (bar.dataset.shown === sentence) return;
+  bar.dataset.shown = sentence;
+  bar.textContent = `${sentence} `;
+  for (const [label, route, body] of answers) add(bar, "button", { type: "button" }, label).addEventListener("click", () => change(route, body));
+}
+
+/** The load case that is shown: the first one until another is chosen. */
+function loadCases() {
+  store.on("drawn", (drawn) => {
+    if (drawn && !drawn.load_cases.includes(store.state.loadCase)) store.put("loadCase", drawn.load_cases[0] ?? null);
+  });
+}
+
+tabs();
+said();
+loadCases();
+gestures.mount(plane.mount(find("plane")));
+tools.mount(find("tools"));
+side.mount(find("side"));
+motion.mount(find("motion"));
+start.mount(find("start"));
+for (const name of PANELS) MODULES[name].mount(find(`panel-${name}`), store);
+connect();

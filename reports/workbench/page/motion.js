@@ -1,0 +1,113 @@
+/** The motion: a slider over its instants, play, paths of points, dead points, and taking over a pose. */
+
+import { store } from "./store.js";
+import { edit } from "./server.js";
+import { add, draw, set } from "./svg.js";
+import { number } from "./view.js";
+
+/** Seconds that the whole motion takes on the page. */
+const SECONDS = 5;
+let parts, playing = null;
+
+export function mount(element) {
+  const play = add(element, "button", { type: "button", "aria-pressed": "false" }, "Play");
+  const track = add(element, "div", { class: "track" });
+  const slider = add(track, "input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion" });
+  const dead = draw(track, "svg", { class: "dead", "aria-hidden": "true" });
+  const said = add(element, "output", {});
+  const one = add(element, "button", { type: "button", hidden: "" }, "Let it turn once");
+  const use = add(element, "button", { type: "button" }, "Use this pose");
+  const back = add(element, "button", { type: "button" }, "Back to the case's pose");
+  const label = add(element, "label", { class: "choice" });
+  const box = add(label, "input", { type: "checkbox" });
+  label.append(" paths of points");
+  parts = { element, play, slider, dead, said, one, use, back };
+  play.addEventListener("click", () => (playing ? stop() : start()));
+  slider.addEventListener("input", () => {
+    stop();
+    store.put("instant", Number(slider.value));
+  });
+  use.addEventListener("click", take);
+  one.addEventListener("click", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]));
+  back.addEventListener("click", leave);
+  box.addEventListener("change", () => store.put("paths", box.checked));
+  store.on("motion", () => {
+    const { motion, instant } = store.state;
+    if (instant !== null && !(instant < motion?.values?.length)) leave();
+    show();
+  });
+  for (const name of ["instant", "drawn", "document"]) store.on(name, show);
+  show();
+}
+
+function leave() {
+  stop();
+  store.put("instant", null);
+}
+
+function take() {
+  const { motion, instant } = store.state;
+  const value = motion.values[instant];
+  stop();
+  edit([{ op: "turn", to: Number(value.toFixed(6)) }]).then(() => store.put("instant", null), () => {});
+}
+
+function start() {
+  const { motion } = store.state;
+  const count = motion.values.length;
+  const begin = performance.now() - ((store.state.instant ?? nearest()) / count) * SECONDS * 1000;
+  const run = (time) => {
+    const phase = Math.max(0, (time - begin) / 1000 / SECONDS);
+    const share = motion.turns ? phase % 1 : 1 - Math.abs(1 - (phase % 2)); // a motion with ends goes to and fro
+    store.put("instant", Math.min(count - 1, Math.floor(share * count)));
+    playing = requestAnimationFrame(run);
+  };
+  playing = requestAnimationFrame(run);
+  show();
+}
+
+function stop() {
+  if (playing) cancelAnimationFrame(playing);
+  playing = null;
+  show();
+}
+
+/** The instant nearest to the case's own pose. */
+function nearest() {
+  const { motion, drawn } = store.state;
+  const value = drawn?.coordinate?.value ?? motion.values[0];
+  const far = (one) => (motion.turns ? Math.abs(((((one - value) % 360) + 540) % 360) - 180) : Math.abs(one - value));
+  return motion.values.reduce((best, one, k) => (far(one) < far(motion.values[best]) ? k : best), 0);
+}
+
+function show() {
+  const { motion, instant } = store.state;
+  const moves = Boolean(motion?.values?.length);
+  for (const one of [parts.play, parts.slider]) one.disabled = !moves;
+  parts.use.hidden = parts.back.hidden = instant === null;
+  set(parts.play, { "aria-pressed": String(playing !== null) });
+  parts.play.textContent = playing ? "Pause" : "Play";
+  parts.element.hidden = !motion;
+  if (!moves) {
+    const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
+    const none = motion?.problem && !told && !store.state.document?.tables?.motion;
+    parts.said.textContent = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
+    parts.one.hidden = !none || store.state.drawn?.coordinate?.kind !== "angle";
+    parts.dead.replaceChildren();
+    return;
+  }
+  parts.one.hidden = true;
+  const { values, unit } = motion;
+  const signs = unit === "deg" ? "°" : ` ${unit}`;
+  const k = instant ?? nearest();
+  parts.slider.max = values.length - 1;
+  parts.slider.value = k;
+  const range = motion.turns ? "turns fully" : `reaches ${(motion.range ?? []).map((one) => number(one) + signs).join(" to ")}`;
+  const dead = motion.dead?.length ? `; dead at ${motion.dead.map((one) => number(one) + signs).join(", ")}` : "";
+  const text = `${number(instant === null ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
+  parts.slider.setAttribute("aria-valuetext", text);
+  parts.said.textContent = `${text} (${range}${dead})`;
+  parts.dead.replaceChildren();
+  const share = (value) => `${(100 * (value - values[0])) / (values.at(-1) - values[0] || 1)}%`;
+  for (const value of motion.dead ?? []) draw(parts.dead, "line", { x1: share(value), x2: share(value), y1: 0, y2: 8 });
+}

@@ -1,0 +1,118 @@
+/** The text of the case: with line numbers, and what is wrong at its line. */
+
+import { make } from "./elements.js";
+import { lineOf, pathOf } from "./lines.js";
+import { newGesture, replaceText } from "./server.js";
+
+const PAUSE = 300; // ms after the last key until the text is sent
+export function mount(holder, store) {
+  const numbers = make("pre", { class: "numbers", "aria-hidden": "true" });
+  const area = make("textarea", { "aria-label": "Text of the case", spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off" });
+  const mark = make("div", { class: "mark", hidden: true });
+  const wrong = make("p", { class: "at-line", id: "text-wrong", hidden: true });
+  const go = make("button", { type: "button", class: "to-line", hidden: true, onclick: () => jump(store.state.document.problem.line) });
+  const editor = make("div", { class: "editor" }, numbers, mark, area, wrong);
+  holder.append(go, editor);
+  let typed = null; // the timer of what was typed and not sent
+  let gesture = newGesture();
+  let marked = null;
+  const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
+
+  /** Put an element at a line; positions are set by script, since the page's policy knows no style attributes. */
+  function place(element, line, beside = false) {
+    const top = (line - 1) * lines() - area.scrollTop + Number.parseFloat(getComputedStyle(area).paddingTop);
+    const below = top + lines() + element.offsetHeight <= area.clientHeight;
+    element.style.setProperty("top", `${beside ? (below ? top + lines() : top - element.offsetHeight) : top}px`);
+  }
+
+  function follow() {
+    numbers.scrollTop = area.scrollTop;
+    const line = store.state.document?.problem?.line;
+    if (line) place(wrong, line, true);
+    if (marked) place(mark, marked);
+  }
+
+  function number() {
+    const count = area.value.split("\n").length;
+    const bad = store.state.document?.problem?.line;
+    numbers.replaceChildren(...Array.from({ length: count }, (_, k) => (k + 1 === bad ? make("b", {}, `${k + 1}\n`) : `${k + 1}\n`)));
+  }
+
+  function scrollTo(line) {
+    const top = (line - 1) * lines();
+    if (top < area.scrollTop || top > area.scrollTop + area.clientHeight - 3 * lines()) area.scrollTop = Math.max(0, top - area.clientHeight / 3);
+    follow();
+  }
+
+  /** Take a new text; caret and scroll stay with what they stood at. */
+  function take(text) {
+    if (area.value === text) return;
+    const [was, start, end, top] = [area.value, area.selectionStart, area.selectionEnd, area.scrollTop];
+    let same = 0;
+    while (same < was.length && was[same] === text[same]) same += 1;
+    let tail = 0;
+    while (tail < was.length - same && tail < text.length - same && was.at(-1 - tail) === text.at(-1 - tail)) tail += 1;
+    const moved = (caret) => (caret <= same ? caret : caret >= was.length - tail ? caret + text.length - was.length : Math.min(caret, text.length - tail));
+    area.value = text;
+    area.setSelectionRange(moved(start), moved(end));
+    area.scrollTop = top;
+  }
+
+  function show(now) {
+    if (!now) return;
+    if (typed === null) take(now.text);
+    number();
+    const { sentence, line } = now.problem ?? {};
+    wrong.textContent = sentence ?? "";
+    wrong.hidden = !line;
+    area.setAttribute("aria-invalid", String(Boolean(sentence)));
+    area.setAttribute("aria-describedby", "text-wrong");
+    go.hidden = !line;
+    go.textContent = `Go to line ${line}, which is wrong`;
+    point();
+  }
+
+  function jump(line) {
+    const start = area.value.split("\n").slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
+    area.focus();
+    area.setSelectionRange(start, start);
+    scrollTo(line);
+  }
+
+  function point(scroll = false) {
+    const path = pathOf(store.state.selected);
+    marked = path && lineOf(area.value, path);
+    mark.hidden = !marked;
+    if (marked && scroll && !holder.hidden) scrollTo(marked);
+    follow();
+  }
+
+  /** The panel was opened: what is wrong is seen, otherwise what is selected. */
+  function opened() {
+    const line = store.state.document?.problem?.line;
+    if (line) scrollTo(line);
+    else point(true);
+  }
+
+  function sendTyped() {
+    clearTimeout(typed);
+    if (typed === null) return;
+    typed = null;
+    replaceText(area.value, gesture).catch(() => {}); // the sentence stands above the page
+  }
+
+  area.addEventListener("input", () => {
+    number();
+    clearTimeout(typed);
+    typed = setTimeout(sendTyped, PAUSE);
+  });
+  area.addEventListener("blur", () => {
+    sendTyped();
+    gesture = newGesture(); // what is typed when one comes back is another step
+  });
+  area.addEventListener("scroll", follow);
+  store.on("document", show);
+  store.on("selected", () => point(true));
+  store.on("panel", (name) => name === "text" && requestAnimationFrame(opened));
+  show(store.state.document);
+}

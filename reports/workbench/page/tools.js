@@ -1,0 +1,126 @@
+/** The toolbar: what a press in the plane does, undo and redo, saving. */
+
+import { store } from "./store.js";
+import { change, edit } from "./server.js";
+import { add } from "./svg.js";
+import { toPlane } from "./view.js";
+import { fitAll } from "./plane.js";
+
+const TOOLS = [
+  ["select", "Select", "v", "Pull pins, points, arrow tips and links. Double click or Enter: type numbers. Alt: no rounding."],
+  ["link", "Add link", "l", "Press on a place, pin or link, and release on another: a link between both."],
+  ["ground", "Add ground pin", "g", "Press on a place: a point of the ground. On a pin or an end of a link: it is held there."],
+  ["load", "Add load", "f", "Press on a point or a link and pull the arrow of the force."],
+  ["join", "Join", "j", "Press on a point and release on another: they become one joint."],
+  ["split", "Split", "s", "Press on a joint: it is taken apart."],
+  ["remove", "Remove", "Delete", "Press on what shall go, with all that refers to it."],
+];
+const named = (key) => (key === "Delete" ? "Del" : key.toUpperCase());
+
+export function mount(element) {
+  const chosen = group(element, "What a press does");
+  for (const [name, label, key, hint] of TOOLS) {
+    const one = button(chosen, label, key, hint, () => choose(name));
+    store.on("tool", (tool) => one.setAttribute("aria-pressed", String(tool === name)));
+  }
+  const steps = group(element, "Steps");
+  const undo = button(steps, "Undo", "Ctrl+Z", "", () => ask("undo"));
+  const redo = button(steps, "Redo", "Ctrl+Y", "", () => ask("redo"));
+  button(steps, "Fit", "0", "Show all of the linkage", fitAll);
+  const keeping = group(element, "File");
+  const save = button(keeping, "Save", "Ctrl+S", "", () => ask("save"));
+  const always = add(keeping, "label", { class: "choice" });
+  const box = add(always, "input", { type: "checkbox" });
+  always.append(" save as one goes");
+  box.addEventListener("change", () => ask("save", { always: box.checked }));
+  loadCases(group(element, "Load case"));
+  store.on("document", (now) => {
+    undo.disabled = !now.undo;
+    redo.disabled = !now.redo;
+    save.disabled = now.saved;
+    box.checked = Boolean(now.always);
+  });
+  hint();
+  document.addEventListener("keydown", shortcut);
+  store.put("tool", "select");
+}
+
+function group(element, label) {
+  return add(element, "div", { role: "group", "aria-label": label });
+}
+
+function button(parent, label, key, title, act) {
+  const one = add(parent, "button", { type: "button", title: title || `${label}: ${key}` }, `${label} `);
+  if (!key.startsWith("Ctrl")) add(one, "kbd", {}, named(key));
+  one.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
+  one.addEventListener("click", act);
+  return one;
+}
+
+const ask = (route, body) => change(route, body).catch(() => {}); // refusals are told as notices
+
+/** Take up a tool; removing and splitting act at once on what is selected. */
+function choose(name) {
+  const { selected, tool } = store.state;
+  if (name === "remove" && selected && tool === "select") return removeOf(selected);
+  if (name === "split" && selected?.kind === "joint" && tool === "select") return edit([{ op: "split", joint: selected.name }]);
+  store.put("ends", null);
+  const sheet = document.getElementById("sheet");
+  store.put("cursor", store.state.view ? toPlane([sheet.clientWidth / 2, sheet.clientHeight / 2]).map(Math.round) : null);
+  store.put("tool", name === tool ? "select" : name);
+}
+
+/** Remove a thing, with what refers to it. */
+export function removeOf(handle) {
+  const path = { joint: ["joints", handle.name], link: ["links", handle.name], point: ["links", handle.link, "points", handle.point], load: handle.path }[handle.kind];
+  if (!path) return;
+  store.put("selected", null);
+  edit([{ op: "remove", path }]);
+}
+
+function loadCases(element) {
+  const label = add(element, "label", { class: "choice" }, "Load case ");
+  const list = add(label, "select");
+  list.addEventListener("change", () => store.put("loadCase", list.value));
+  const show = () => {
+    const names = store.state.drawn?.load_cases ?? [];
+    if (names.join("\n") !== [...list.options].map((one) => one.value).join("\n")) {
+      list.replaceChildren();
+      for (const name of names) add(list, "option", { value: name }, name);
+    }
+    list.value = store.state.loadCase ?? "";
+    element.hidden = names.length < 2;
+  };
+  store.on("drawn", show);
+  store.on("loadCase", show);
+  show();
+}
+
+/** What the tool that is taken up wants. */
+function hint() {
+  const line = add(document.getElementById("plane"), "p", { id: "hint", "aria-live": "polite" });
+  const show = () => {
+    const { tool, ends } = store.state;
+    const second = ends && !ends.to ? " Now the second end." : "";
+    line.textContent = tool === "select" ? "" : (TOOLS.find(([name]) => name === tool)?.[3] ?? "") + second;
+    line.hidden = !line.textContent;
+  };
+  store.on("tool", show);
+  store.on("ends", show);
+}
+
+function shortcut(event) {
+  const letter = event.key.toLowerCase();
+  if (event.ctrlKey || event.metaKey) {
+    const route = { s: "save", z: event.shiftKey ? "redo" : "undo", y: "redo" }[letter];
+    const writing = event.target.closest?.("input, textarea, select");
+    if (!route || (writing && route !== "save")) return;
+    event.preventDefault();
+    ask(route);
+    return;
+  }
+  if (event.altKey || event.target.closest?.("input, textarea, select, [contenteditable]")) return;
+  const tool = TOOLS.find(([, , key]) => key.toLowerCase() === letter || (key === "Delete" && event.key === "Backspace"));
+  if (tool) choose(tool[0]);
+  else if (letter === "0" && !event.target.closest?.("#plane .entry")) fitAll();
+}

@@ -1,0 +1,436 @@
+"""One open case: its document, who answers it, which pages are told, and the file that it is saved in."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.linkage.pose import Pose
+from alula.loads.case.case_file import changed_case
+from alula.loads.compose.starting import case_files, write_new
+from alula.loads.text.explain import printable
+from alula.loads.text.file_text import LARGEST_FILE
+from alula.reports.workbench.document import Document
+from alula.reports.workbench.edits import EMPTY
+from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
+from alula.reports.workbench.solids import Solids
+from alula.reports.workbench.workers import Workers
+
+PERIOD = 1.0
+"""Seconds from one look at the disk to the next, and from one draft to the next."""
+QUIET = 15.0
+"""Seconds after which a page that hears nothing is sent a comment, which tells whether it is still there."""
+MOST_PAGES = 16
+"""Pages that hear of changes at once: each holds a connection."""
+DRAWING = "empty"
+"""What one starts from who draws all links, beside the built-in cases."""
+
+
+class ConflictError(AlulaError):
+    """What a page asks does not fit how the case stands now; nothing was changed."""
+
+
+class Listener:
+    """What a page has not been told yet: of each kind of event the newest, so that nothing piles up for a slow one."""
+
+    def __init__(self) -> None:
+        self._waiting: dict[str, str] = {}
+        self._any = asyncio.Event()
+        self._closed = False
+
+    def put(self, kind: str, message: str) -> None:
+        """Have a message sent, in place of one of its kind that waits.
+
+        Parameters
+        ----------
+        kind, message : str
+        """
+        self._waiting.pop(kind, None)
+        self._waiting[kind] = message
+        self._any.set()
+
+    def close(self) -> None:
+        """End the stream."""
+        self._closed = True
+        self._any.set()
+
+    async def messages(self) -> AsyncIterator[str]:
+        """Yield what waits and what comes, as a stream of server-sent events takes it."""
+        yield f"retry: {1000 * PERIOD:.0f}\n\n"
+        while not self._closed:
+            self._any.clear()
+            while self._waiting:
+                yield self._waiting.pop(next(iter(self._waiting)))
+            try:
+                await asyncio.wait_for(self._any.wait(), QUIET)
+            except TimeoutError:
+                yield ": still here\n\n"
+
+
+class Session:
+    """An open case, or none yet, in the event loop in which it is made.
+
+    What a page asks is an asynchronous method, which raises a ``ConflictError``, ``CaseError`` or ``CannotRunError``
+    with one sentence and has changed nothing then.
+
+    Parameters
+    ----------
+    folder : Path
+        In which cases are opened, and where files stand that they name.
+
+    Attributes
+    ----------
+    folder : Path
+    path : Path
+        The file of the open case.
+    document : Document or None
+        None before a case is open.
+    solids : Solids
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.path = folder, folder
+        self.document: Document | None = None
+        self._stored = ""  # the text that the file held when it was last read or written
+        self._stamp: Stamp | None = None  # of the file then
+        self._disk: str | None = None
+        self._always = False
+        self._problem: dict[str, Any] | None = None
+        self._drafts: Drafts | None = None
+        self._draft: str | None = None  # what an earlier server kept, until it is taken or not
+        self._drafted = ""
+        self._pages: set[Listener] = set()
+        self._last: dict[str, str] = {}
+        self._notice = ""
+        self._files = asyncio.Lock()
+        self._workers, self.solids = Workers(self.tell, folder), Solids(self.tell, folder)
+        self._watch = asyncio.create_task(self._watched())
+
+    # What pages are told.
+
+    def listen(self) -> Listener:
+        """Return a page that hears how everything stands, and of all that changes from now on.
+
+        Returns
+        -------
+        Listener
+        """
+        if len(self._pages) >= MOST_PAGES:
+            raise ConflictError(f"{MOST_PAGES} pages show this workbench already; close one of them")
+        page = Listener()
+        self._pages.add(page)
+        self._tell_document()
+        for kind, message in self._last.items():
+            page.put(kind, message)
+        self._last = {kind: message for kind, message in self._last.items() if not kind.startswith("notice")}
+        return page
+
+    def leave(self, page: Listener) -> None:
+        """Forget a page that is gone.
+
+        Parameters
+        ----------
+        page : Listener
+        """
+        self._pages.discard(page)
+
+    def tell(self, name: str, data: dict[str, Any]) -> None:
+        """Tell all pages of an event; a ``problem`` becomes part of the document's.
+
+        Parameters
+        ----------
+        name : str
+        data : dict
+            With the ``revision`` that it is about.
+        """
+        newest = self.document is not None and data.get("revision") == self.document.revision
+        if name == "problem":
+            if newest:
+                self._find(str(data["sentence"]))
+            return
+        if name == "drawn" and newest and self._problem is not None and not data.get("problem"):
+            self._problem = None
+            self._tell_document()
+        kind = f"{name} {data['sentence'] if name == 'notice' else data.get('stage', '')}"
+        message = f"event: {name}\ndata: {json.dumps(data, ensure_ascii=False, allow_nan=False)}\n\n"
+        if name not in ("notice", "document") or (name == "notice" and not self._pages):
+            self._last[kind] = message
+        for page in self._pages:
+            page.put(kind, message)
+
+    def _say(self, sentence: str) -> None:
+        """Tell a sentence, unless it is the one that was told last."""
+        if sentence != self._notice:
+            self._notice = sentence
+            self.tell("notice", {"sentence": sentence})
+
+    def _find(self, sentence: str) -> None:
+        self._problem = {"sentence": sentence, "line": self._open().line_of(sentence)}
+        self._tell_document()
+
+    def _tell_document(self) -> None:
+        document, open_ = self.document, self.document is not None
+        state = {
+            "revision": document.revision if document else 0,
+            "text": document.text if document else "",
+            "name": self.path.name if open_ else None,
+            "path": str(self.path) if open_ else None,
+            "saved": self.saved,
+            "always": self._always,
+            "undo": bool(document and document.can_undo),
+            "redo": bool(document and document.can_redo),
+            "tables": _plain(document),
+            "problem": self._problem,
+            "disk": self._disk,
+            "draft": self._draft is not None,
+        }
+        self.tell("document", state)
+
+    # What changes the document.
+
+    async def edit(self, revision: int, operations: Sequence[Mapping[str, Any]], gesture: str) -> None:
+        """Change the case by operations, which were made on a revision and are undone with others of their gesture."""
+        if not all(isinstance(one, Mapping) for one in operations):
+            raise CaseError("operations: each must be an object")
+        text = self._open(revision).text
+        pose = await asyncio.to_thread(self._posed, text)
+        self._open(revision).apply(operations, pose, gesture)
+        self._changed()
+
+    async def write(self, revision: int, text: str, gesture: str) -> None:
+        """Put another text in place of the one of a revision."""
+        self._open(revision).replace(text, gesture)
+        self._changed()
+
+    async def undo(self, revision: int | None) -> None:
+        """Take back the last change."""
+        self._open(revision).undo()
+        self._changed()
+
+    async def redo(self, revision: int | None) -> None:
+        """Make the change anew that was taken back last."""
+        self._open(revision).redo()
+        self._changed()
+
+    async def take_draft(self, take: bool) -> None:
+        """Take what an earlier server kept, or let it go."""
+        document, draft = self._open(), self._draft
+        if draft is None:
+            raise ConflictError("no unsaved changes of this case are kept")
+        self._draft = None
+        if take:
+            document.replace(draft)
+        elif self._drafts is not None:
+            self._drafts.drop()
+        self._changed()
+
+    async def check_solids(self, do: str, fidelity: str) -> None:
+        """Start or stop the check by solids."""
+        document = self._open()
+        if do == "start":
+            self.solids.start(document.revision, document.text, str(self.path), fidelity)
+        else:
+            self.solids.stop()
+
+    @property
+    def text(self) -> str:
+        """Of the open case, without a byte order mark."""
+        return self._open().text.removeprefix("\ufeff")
+
+    def _open(self, revision: int | None = None) -> Document:
+        """Return the document, which has to be the one that a page knows."""
+        if self.document is None:
+            raise ConflictError("no case is open; open one first")
+        if revision is not None and revision != self.document.revision:
+            raise ConflictError("the case has changed meanwhile, on another page or on the disk; look, and do it again")
+        return self.document
+
+    def _posed(self, text: str) -> Pose | None:
+        """Return the pose of a text that balances by itself; other poses an edit finds on its own."""
+        with suppress(AlulaError):
+            tables = Document(text).tables()
+            if tables.get("pose", {}).get("equilibrium"):
+                case = changed_case(tables, (), str(self.path), str(self.folder))
+                return solve_case_statics(case, str(self.path)).pose
+        return None
+
+    def _changed(self) -> None:
+        """Tell how the document stands after a change, and have it answered."""
+        if self._draft is not None:
+            draft, self._draft = self._draft, None
+            self._set_aside(draft, "was not taken")
+        document = self._open()
+        try:
+            document.tables()
+        except CaseError as error:
+            self._find(str(error))
+        else:
+            self._tell_document()
+            self._workers.ask(document.revision, document.text, str(self.path))
+
+    # The file.
+
+    @property
+    def saved(self) -> bool:
+        """Whether the file holds the text that is shown."""
+        return self.document is None or (
+            self.document.text == self._stored and self._disk not in ("changed", "deleted")
+        )
+
+    async def open(self, path: str, starter: str = "", as_: str = "") -> None:
+        """Open a case of the folder, or a built-in one that is copied there first."""
+        async with self._files:
+            if not self.saved:
+                raise ConflictError("changes of the open case are not saved; save it first")
+            file = self.folder / plain_name(as_ if starter else path, ".toml")
+            if starter:
+                write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
+            self.load(file)
+
+    def load(self, file: Path) -> None:
+        """Open a case, and offer what was not saved of it.
+
+        Parameters
+        ----------
+        file : Path
+            In the session's folder.
+        """
+        stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
+        if self._drafts is not None:
+            self._drafts.close()
+        self.path, self.document, self._drafts = file, Document(text), None
+        self.document.revision = revision  # answers about the case before are not taken for its own
+        self._always, self._problem, self._draft, self._last = False, None, None, {}
+        self._stand(text, stamp)
+        self._drafts = Drafts(file)
+        if not self._drafts.alone:
+            self._say("this case is open in another alula as well; what is not saved here is not kept")
+        kept, base = self._drafts.kept()
+        if kept not in (None, text) and base != digest(text):
+            self._set_aside(kept or "", "was made from another text than the file has now")
+            kept = None
+        self._changed()
+        self._draft = None if kept == text else kept
+        self._tell_document()
+
+    async def save(self, always: bool | None = None) -> None:
+        """Write the text into the file, from now on by itself if ``always`` says so."""
+        async with self._files:
+            self._look()
+            if self._disk == "changed":
+                raise ConflictError("another program has changed the file; take its text over, or overwrite it")
+            await self._save()
+            self._always = self._always if always is None else always
+            self._tell_document()
+
+    async def overwrite(self) -> None:
+        """Write the text into the file, whatever stands there."""
+        async with self._files:
+            await self._save()
+
+    async def reload(self) -> None:
+        """Take the text of the file over; what was here comes back by undo."""
+        async with self._files:
+            document, stamp, text = self._open(), stamp_of(self.path), case_text(self.path)
+            if text != document.text:
+                document.replace(text)
+            self._stand(text, stamp)
+            self._changed()
+
+    async def _save(self) -> None:
+        text = self._open().text
+        data = text.encode()
+        if not text.strip() or len(data) > LARGEST_FILE:
+            raise CaseError(
+                "the text is empty or larger than 1 MiB, and no case would be read from it; it was not saved"
+            )
+        await asyncio.to_thread(write_whole, self.path, data)
+        self._stand(text, stamp_of(self.path))
+        self._tell_document()
+
+    def _stand(self, text: str, stamp: Stamp | None) -> None:
+        """Take a text for the one that the file holds."""
+        self._stored, self._stamp, self._drafted, self._notice = text, stamp, "", ""
+        self._disk = "read-only" if stamp is not None and not stamp.writable else None
+        if self.saved and self._drafts is not None and self._draft is None:
+            self._drafts.drop()
+
+    def _look(self) -> None:
+        """See what another program has done to the file: where nothing is unsaved here, its text is taken over."""
+        document, stamp, before = self._open(), stamp_of(self.path), self._disk
+        if stamp == self._stamp:
+            return
+        self._stamp, self._disk = stamp, "changed"
+        if stamp is None:
+            self._disk = "deleted"
+            self._say(f"'{printable(self.path.name)}' is gone; save to write it anew")
+        else:
+            try:
+                text = case_text(self.path)
+            except CaseError as error:
+                self._say(str(error))
+            else:
+                if text in (self._stored, document.text):
+                    self._stand(text, stamp)
+                elif document.text == self._stored:
+                    document.replace(text)
+                    self._stand(text, stamp)
+                    self._say("another program has changed the file; its text is taken over, and undo takes it back")
+                    self._changed()
+        if self._disk != before:
+            self._tell_document()
+
+    async def _watched(self) -> None:
+        while True:
+            await asyncio.sleep(PERIOD)
+            try:
+                await self._tick()
+            except AlulaError as error:
+                self._say(str(error))
+
+    async def _tick(self) -> None:
+        """Look at the disk, and keep what is not saved."""
+        async with self._files:
+            if self.document is None:
+                return
+            self._look()
+            text = self.document.text
+            if self._always and not self.saved and self._disk is None:
+                try:
+                    await self._save()
+                except AlulaError as error:
+                    self._say(str(error))
+            if not self.saved and text != self._drafted and self._drafts is not None:
+                await asyncio.to_thread(self._drafts.keep, text, self._stored)
+                self._drafted = text
+
+    def _set_aside(self, draft: str, why: str) -> None:
+        place = self._drafts.set_aside(draft) if self._drafts is not None else None
+        if place is not None:
+            self._say(f"what was not saved earlier {why}; it stands in '{place}'")
+
+    async def close(self) -> None:
+        """Keep what is not saved, and end streams and workers."""
+        self._watch.cancel()
+        for page in self._pages:
+            page.close()
+        if self._drafts is not None:
+            if not self.saved:
+                with suppress(AlulaError):
+                    self._drafts.keep(self._open().text, self._stored)
+            self._drafts.close()
+        await asyncio.gather(self._workers.close(), self.solids.close())
+
+
+def _plain(document: Document | None) -> Any:
+    """Return the tables of a document as JSON has them, with times and what is no number as text, or None."""
+    if document is None:
+        return None
+    try:
+        return json.loads(json.dumps(document.tables(), default=str), parse_constant=str)
+    except CaseError:
+        return None

@@ -1,0 +1,301 @@
+"""The check by solids in the background: a process that tells how far each link is, its model, and the verdict.
+
+What was solved before is kept (``alula.geometry.base.kept``): a changed link alone is solved anew, and what ended
+before a check was stopped is found by the next one. A check is stopped by killing its process and the meshers that it
+started.
+
+What the page does:
+
+* ``POST /solids {"do": "start", "fidelity": "solid"}`` starts it, ``{"do": "stop"}`` stops it.
+* The event ``solids`` has ``links``: name -> ``state`` (``waiting``, ``solving``, ``done``, or ``kept`` where all was
+  found), ``seconds`` since its state began or that it took, and ``model``, a number that grows with each model of the
+  link; 0 without one. Where it has grown, ``GET /model/{link}`` has the model. Those of a link that a check decided by
+  hand stay 0.
+* A model is shown by the viewer that reports have: the page loads ``viewer.js`` as a classic script with ``defer``, and
+  ``turnable.css``; then ``window.alulaViewer.show(parent, "link", text)`` takes an element and the answer's text, puts
+  the model first into it, and returns an object whose ``remove()`` takes it away again, or null without WebGL. Remove a
+  model before another is shown in its place, and where its ``<details>`` or tab is closed: all share one context.
+* The event ``verdict`` with ``stage`` ``solids`` has the form of that by hand, so that bands stand side by side: the
+  same check, subject and load case in both. Its ``revision`` says which text it is of; where that is not the one of the
+  document, it is out of date. It has no changes: those of the verdict by hand stand.
+"""
+
+import asyncio
+import json
+import os
+import signal
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import IO, Any
+
+from alula.geometry.base.child import environment, last_line, module_command
+from alula.geometry.base.errors import AlulaError, CaseError
+
+Plain = dict[str, Any]
+Tell = Callable[[str, Plain], None]
+
+ROLE = __name__.rpartition(".")[2]
+"""Under which a process of ``alula.reports.workbench.workers`` answers with ``STAGES``."""
+THREADS = 2
+"""As many as ``alula check`` takes unless it is told otherwise."""
+_LONGEST = 1 << 28
+"""Longest line of the process [bytes]: a model with a million nodes on its surface."""
+
+
+class Solids:
+    """The check by solids of the open case. It belongs to the event loop in which it is made.
+
+    Parameters
+    ----------
+    tell : callable
+        Takes the name of an event, ``solids`` or ``verdict``, and its data.
+    folder : Path
+        That of the case.
+    """
+
+    def __init__(self, tell: Tell, folder: Path) -> None:
+        self._tell, self._folder = tell, folder
+        self._run: _Run | None = None
+        self._ending: set[asyncio.Task[None]] = set()
+
+    def start(self, revision: int, text: str, name: str, fidelity: str = "solid") -> None:
+        """Begin a check, in place of one that is at work.
+
+        Parameters
+        ----------
+        revision : int
+            With which everything is told.
+        text : str
+            Of the case file.
+        name : str
+            Its path or built-in name.
+        fidelity : {"solid", "auto"}
+            All links as solids, or those alone that hand calculation does not decide.
+
+        Raises
+        ------
+        CaseError
+            For another fidelity.
+        """
+        if fidelity not in STAGES:
+            raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(STAGES)}")
+        if self._run is not None:
+            self._run.stop()
+        self._ending = {task for task in self._ending if not task.done()}
+        self._run = _Run(self._tell, self._folder, revision, {"stage": fidelity, "text": text, "name": name})
+        self._ending.add(self._run.task)
+
+    def stop(self) -> None:
+        """End the check at once; what its links told stands."""
+        if self._run is not None:
+            self._run.stop("Stopped; what was solved is kept")
+
+    def model(self, link: str) -> Plain:
+        """Return the model of a link, as ``alula.reports.turnable.link.link_model`` makes it.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        dict
+
+        Raises
+        ------
+        CaseError
+            Where there is none.
+        """
+        found = {} if self._run is None else self._run.models
+        if link not in found:
+            raise CaseError(f"'{link}': there is no solid of this link; check with solids first")
+        model: Plain = json.loads(found[link])
+        return model
+
+    async def close(self) -> None:
+        """End the check, and wait for all processes that were started."""
+        if self._run is not None:
+            self._run.stop()
+        await asyncio.gather(*self._ending)
+
+
+class _Run:
+    """One check in its process."""
+
+    def __init__(self, tell: Tell, folder: Path, revision: int, request: Plain) -> None:
+        self._told, self._folder, self._revision, self._request = tell, folder, revision, request
+        self._state, self._sentence, self._silent = "running", "Reading the case ...", False
+        self._links: dict[str, Plain] = {}
+        self._since: dict[str, float] = {}
+        self._child: asyncio.subprocess.Process | None = None
+        self.models: dict[str, str] = {}
+        self.task = asyncio.get_running_loop().create_task(self._work())
+        self._tell()
+
+    def stop(self, sentence: str = "") -> None:
+        """Kill the process and its children, and tell it; without a sentence nothing is told any more."""
+        self._silent = self._silent or not sentence
+        if self._state == "running":
+            self._end("stopped", sentence)
+            self._kill()
+
+    def _kill(self) -> None:
+        if self._child is None or self._child.returncode is not None:
+            return
+        with suppress(ProcessLookupError):
+            if hasattr(os, "killpg"):
+                os.killpg(self._child.pid, signal.SIGKILL)  # it leads a group of its own
+            else:
+                self._child.kill()
+
+    def _tell(self) -> None:
+        if self._silent:
+            return
+        now, links = time.monotonic(), {}
+        for name, link in self._links.items():
+            seconds = now - self._since[name] if link["state"] == "solving" else link["seconds"]
+            links[name] = {**link, "seconds": round(seconds, 2)}
+        told = {"revision": self._revision, "state": self._state, "sentence": self._sentence, "links": links}
+        self._told("solids", told)
+
+    def _end(self, state: str, sentence: str) -> None:
+        self._state, self._sentence = state, sentence
+        for link in self._links.values():  # it was not needed, or not reached
+            if link["state"] in ("waiting", "solving"):
+                link["state"] = "done" if state == "done" else "waiting"
+        self._tell()
+
+    async def _work(self) -> None:
+        with tempfile.TemporaryFile() as complaints:
+            try:
+                status = await self._followed(complaints)
+            except (OSError, ValueError) as error:  # it could not be started; a line is no answer
+                self._end("failed", f"The check by solids could not be followed: {error}")
+                self._kill()
+                if self._child is not None:
+                    await self._child.wait()
+            if self._state == "running":
+                complaints.seek(0)
+                why = last_line(complaints.read())
+                self._end("failed", f"The check by solids ended by itself (status {status}: {why})")
+
+    async def _followed(self, complaints: IO[bytes]) -> int:
+        """Start the process, take what it tells, and return its status."""
+        pipe = asyncio.subprocess.PIPE
+        self._child = child = await asyncio.create_subprocess_exec(
+            *module_command("alula.reports.workbench.workers", ROLE),
+            stdin=pipe,
+            stdout=pipe,
+            stderr=complaints,
+            env=environment(),
+            cwd=self._folder,
+            limit=_LONGEST,
+            start_new_session=True,
+        )
+        assert child.stdin is not None
+        assert child.stdout is not None
+        if self._state != "running":  # it was stopped meanwhile
+            self._kill()
+        with suppress(ConnectionError):
+            child.stdin.write(json.dumps(self._request).encode() + b"\n")
+        while self._state == "running" and (line := await child.stdout.readline()):
+            if self._state == "running":
+                self._take(json.loads(line))
+        child.stdin.close()  # its end
+        if self._state != "running":
+            self._kill()
+        return await child.wait()
+
+    def _take(self, answer: Plain) -> None:
+        """Take what the process told."""
+        event, told = answer.get("event"), answer.get("data", {})
+        if event == "links":
+            self._links = {name: {"state": "waiting", "seconds": 0.0, "model": 0} for name in told["names"]}
+        elif event == "link":
+            link, now = self._links[name := told["name"]], time.monotonic()
+            state = told.get("state", link["state"])
+            if state != "solving" and link["state"] == "solving":
+                link["seconds"] = now - self._since[name]
+            self._since[name], link["state"] = now, state
+            if "model" in told:
+                self.models[name] = told["model"]
+                link["model"] += 1
+        elif event == "verdict":
+            if not self._silent:
+                self._told("verdict", {"revision": self._revision, **told})
+        elif event == "sentence":
+            self._sentence = told["sentence"]
+        elif event == "failed":
+            self._end("failed", told["sentence"])
+            return
+        else:  # the stage is done
+            self._end("done", "All links are checked")
+            return
+        self._tell()
+
+
+def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
+    """Check a text, in the process: tell links, models and the verdict."""
+    from alula.fea.check.run import WatchedLink, check_case, effort_of
+    from alula.fea.outcomes.result import LinkResult, SolidResult
+    from alula.geometry.base.kept import keeping
+    from alula.reports.turnable.link import link_model
+    from alula.reports.workbench.answers import case_of
+    from alula.reports.workbench.verdicts import verdict_of
+
+    lock, begun = threading.Lock(), time.perf_counter()
+    shown: dict[str, str] = {}
+
+    def told(event: str, data: Plain) -> None:
+        with lock:  # links are solved side by side
+            tell(event, data)
+
+    def model(link: str, results: Mapping[str, LinkResult]) -> Plain:
+        """Return the model of a link under the load case that governs it, unless it was told."""
+        governing = min(results, key=lambda load_case: results[load_case].severity)
+        result = results[governing]
+        if shown.get(link) == governing or not isinstance(result, SolidResult):
+            return {}
+        shown[link] = governing
+        return {"model": json.dumps(link_model(link, result, case.links[link].points))}
+
+    def watch(one: WatchedLink) -> None:
+        if not one.results:
+            shown.pop(one.link, None)
+            told("link", {"name": one.link, "state": "solving"})
+        else:
+            state = "kept" if one.kept else "done"
+            told("link", {"name": one.link, "state": state, **model(one.link, one.results)})
+
+    def progress(sentence: str) -> None:
+        told("sentence", {"sentence": sentence})
+
+    try:
+        case = case_of(text, name)
+        told("links", {"names": list(case.checked_links)})
+        with keeping():
+            result = check_case(
+                case,
+                name=name,
+                fidelity=fidelity,
+                threads=THREADS,
+                effort=effort_of(case),
+                watch=watch,
+                progress=progress,
+            )
+        for link in shown.copy():  # other causes may make another load case govern
+            later = model(link, {x: one.links[link] for x, one in result.load_cases.items()})
+            if later:
+                told("link", {"name": link, **later})
+        told("verdict", verdict_of(result, "solids", begun))
+    except AlulaError as error:
+        told("failed", {"sentence": str(error)})
+
+
+STAGES: Mapping[str, Callable[[str, str, Tell], None]] = {name: partial(_check, name) for name in ("solid", "auto")}
+"""What the process may be asked: to check a text with this fidelity."""

@@ -1,0 +1,194 @@
+"""The drawing of the workbench, as hands use it: mouse, finger and keyboard; the text and the numbers follow."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import chromium
+import pytest
+from chromium import LOCAL, PHONE
+
+WIDE = (1400, 900)
+CASE = Path(__file__).parents[2] / "loads" / "cases" / "four-bar.toml"
+
+
+@pytest.fixture(scope="module")
+def local_browser(tmp_path_factory):
+    """A browser that reaches servers of this machine."""
+    if chromium.programs() is None:
+        pytest.skip(chromium.MISSING)
+    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL) as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    """The address of a workbench with a four-bar."""
+    case = tmp_path_factory.mktemp("bench") / "four-bar.toml"
+    case.write_bytes(CASE.read_bytes())
+    command = [sys.executable, "-m", "alula", "open", str(case), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            yield re.search(r"http://\S+", server.stdout.readline())[0]
+        finally:
+            server.terminate()
+
+
+@pytest.fixture
+def bench(local_browser, served):
+    """The page with the four-bar as it stands in its file; the console has to be quiet at the end."""
+    open_page(local_browser, served, WIDE)
+    yield local_browser
+    local_browser.driver.execute_async_script(
+        "const done = arguments[arguments.length - 1];"
+        "import(new URL('page/server.js', document.baseURI)).then((server) => server.change('reload')).then(done)"
+    )
+    assert local_browser.messages() == []
+
+
+def open_page(browser, address, size):
+    browser.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
+    browser.open(address, size)
+    browser.wait("document.querySelector('.forces .joint-force') && document.querySelector('.texts .load')")
+    settle(browser)
+
+
+def state(browser, expression):
+    """Return what the page's store says."""
+    return browser.driver.execute_async_script(
+        "const done = arguments[arguments.length - 1];"
+        "import(new URL('page/store.js', document.baseURI))"
+        f".then(({{ store }}) => {{ const now = store.state; done({expression}); }})"
+    )
+
+
+def settle(browser, what="true"):
+    """Wait until the drawing and its forces are of the newest text, nothing is held any more, and something is so."""
+    followed = "now.drawn?.revision === now.document.revision && Object.keys(now.drawn.forces).length > 0"
+    for _ in range(1000):
+        if state(browser, f"{followed} && !now.held && {what}"):
+            return
+    pytest.fail("the drawing does not follow the text")
+
+
+def handle(browser, label):
+    return browser.element(f'.handles [aria-label^="{label}"]')
+
+
+def pull(browser, label, *steps):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    chain = ActionChains(browser.driver, duration=20).click_and_hold(handle(browser, label))
+    for step in steps:
+        chain = chain.move_by_offset(*step)
+    chain.release().perform()
+    settle(browser)
+
+
+def press(browser, *keys):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    ActionChains(browser.driver).send_keys(*keys).perform()
+
+
+def length(browser, link):
+    """Length of a link of two points, as the text says [mm]."""
+    text = state(browser, "now.document.text")
+    return float(re.search(rf"\[links\.{link}\].*?\[\"([1-9][\d.]*) mm\", \"0 mm\"\]", text, re.DOTALL)[1])
+
+
+def forces(browser):
+    browser.run("return new Promise(requestAnimationFrame)")
+    return [one.text for one in browser.elements(".texts .joint-force")]
+
+
+def test_a_pin_is_pulled_in_one_step_of_undo_and_numbers_follow(bench):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    before = forces(bench)
+    pull(bench, "Joint A", (20, -10), (20, -10), (10, -10))
+    x, y = state(bench, "now.drawn.joints.find((joint) => joint.name === 'A').at")
+    step = state(bench, "10 ** Math.floor(Math.log10(6 / now.view.scale))")
+    assert (x, y) == pytest.approx((round(x / step) * step, round(y / step) * step), abs=1e-6)  # a round place
+    assert length(bench, "crank") == pytest.approx((x**2 + y**2) ** 0.5, abs=1e-6)
+    assert length(bench, "crank") > 45.0
+    assert forces(bench) != before
+    ActionChains(bench.driver).key_down("\ue009").send_keys("z").key_up("\ue009").perform()  # Control and Z
+    settle(bench, "!now.document.undo")
+    assert length(bench, "crank") == 40.0
+
+
+def test_a_length_is_typed(bench):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    ActionChains(bench.driver).double_click(handle(bench, "Joint A")).perform()
+    field = bench.element('.entry [aria-label="crank O2–A in mm"]')
+    assert field.get_attribute("value") == "40"
+    field.clear()
+    field.send_keys("45\n")
+    settle(bench, "now.document.undo")
+    assert length(bench, "crank") == 45.0
+    assert bench.elements(".entry") == []
+
+
+def test_an_arrow_and_the_pose_are_pulled(bench):
+    pull(bench, "Load on rocker", (30, 10))
+    vector = state(bench, "now.drawn.loads.find((load) => load.kind === 'force').vector")
+    assert vector[0] > 0.0 > -5.0 > vector[1]
+    assert f'force = ["{vector[0]:g} N", "{vector[1]:g} N"]' in state(bench, "now.document.text")
+    pull(bench, "Pose", (0, -30))
+    turned = state(bench, "now.drawn.coordinate.value")
+    assert turned > 42.0
+    assert turned == pytest.approx(round(turned))
+
+
+def test_the_keyboard_alone_moves_a_joint_and_adds_a_load(bench):
+    bench.run("document.querySelector('#plane svg').focus(); document.activeElement.blur()")
+    for _ in range(60):
+        press(bench, "\ue004")  # Tab
+        label = bench.driver.switch_to.active_element.get_attribute("aria-label") or ""
+        if label.startswith("Joint B"):
+            break
+    before = state(bench, "now.drawn.joints.find((joint) => joint.name === 'B').at")
+    press(bench, "\ue013", "\ue013")  # arrow up
+    settle(bench, "now.document.undo")
+    after = state(bench, "now.drawn.joints.find((joint) => joint.name === 'B').at")
+    assert after[1] > before[1]
+    assert after[0] == pytest.approx(before[0], abs=1e-4)
+    loads = state(bench, "now.drawn.loads.length")
+    press(bench, "f", "\ue007")  # the tool for loads, and Enter on the joint
+    settle(bench, f"now.drawn.loads.length === {loads + 1}")
+    press(bench, "\ue00c")  # Escape
+    assert state(bench, "now.tool") == "select"
+
+
+def test_a_finger_pulls_and_two_fingers_zoom_on_a_phone(bench, served):
+    open_page(bench, served, PHONE)
+    assert bench.run("return document.documentElement.scrollWidth") == PHONE[0]
+    small = bench.run(
+        "return [...document.querySelectorAll('.handles circle, #tools button, #tabs button, #layers .hold')]"
+        ".map((one) => one.getBoundingClientRect()).filter(({ width, height }) => width < 24 || height < 24).length"
+    )
+    assert small == 0
+    middle = "const box = arguments[0].getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]"
+    x, y = bench.run(middle, handle(bench, "Joint B"))
+    touch(bench, [[(x + 5 * k, y - 6 * k)] for k in range(5)])
+    settle(bench, "now.document.undo")
+    assert state(bench, "now.drawn.joints.find((joint) => joint.name === 'B').at[1]") > 72.0
+    press(bench, "\ue00c")
+    left, top, width, height = bench.run(
+        "const box = document.querySelector('#sheet').getBoundingClientRect();"
+        "return [box.x, box.y, box.width, box.height]"
+    )
+    scale, row = state(bench, "now.view.scale"), top + 0.9 * height
+    touch(bench, [[(left + width * (0.4 - k), row), (left + width * (0.6 + k), row)] for k in (0.0, 0.1, 0.2)])
+    assert state(bench, "now.view.scale") == pytest.approx(3.0 * scale, rel=0.05)
+
+
+def touch(browser, places):
+    """Put fingers down, move them from place to place, and lift them."""
+    for k, fingers in enumerate(places):
+        points = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(fingers)]
+        browser.command("Input.dispatchTouchEvent", type="touchMove" if k else "touchStart", touchPoints=points)
+    browser.command("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])

@@ -1,0 +1,214 @@
+"""The panels of the page to work in: entries, text, solids, what goes out; against what the commands say."""
+
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import chromium
+import pytest
+
+from alula.fea.check.run import check_case
+from alula.loads.case.case_file import read_case, read_text
+from alula.reports.sentences.verdicts import checks_of
+
+SHOW = """
+const select = document.querySelector("#panel-forms select");
+select.value = arguments[0];
+return select.value && select.dispatchEvent(new Event("change"));
+"""
+WIDTH = """[data-path='["parts","bar","width"]']"""
+STEP = Path(__file__).parents[1] / "data" / "step" / "bell_crank.step"
+TEXT = "document.querySelector('#panel-text textarea').value"
+BLOBS = """
+window.handed = [];
+const made = URL.createObjectURL;
+URL.createObjectURL = (blob) => (window.handed.push(blob), made.call(URL, blob));
+"""
+READ = "const [kind, done] = arguments; window.handed.find(({ type }) => type.startsWith(kind)).text().then(done);"
+PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]]:
+    """Address of a workbench on a copy of the four-bar, and that file."""
+    case = tmp_path_factory.mktemp("bench") / "mine.toml"
+    case.write_text(read_text("four-bar")[0], encoding="utf-8")
+    own = os.environ | {"XDG_CACHE_HOME": str(tmp_path_factory.mktemp("cache"))}
+    command = [sys.executable, "-m", "alula", "open", str(case), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=own) as served:
+        assert served.stdout is not None
+        try:
+            yield served.stdout.readline().split()[-1], case
+        finally:
+            served.terminate()
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[chromium.Browser]:
+    """Chromium that reaches this machine, and nothing else."""
+    with chromium.chromium(tmp_path_factory.mktemp("profile"), *chromium.LOCAL) as started:
+        yield started
+
+
+def visit(browser: chromium.Browser, address: str, size: tuple[int, int] = chromium.DESKTOP) -> None:
+    browser.open(address, size)
+    browser.wait("document.querySelector('#panel-verdict .stamp')")
+
+
+def open_panel(browser: chromium.Browser, name: str) -> None:
+    browser.element(f"#tab-{name}").click()
+
+
+def show(browser: chromium.Browser, table: str) -> None:
+    """Choose a table of entries."""
+    browser.wait(f"[...document.querySelectorAll('#panel-forms option')].some((one) => one.value === '{table}')")
+    browser.run(SHOW, table)
+
+
+def write(browser: chromium.Browser, selector: str, text: str) -> None:
+    """Type into a field as a person does, and leave it by the keyboard."""
+    field = browser.element(selector)
+    field.send_keys("\ue009a\ue000" + text + "\ue004")
+
+
+def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """A wider bar: the text has it, its comments stay, and the verdict is that of ``alula check --fidelity beam``."""
+    address, case = bench
+    visit(browser, address)
+    open_panel(browser, "forms")
+    show(browser, "parts")
+    browser.wait(f"document.querySelector({WIDTH!r})")
+    assert browser.element(WIDTH).get_attribute("value") == "8 mm"
+    write(browser, WIDTH, "16 mm")
+    browser.wait(f"""{TEXT}.includes('width = "16 mm"')""")
+    text = browser.run(f"return {TEXT}")
+    assert text.replace('width = "16 mm"', 'width = "8 mm"') == case.read_text(encoding="utf-8")
+    mine = case.with_name("wide.toml")
+    mine.write_text(text, encoding="utf-8")
+    told = check_case(read_case(str(mine)), name="wide", fidelity="beam", threads=1)
+    factor = next(one.value.value for one in checks_of(told) if one.name == "strength" and str(one.subject) == "crank")
+    open_panel(browser, "verdict")
+    shown = "[...document.querySelectorAll('#panel-verdict tbody tr')].map((row) => row.innerText).join()"
+    browser.wait(f"{shown}.includes('{factor:.4g}') && !document.querySelector('#panel-verdict.old')")
+    assert browser.element("#panel-verdict .stamp").text.lower() == told.verdict.value
+
+
+def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    address, _ = bench
+    visit(browser, address)
+    open_panel(browser, "text")
+    area = browser.element("#panel-text textarea")
+    area.send_keys("\ue009\ue010\ue000" + "\n[parts.bar\n")
+    browser.wait("!document.querySelector('#panel-text .at-line').hidden")
+    lines = browser.run(f"return {TEXT}").split("\n")
+    assert browser.element("#panel-text .numbers b").text == str(1 + lines.index("[parts.bar"))
+    assert "TOML" in browser.element("#panel-text .at-line").text
+    browser.wait("document.querySelector('#plane svg.old')")
+    area.send_keys("\ue003" * len("\n[parts.bar\n"))
+    browser.wait("document.querySelector('#panel-text .at-line').hidden")
+    browser.wait("!document.querySelector('#plane svg.old')")
+
+    open_panel(browser, "forms")
+    show(browser, "parts")
+    browser.wait(f"document.querySelector({WIDTH!r})")
+    write(browser, WIDTH, "9 apples")
+    browser.wait(f"""document.querySelector({WIDTH!r})?.getAttribute("aria-invalid") === "true" """)
+    field = browser.element(WIDTH)
+    told = browser.element(f"#{field.get_attribute('aria-describedby')}").text
+    assert told.startswith("parts.bar.width")
+    assert "unit of length" in told
+    show(browser, "links")
+    browser.wait("document.querySelector('#panel-forms .to-line')")
+    browser.element("#panel-forms .to-line").click()
+    browser.wait(f"document.querySelector({WIDTH!r})")
+    write(browser, WIDTH, "9 mm")
+    browser.wait("!document.querySelector('#plane svg.old')")
+
+
+def test_what_is_selected_in_the_drawing_is_shown(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    address, _ = bench
+    visit(browser, address, chromium.PHONE)
+    select = "import(document.baseURI + 'page/store.js').then(({ store }) => store.put('selected', arguments[0]))"
+    open_panel(browser, "forms")
+    browser.run(select, {"kind": "load", "path": ["load_cases", "lift", "forces", 0]})
+    force = """[data-path='["load_cases","lift","forces",0,"force",1]']"""
+    browser.wait(f"document.querySelector({force!r})?.value === '-5 N'")
+    open_panel(browser, "text")
+    lines = browser.run(f"return {TEXT}").split("\n")
+    marked = "document.querySelector('#panel-text .mark')"
+    place = 1 + lines.index("[[load_cases.lift.forces]]")
+    browser.wait(f"Math.abs({marked}.offsetTop + document.querySelector('.numbers').scrollTop - {place - 1} * 19) < 12")
+    assert browser.run("return document.documentElement.scrollWidth") <= chromium.PHONE[0]
+
+
+def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """The picture alone looks as on the page; the report opens, of the text that is shown."""
+    address, _ = bench
+    visit(browser, address)
+    browser.run(BLOBS)
+    open_panel(browser, "out")
+    browser.run(PRESS, "Picture, SVG")
+    browser.run(PRESS, "Picture, PNG")
+    browser.run(PRESS, "Case file")
+    browser.wait("window.handed.length === 4")
+    browser.wait("window.handed.map((one) => one.type).join().includes('png')")
+    drawn = browser.driver.execute_async_script(READ, "image/svg")
+    assert drawn.startswith("<svg")
+    assert "class=" not in drawn
+    assert 'fill="rgb(' in drawn
+    case = browser.driver.execute_async_script(READ, "application")
+    assert tomllib.loads(case)["parts"]["bar"]["width"] == "9 mm"
+    page = browser.driver.current_window_handle
+    browser.element("#panel-out a.button").click()
+    browser.driver.switch_to.window(next(one for one in browser.driver.window_handles if one != page))
+    try:
+        browser.wait("document.querySelector('.verdict .stamp')?.textContent")
+        assert "undecided" in browser.element(".verdict .stamp").text.lower()
+        assert browser.wait("document.querySelector('main').offsetHeight > 500"), "the report's own style holds"
+    finally:
+        browser.driver.close()
+        browser.driver.switch_to.window(page)
+    assert [one for one in browser.messages() if "favicon" not in one] == []
+
+
+def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """The crank alone has a part, so that one link is solved, not finely: its model turns, and both bands are told."""
+    address, _ = bench
+    visit(browser, address)
+    bare = [{"op": "set", "path": ["links", link, "part"], "value": None} for link in ("rocker", "coupler")]
+    bare.append({"op": "set", "path": ["load_cases", "lift", "own_weight"], "value": False})
+    bare.append({"op": "set", "path": ["solid", "accuracy"], "value": "30 %"})
+    browser.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", bare)
+    browser.wait(f"{TEXT}.includes('own_weight = false')")
+    open_panel(browser, "solids")
+    browser.run(PRESS, "Check with solids")
+    browser.wait("document.querySelector('#panel-solids .model canvas')")
+    assert browser.element("#panel-solids th").text == "crank"
+    open_panel(browser, "verdict")
+    browser.wait("document.querySelector('#panel-verdict svg.bands')")
+    told = browser.element("#panel-verdict svg.bands").get_attribute("aria-label")
+    assert told.startswith("crank: by hand ")
+    assert "; solid " in told
+    assert "with solids" in browser.element("#panel-verdict .stamp-line").text
+
+
+def test_a_part_from_cad_is_offered_to_the_pins_of_a_link(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """Two bores get the points of the coupler; the third one of the file is left over."""
+    address, case = bench
+    visit(browser, address)
+    select = "import(document.baseURI + 'page/store.js').then(({ store }) => store.put('selected', arguments[0]))"
+    browser.run(select, {"kind": "link", "name": "coupler"})
+    open_panel(browser, "out")
+    browser.element("#panel-out input[type=file]").send_keys(str(STEP))
+    browser.wait("document.querySelectorAll('#panel-out tbody tr').length === 3")
+    points = "[...document.querySelectorAll('#panel-out tbody select')].map((one) => one.value)"
+    assert browser.run(f"return {points}") == ["A", "B", ""]
+    browser.run(PRESS, "Use this part")
+    browser.wait(f"{TEXT}.includes('shape = \"step\"')")
+    tables = tomllib.loads(browser.run(f"return {TEXT}"))
+    assert tables["links"]["coupler"]["part"] == "bell_crank"
+    assert set(tables["parts"]["bell_crank"]["bores"]) == {"A", "B"}
+    assert case.with_name("bell_crank.step").read_bytes() == STEP.read_bytes()
