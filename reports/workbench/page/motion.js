@@ -29,10 +29,7 @@ export function mount(element) {
   });
   use.addEventListener("click", take);
   one.addEventListener("click", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]));
-  back.addEventListener("click", () => {
-    stop();
-    store.put("instant", null);
-  });
+  back.addEventListener("click", leave);
   box.addEventListener("change", () => store.put("paths", box.checked));
   store.on("motion", () => {
     const { motion, instant } = store.state;
