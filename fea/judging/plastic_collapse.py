@@ -124,7 +124,7 @@ def find_collapses(
             for loads in links.get(link, ()):
                 progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
                 try:
-                    one: Collapse = _collapse(
+                    (one,) = _collapse(
                         ElasticLink.of(body, material),
                         yield_law(material),
                         loads,
@@ -151,17 +151,17 @@ def _collapse(
     mesh: Callable[[float], TaggedMesh],
     threads: int | None,
     until: float,
-) -> LinkCollapse | str | NotKept[LinkCollapse | str]:
-    """As ``collapse_of``, with meshes of the link that settings make; a path that has no state ends in a sentence.
+) -> tuple[Collapse] | NotKept[tuple[Collapse]]:
+    """Return the only one: as ``collapse_of``, with meshes that settings make; a path that has no state is a sentence.
 
     What time cut short is not kept.
     """
-    found: LinkCollapse | str
+    found: Collapse
     try:
         found = collapse_of(link, law, loads, mesh, largest_strain=largest, threads=threads, until=until)
     except NoPlasticStateError as error:
         found = str(error)
-    return found if time.perf_counter() < until else NotKept(found)
+    return (found,) if time.perf_counter() < until else NotKept((found,))
 
 
 def as_elastic(one: Asked) -> Asked:
