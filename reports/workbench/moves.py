@@ -1,6 +1,6 @@
 """Moves of pins and points: the sizes and directions that their links then have.
 
-A joint's place is that of all points which its pin, and pins through the same hole, bring together: a node of the plane.
+A joint's place is that of all points which its pin, and pins through the same hole, bring together: a node.
 """
 
 import cmath
@@ -89,11 +89,8 @@ def _settled(
         lines += [(first, last, middle, None) for middle in middles]
     for name, joint in plane.joints.items():
         (carrier, slot), pin = plane.ends[name]
-        if (
-            joint.slides
-            and (carrier == plane.ground or joint.fixes_angle)
-            and {(carrier, slot), pin} <= plane.local.keys()
-        ):
+        fixed = joint.slides and (carrier == plane.ground or joint.fixes_angle)
+        if fixed and {(carrier, slot), pin} <= plane.local.keys():
             way = cmath.rect(1.0, plane.frames[carrier][1] + joint.direction)
             first, second = names.index(plane.node[carrier, slot]), names.index(plane.node[pin])
             lines.append((first, first, second, way))
@@ -105,16 +102,13 @@ def _settled(
             u, v = way or z[last] - z[first], z[middle] - z[first]
             length = abs(u) or 1.0
             gaps[row] = (u.conjugate() * v).imag / length
-            for n, (dx, dy) in {middle: (-u.imag, u.real), last: (v.imag, -v.real)}.items() if not way else ():
-                slopes[row, 2 * n : 2 * n + 2] += np.array([dx, dy]) / length
-                slopes[row, 2 * first : 2 * first + 2] -= np.array([dx, dy]) / length
-            if way:
-                slopes[row, 2 * middle : 2 * middle + 2] = -u.imag, u.real
-                slopes[row, 2 * first : 2 * first + 2] = u.imag, -u.real
+            for n, by in ((middle, 1j * u / length), (last, 0j if way else -1j * v / length)):
+                slopes[row, 2 * n : 2 * n + 2] += by.real, by.imag
+                slopes[row, 2 * first : 2 * first + 2] -= by.real, by.imag
         return gaps, slopes
 
-    for fixed in ({*held, root}, held - {root}):
-        z, free = start.copy(), np.repeat([name not in fixed for name in names], 2)
+    for still in ({*held, root}, held - {root}):
+        z, free = start.copy(), np.repeat([name not in still for name in names], 2)
         for _ in range(20):
             gaps, slopes = off(z)
             if np.max(np.abs(gaps), initial=0.0) < 1e-10:
@@ -138,7 +132,7 @@ def _reshaped(
     """Write the points of a link whose joints moved; return its new frame."""
     own = {key: plane.node[key] for key in plane.local if key[0] == link}
     origin, angle = plane.frames[link]
-    shift = 0j
+    shift, slid = 0j, 0.0
     if link != plane.ground:
         zero = next((key for key in axis or own if abs(plane.local[key]) < SAME), None)
         if axis and len(axis) > 1:
@@ -150,9 +144,11 @@ def _reshaped(
             base = zero or still
             origin = new[own[base]] - plane.local[base] * cmath.rect(1.0, angle)
             shift = (new[own[still]] - origin) / cmath.rect(1.0, angle) - plane.local[still]
+            slid = shift.real
         elif axis:
             origin = new[own[axis[0]]] - plane.local[axis[0]] * cmath.rect(1.0, angle)
         elif zero:
+            slid = ((origin - new[own[zero]]) / cmath.rect(1.0, angle)).real
             origin = new[own[zero]]
     for key, node in own.items():
         there = (new[node] - origin) / cmath.rect(1.0, angle)
@@ -164,9 +160,9 @@ def _reshaped(
             there = plane.local[key] + shift.real
         _write(draft, plane, key, there)
     for entry in (("slots", point) for point in plane.links[link].get("slots", {})):
-        _shifted(draft, ("links", link, *entry), shift.real)
+        _shifted(draft, ("links", link, *entry), slid)
     for number in range(len(plane.links[link].get("holes", ()))):
-        _shifted(draft, ("links", link, "holes", number), shift.real)
+        _shifted(draft, ("links", link, "holes", number), slid)
     return origin, angle
 
 

@@ -214,19 +214,19 @@ class Plane:
         return {name: (complex(*pose.origins[name]), pose.angles[name]) for name in self.links}
 
     def _shown(self, pose: Pose) -> bool:
-        """Whether a pose is of these links and this angle."""
-        record = {(name, p): complex(*at) for name, link in pose.linkage.links.items() for p, at in link.points.items()}
+        """Whether a pose is of these joints and sizes, but for points that files of parts give, and of this angle."""
+        shown = {(name, p): complex(*at) for name, link in pose.linkage.links.items() for p, at in link.points.items()}
+        own = {key: at for key, at in self.local.items() if self.shapes[key[0]] not in KINDS}
+        if pose.linkage.joints.keys() != self.joints.keys() or pose.linkage.links.keys() != self.links.keys():
+            return False
+        if not all(key in shown and abs(shown[key] - at) < SAME for key, at in own.items()):
+            return False
         stated = self.tables.get("pose", {})
-        same = record.keys() == self.local.keys() and all(
-            abs(record[key] - at) < SAME for key, at in self.local.items()
-        )
-        imported = any(shape in KINDS for shape in self.shapes.values())
-        if stated.get("equilibrium") or pose.coordinate is None or pose.linkage.joints.keys() != self.joints.keys():
-            return same
+        if stated.get("equilibrium") or pose.coordinate is None:
+            return True
         if pose.coordinate.slides:
-            return same and abs(pose.held - size(stated.get("travel", "0 mm"), "length")) < SAME
-        turned = pose.held - size(stated.get("angle", "0 deg"), "angle")
-        return (same or imported) and abs(math.remainder(turned, math.tau)) < SAME
+            return abs(pose.held - size(stated.get("travel", "0 mm"), "length")) < SAME
+        return abs(math.remainder(pose.held - size(stated.get("angle", "0 deg"), "angle"), math.tau)) < SAME
 
     def _loose(self) -> dict[str, Frame]:
         """Return where links lie as far as it is stated while no pose can be solved.
