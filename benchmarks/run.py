@@ -33,6 +33,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "iterations": (False, [], []),
     "trade": (False, [], ["--accuracies", "0.2", "0.05"]),
     "page": (False, [], ["--repeats", "2"]),
+    "workbench": (False, [], ["--case", "owl-wing-static"]),
     "peers": (False, [], ["--sizes", "20k", "160k", "--repeats", "1"]),
 }
 

@@ -281,6 +281,17 @@ def page(record: Record) -> str:
     return table("what|measured|aim", rows) + "\n" + stamp(record)
 
 
+def workbench(record: Record) -> str:
+    """How soon numbers follow a drag."""
+    aims = {"pose and joint forces": "60 ms", "linear verdict": "300 ms"}
+    rows = [
+        [f"{row['case']}, {row['drag']}: {name}", f"{row[name]['median_ms']} ms", f"{row[name]['p95_ms']} ms", aim]
+        for row in record["rows"]
+        for name, aim in aims.items()
+    ]
+    return table("drag|median|95th percentile|aim on the owl wing", rows) + "\n" + stamp(record)
+
+
 SECTIONS: dict[str, Callable[[Record], str]] = {
     "accuracy": accuracy,
     "peers": peers,
@@ -294,6 +305,7 @@ SECTIONS: dict[str, Callable[[Record], str]] = {
     "trade": trade,
     "iterations": iterations,
     "page": page,
+    "workbench": workbench,
 }
 
 
