@@ -48,7 +48,6 @@ class Browser:
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
         self.command("Emulation.setDeviceMetricsOverride", **metrics)
-        self.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
         self.messages(), self.requests()
         self.driver.get(page if isinstance(page, str) else page.as_uri())
 

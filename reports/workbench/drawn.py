@@ -95,7 +95,7 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
     try:
         plane, pose = Plane(tables), tables.get("pose", {})
         links = {name: Link.model_validate(one) for name, one in plane.links.items()}
-        ends = {name: plane.ends(name)[1] for name in plane.joints if plane.ends(name)[1] in plane.local}
+        ends = {name: both[1] for name, both in plane.ends.items() if both[1] in plane.local}
         whole = _size([plane.place(*key) for key in plane.local])
         kind, text = ("travel", "length") if "travel" in pose else ("angle", "angle")
         value = size(pose.get(kind, "0 deg"), text) if pose.get("coordinate") else 0.0

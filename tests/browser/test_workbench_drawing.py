@@ -48,6 +48,7 @@ def bench(local_browser, served):
 
 
 def open_page(browser, address, size):
+    browser.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
     browser.open(address, size)
     browser.wait("document.querySelector('.forces .joint-force') && document.querySelector('.texts .load')")
     settle(browser)

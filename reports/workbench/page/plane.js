@@ -20,7 +20,7 @@ export function mount(element) {
   marks(draw(svg, "defs"));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
-  for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "paths"]) {
+  for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "cursor", "paths"]) {
     store.on(name, later);
   }
   svg.addEventListener("pointerover", (event) => hover(event.target.handle ?? null));
@@ -97,6 +97,7 @@ function drawAll() {
   const { state } = store;
   const now = scene();
   svg.classList.toggle("old", Boolean(state.document?.problem) && state.drawn?.revision !== state.document.revision);
+  svg.classList.toggle("late", shownVerdict(state.verdict)?.revision < state.document?.revision);
   svg.classList.toggle("sketch", Boolean(state.drawn?.problem));
   svg.dataset.tool = state.tool;
   if (now && state.view) {
