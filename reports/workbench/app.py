@@ -166,7 +166,7 @@ def application(session: Session) -> Starlette:
 
     async def starters(request: Request) -> Response:
         found = sorted(file.name for file in session.folder.glob("*.toml") if file.is_file())
-        return JSONResponse({"starters": _starters(), "files": found, "folder": str(session.folder)})
+        return JSONResponse({"starters": _starters(), "files": found, "folder": str(session.folder), "new": session.new})
 
     async def schema(request: Request) -> Response:
         return Response(_schema(), media_type="application/json")
@@ -232,7 +232,7 @@ def _page(name: str) -> Response:
 
 @cache
 def _starters() -> list[dict[str, str]]:
-    titles = {DRAWING: "A ground link, and all else to be drawn"}
+    titles = {DRAWING: "begins with two pins of the ground"}
     titles |= {name: read_tables(name)["title"] for name in built_in_cases()}
     return [{"name": name, "title": title} for name, title in titles.items()]
 

@@ -51,7 +51,7 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
     Parameters
     ----------
     case : Path or None
-        The case, in ``folder``.
+        The case, in ``folder``; one that is missing is to be made.
     folder : Path
         In which cases are opened.
     port : int
@@ -86,8 +86,10 @@ class _Server(uvicorn.Server):
 async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: Callable[[str], None]) -> None:
     session = Session(folder)
     try:
-        if case is not None:
+        if case is not None and case.exists():
             session.load(case)
+        elif case is not None:
+            session.new = case.name
     except BaseException:
         await session.close()
         raise

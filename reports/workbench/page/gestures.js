@@ -15,6 +15,7 @@ let svg, parent;
 const fingers = new Map();
 let grab = null; // what is held: {handle, from, moved, drag, gesture}
 let tapped = { time: 0, handle: null };
+let made = null; // handle of a load that is not drawn yet
 let nudged = { time: 0, handle: null, gesture: "" };
 
 export function mount(element) {
@@ -29,6 +30,7 @@ export function mount(element) {
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
   store.on("drawn", settle);
+  store.on("drawn", takeUp);
   store.on("drawn", entry.refresh);
   store.on("document", settle);
 }
@@ -330,7 +332,19 @@ function addLoad({ end, at, operations, to }) {
   const name = drawn.loads.find((load) => load.load_case === loadCase)?.path[1] ?? loadCase ?? "load";
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));
   const vector = drawnForce && size(drawnForce) > 0 ? drawnForce : [0, -10];
-  edit([...operations, { op: "load", load_case: name, ...target, force: vector.map((part) => `${part} N`) }]);
+  const path = ["load_cases", name, "forces", store.state.document.tables?.load_cases?.[name]?.forces?.length ?? 0];
+  edit([...operations, { op: "load", load_case: name, ...target, force: vector.map((part) => `${part} N`) }]).then(() => {
+    store.put("tool", "select");
+    made = { kind: "load", path };
+  }, () => {});
+}
+
+/** Select a load that was made once it is drawn, with its numbers ready to be typed. */
+function takeUp() {
+  if (!made || !store.state.drawn?.loads.some((load) => same(load.path, made.path))) return;
+  store.put("selected", made);
+  entry.open(parent, made, false);
+  made = null;
 }
 
 /* The keyboard. */

@@ -15,12 +15,14 @@ export function mount(element) {
   const slider = add(track, "input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion" });
   const dead = draw(track, "svg", { class: "dead", "aria-hidden": "true" });
   const said = add(element, "output", {});
+  const turn = add(element, "button", { type: "button" }, "Turn it");
   const use = add(element, "button", { type: "button" }, "Use this pose");
   const back = add(element, "button", { type: "button" }, "Back to the case's pose");
   const label = add(element, "label", { class: "choice" });
   const box = add(label, "input", { type: "checkbox" });
   label.append(" paths of points");
-  parts = { element, play, slider, dead, said, use, back };
+  parts = { element, play, slider, dead, said, turn, use, back };
+  turn.addEventListener("click", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]));
   play.addEventListener("click", () => (playing ? stop() : start()));
   slider.addEventListener("input", () => {
     stop();
@@ -89,9 +91,11 @@ function show() {
   set(parts.play, { "aria-pressed": String(playing !== null) });
   parts.play.textContent = playing ? "Pause" : "Play";
   parts.element.hidden = !motion;
+  const now = store.state.document;
+  parts.turn.hidden = moves || !now?.tables || Boolean(now.tables.motion) || Boolean(now.problem) || store.state.drawn?.coordinate?.kind !== "angle";
   if (!moves) {
     const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
-    parts.said.textContent = (!told && motion?.problem) || "no motion";
+    parts.said.textContent = (parts.turn.hidden && !told && motion?.problem) || "no motion";
     parts.dead.replaceChildren();
     return;
   }

@@ -29,8 +29,9 @@ export function mount(holder, store) {
   holder.append(stamp, rest);
 
   function draw() {
-    const found = shownVerdict(store.state.verdict);
     const now = store.state.document;
+    const told = shownVerdict(store.state.verdict);
+    const found = told?.checks?.length ? told : null; // without a check there is the problem alone, which stands above the drawing
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
     stamp.replaceChildren(...badge(found, now));
@@ -53,7 +54,7 @@ export function mount(holder, store) {
   }
 
   function badge(found, now) {
-    if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict: mend the case first." : "The verdict is being computed ...")];
+    if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict yet: the case is not whole." : "The verdict is being computed ...")];
     const computing = !now?.problem && (found.revision < (now?.revision ?? 0) || found.stage === "linear");
     const running = store.state.solids?.state === "running" ? "solids are being solved" : "";
     return [
