@@ -29,6 +29,7 @@ export function mount(element) {
   svg.addEventListener("keydown", keys);
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
+  document.addEventListener("pointerdown", ({ target }) => target.closest?.(".entry, #sheet") || entry.close());
   store.on("drawn", settle);
   store.on("drawn", takeUp);
   store.on("drawn", entry.refresh);
@@ -57,7 +58,10 @@ function down(event) {
   entry.close();
   if (fingers.size === 2) return pinch();
   const { handle = null } = event.button === 1 ? {} : event.target;
-  if (handle) event.target.focus({ preventScroll: true });
+  if (handle) {
+    event.target.focus({ preventScroll: true });
+    store.put("selected", handle); // one that has the focus already tells of no new one
+  }
   else document.activeElement?.blur();
   const { tool } = store.state;
   grab = { handle, from: at, moved: false, gesture: newGesture(), drag: null };
@@ -333,10 +337,8 @@ function addLoad({ end, at, operations, to }) {
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));
   const vector = drawnForce && size(drawnForce) > 0 ? drawnForce : [0, -10];
   const path = ["load_cases", name, "forces", store.state.document.tables?.load_cases?.[name]?.forces?.length ?? 0];
-  edit([...operations, { op: "load", load_case: name, ...target, force: vector.map((part) => `${part} N`) }]).then(() => {
-    store.put("tool", "select");
-    made = { kind: "load", path };
-  }, () => {});
+  made = { kind: "load", path };
+  edit([...operations, { op: "load", load_case: name, ...target, force: vector.map((part) => `${part} N`) }]).then(() => store.put("tool", "select"), () => (made = null));
 }
 
 /** Select a load that was made once it is drawn, with its numbers ready to be typed. */
@@ -410,7 +412,7 @@ function typed(event) {
 
 function escape(event) {
   if (event.target.closest?.("#panels, .entry")) return;
-  entry.close();
+  if (entry.isOpen()) return entry.close();
   if (grab?.drag && grab.moved) {
     grab = null;
     change("undo").catch(() => {});
