@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case_file import changed_case
@@ -101,7 +102,6 @@ class Session:
         self._disk: str | None = None
         self._always = False
         self._problem: dict[str, Any] | None = None
-        self._pose: tuple[str, Pose | None] = "", None
         self._drafts: Drafts | None = None
         self._draft: str | None = None  # what an earlier server kept, until it is taken or not
         self._drafted = ""
@@ -252,14 +252,13 @@ class Session:
         return self.document
 
     def _posed(self, text: str) -> Pose | None:
-        """Return the pose of a text; where it has none, the last one, which pages still show."""
-        if self._pose[0] != text:
-            pose = self._pose[1]
-            with suppress(AlulaError):
-                tables = Document(text).tables()
-                pose = changed_case(tables, (), str(self.path), str(self.folder)).solve_pose()
-            self._pose = text, pose
-        return self._pose[1]
+        """Return the pose of a text that balances by itself; other poses an edit finds on its own."""
+        with suppress(AlulaError):
+            tables = Document(text).tables()
+            if tables.get("pose", {}).get("equilibrium"):
+                case = changed_case(tables, (), str(self.path), str(self.folder))
+                return solve_case_statics(case, str(self.path)).pose
+        return None
 
     def _changed(self) -> None:
         """Tell how the document stands after a change, and have it answered."""
@@ -307,7 +306,7 @@ class Session:
             self._drafts.close()
         self.path, self.document, self._drafts = file, Document(text), None
         self.document.revision = revision  # answers about the case before are not taken for its own
-        self._always, self._problem, self._draft, self._last, self._pose = False, None, None, {}, ("", None)
+        self._always, self._problem, self._draft, self._last = False, None, None, {}
         self._stand(text, stamp)
         self._drafts = Drafts(file)
         if not self._drafts.alone:

@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 import served
 
-from alula.loads.case.case_file import read_text
+from alula.fea.standing.case_statics import solve_case_statics
+from alula.geometry.base.units import parse
+from alula.loads.case.case_file import read_case, read_tables, read_text
 from alula.reports.workbench import session
 from alula.reports.workbench.app import LARGEST_REQUEST
 from alula.reports.workbench.document import Document
@@ -265,7 +267,7 @@ def test_answers_go_to_the_revision_they_are_of(case):
 
         def ask(self, revision, text, name):
             super().ask(revision, text, name)
-            for of in (revision - 1, revision):
+            for of in (revision, revision - 1):
                 self.tell("problem", {"revision": of, "sentence": f"title: of {of}"})
             self.tell("verdict", {"revision": revision, "stage": "linear", "verdict": "fail"})
             self.tell("verdict", {"revision": revision, "stage": "whole", "verdict": "fail"})
@@ -398,7 +400,9 @@ def test_what_was_not_saved_is_offered_again(case, cache):
         with served.serving_of(case, case.parent) as bench:
             told = bench.document()
             assert told["draft"]
-            assert told["saved"]
+            assert bench.post("save")[0] == 200  # of what is shown, which is no answer
+            assert kept(cache)
+            assert bench.document()["saved"]
             assert bench.post("draft", take=take)[0] == 200
             told = bench.document()
             assert not told["draft"]
@@ -451,14 +455,24 @@ def test_without_a_cache_all_else_works(case, monkeypatch):
         assert bench.post("save")[0] == 200
 
 
-def test_edits_stand_on_the_pose_that_is_shown(bench):
-    """Where the newest text has no pose, places are told in the last one."""
-    assert (
-        bench.post("edit", revision=0, operations=[{"op": "move", "joint": "B", "to": [1e6, 0]}], gesture="")[0] == 200
-    )
-    move = {"op": "move", "joint": "B", "to": [80, 60]}
-    assert bench.post("edit", revision=1, operations=[move], gesture="")[0] == 200
-    assert Document(bench.document()["text"]).tables()["links"]
+def test_a_place_is_told_in_the_pose_that_balances(tmp_path):
+    """A point of the pedal that is drawn at another one's place gets that one's entry, since the pose is the same."""
+    case = tmp_path / "pedal.toml"
+    case.write_text(read_text("spring-pedal")[0], encoding="utf-8")
+    link, (point, stated) = "pedal", list(read_tables(str(case))["links"]["pedal"]["points"].items())[-1]
+    pose = solve_case_statics(read_case(str(case)), str(case)).pose
+    with served.serving_of(case, tmp_path) as bench:
+        move = {"op": "move", "link": link, "point": point, "to": list(pose.position(link, point))}
+        assert bench.post("edit", revision=0, operations=[move], gesture="")[0] == 200
+        told = bench.document()["tables"]["links"][link]["points"][point]
+    assert [parse(one, "length") for one in told] == pytest.approx([parse(one, "length") for one in stated], abs=1e-3)
+
+
+def test_open_streams_do_not_hold_up_the_end(case):
+    with served.serving_of(case, case.parent) as bench:
+        stream = bench.events()
+        stream.__enter__().next("document")
+    stream.__exit__(None, None, None)
 
 
 def test_a_case_is_left_only_when_it_is_saved(bench, case: Path):
