@@ -15,9 +15,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from record import Others, save
+from record import save
 
 from alula.loads.case.case_file import read_text
+from alula.reports.workbench.answers import pose_answer
+from alula.reports.workbench.verdicts import linear_answer
 from alula.reports.workbench.workers import Workers
 
 CHANGES = 40
@@ -33,11 +35,7 @@ DRAGS = {
     },
 }
 """Case -> what is dragged: the entry, its value, and by how much each change moves it."""
-ANSWERS = {
-    "pose and joint forces": ("drawn", None),
-    "linear verdict": ("verdict", "linear"),
-    "whole verdict": ("verdict", "whole"),
-}
+ANSWERS = {"pose and joint forces": ("drawn", None), "linear verdict": ("verdict", "linear")}
 
 
 class Page:
@@ -69,22 +67,33 @@ async def drag(case: str, what: str, rate: float) -> dict[str, Any]:
     text, page = read_text(case)[0], Page()
     texts = [re.sub(pattern, rf"\g<1>{value + k * step:.6f}\g<2>", text, count=1) for k in range(1, CHANGES + 1)]
     assert len({text, *texts}) == CHANGES + 1, f"{case}: nothing to drag by {pattern}"
-    workers, others = Workers(page.tell, Path()), Others()
+    workers = Workers(page.tell, Path())
     workers.ask(0, text, case)
-    await page.until("whole verdict", 0)
+    await page.until("linear verdict", 0)
     asked = {}
     for revision, changed in enumerate(texts, 1):
         asked[revision] = time.perf_counter()
         workers.ask(revision, changed, case)
         await asyncio.sleep(max(0.0, 1.0 / rate - (time.perf_counter() - asked[revision])))
-    await page.until("whole verdict", CHANGES)
+    await page.until("linear verdict", CHANGES)
     row: dict[str, Any] = {"case": case, "drag": what, "changes": CHANGES, "rate": rate}
     for name in ANSWERS:
-        times = sorted(page.after(name, asked if name != "whole verdict" else {CHANGES: asked[CHANGES]}))
+        times = sorted(page.after(name, asked))
         row[name] = {"median_ms": round(statistics.median(times)), "p95_ms": round(times[int(0.95 * (len(times) - 1))])}
         row[name]["answers"] = sum(revision > 0 for revision in page.came[name])
+        row[name]["cpu_ms"] = round(processor(name, case, texts[::4]))
     await workers.close()
-    return row | {"others": others.share(0.0)}
+    return row
+
+
+def processor(name: str, case: str, texts: list[str]) -> float:
+    """Milliseconds of processor time that one answer takes, warm: the median of some, in this process."""
+    answer, spent = {"pose and joint forces": pose_answer, "linear verdict": linear_answer}[name], []
+    for text in texts:
+        before = time.process_time()
+        answer(text, case)
+        spent.append(1e3 * (time.process_time() - before))
+    return statistics.median(spent[1:])
 
 
 def main() -> None:

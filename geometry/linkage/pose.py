@@ -15,7 +15,8 @@ from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.open_loop import open_loop
 from alula.geometry.linkage.pose_record import CLOSED, Pose, constraint_jacobian, held_motion
 
-__all__ = ["CLOSED", "NEAR_DEAD_POINT", "Pose", "constraint_jacobian", "freedom", "held_motion", "solve_pose"]
+__all__ = ["CLOSED", "NEAR_DEAD_POINT", "Pose", "constraint_jacobian", "freedom", "held_motion"]
+__all__ += ["nearest_pose", "solve_pose"]
 
 Real = NDArray[np.float64]
 
@@ -100,6 +101,40 @@ def solve_pose(
             "add or remove joints or links"
         )
     return pose
+
+
+def nearest_pose(
+    linkage: Linkage,
+    *,
+    coordinate: str | None,
+    near: Mapping[str, float],
+    angle: float = 0.0,
+    travel: float | None = None,
+) -> Pose | None:
+    """Assemble a linkage from rough directions of all its links, whatever its mobility.
+
+    Nothing is searched, so that it takes a few steps alone: for a drawing that is not whole, or is being dragged.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The linkage.
+    coordinate : str, optional
+        As for ``solve_pose``.
+    near : mapping of str to float
+        Rough directions [rad]; 0 for a link that is left out.
+    angle, travel : float, optional
+        As for ``solve_pose``.
+
+    Returns
+    -------
+    Pose or None
+        The assembly that Newton's iteration finds from there; None where it finds none.
+    """
+    closure = LoopClosure(linkage)
+    held = None if coordinate is None else _Held.of(linkage, coordinate, angle, travel)
+    q, gaps = _newton(closure, held, near)
+    return _pose(closure, q, held, gaps) if _is_assembled(closure, gaps) else None
 
 
 def _by_angles(linkage: Linkage) -> str:

@@ -29,7 +29,7 @@ from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.states.rubbing import is_of
 from alula.reports.figures.sprung import mark_line
 from alula.reports.words.numbers import number
-from alula.reports.workbench.moves import Frame, Plane, size
+from alula.reports.workbench.plane import Frame, Plane, size
 
 Real = NDArray[np.float64]
 Plain = dict[str, Any]

@@ -270,7 +270,7 @@ def _join(draft: TomlText, pose: Pose | None, first: Mapping[str, Any], second: 
 
 def _layer(draft: TomlText, link: str, to: int) -> None:
     """Lay a link in a layer; where none has one so far, the others lie in layer 0, with washers as starters have."""
-    links = draft.tables["links"]
+    links = draft.tables.get("links", {})
     if link not in links:
         raise CaseError(f"links.{link}: there is no such link; choose one that is there")
     if not any("layer" in one for one in links.values()):

@@ -235,10 +235,10 @@ def lengthen(draft: TomlText, plane: Plane, link: str, points: tuple[str, str], 
     CaseError
         For a length that is none, or of a link whose points come from a file.
     """
-    if plane.shapes[link] in KINDS:
-        raise CaseError(f"links.{link}.points: they come from the file of its part; change the length in that file")
     first, second = ((link, point) for point in points)
     plane.place(*first), plane.place(*second)
+    if plane.shapes[link] in KINDS:
+        raise CaseError(f"links.{link}.points: they come from the file of its part; change the length in that file")
     if abs(plane.local[second]) < SAME:
         first, second = second, first
     span, length = plane.local[second] - plane.local[first], size(value, "length", ("links", link))

@@ -1,18 +1,15 @@
 """What leaves the page as a file: the report of a check, and links as STEP files."""
 
-import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.tidying import scratch_folder
-from alula.loads.case.case import Case
-from alula.loads.case.case_file import validate
 from alula.loads.text.explain import printable
+from alula.reports.workbench.answers import case_of
 
 
-def report(text: str, name: str, folder: Path, fidelity: Literal["beam", "solid"]) -> bytes:
+def report(text: str, name: str, fidelity: Literal["beam", "solid"]) -> bytes:
     """Check a case and return its report, as ``alula check -o`` writes it; what was computed before is taken.
 
     Parameters
@@ -20,9 +17,7 @@ def report(text: str, name: str, folder: Path, fidelity: Literal["beam", "solid"
     text : str
         The case file.
     name : str
-        What the report calls the case.
-    folder : Path
-        Of the case, where files of its parts stand.
+        Path of its file, beside which files of its parts stand.
     fidelity : {"beam", "solid"}
         Model that decides.
 
@@ -41,22 +36,24 @@ def report(text: str, name: str, folder: Path, fidelity: Literal["beam", "solid"
     from alula.fea.findings.of_check import with_findings
     from alula.reports.check.folder import REPORT, write_report
 
-    case = _case(text, folder)
-    found = with_findings(check_case(case, name=name, fidelity=fidelity, effort=effort_of(case)))
-    return _written(lambda target: write_report(found, target, claims=claims_of(found)), REPORT)
+    case = case_of(text, name)
+    found = with_findings(check_case(case, name=Path(name).name, fidelity=fidelity, effort=effort_of(case)))
+    with scratch_folder("alula-") as scratch:
+        write_report(found, scratch / "out", claims=claims_of(found))
+        return (scratch / "out" / REPORT).read_bytes()
 
 
-def step(text: str, link: str, folder: Path) -> bytes:
+def step(text: str, name: str, link: str) -> bytes:
     """Return the solid of a link as a STEP file.
 
     Parameters
     ----------
     text : str
         The case file.
+    name : str
+        Path of its file.
     link : str
         A link with a part.
-    folder : Path
-        Of the case.
 
     Returns
     -------
@@ -70,22 +67,9 @@ def step(text: str, link: str, folder: Path) -> bytes:
     """
     from alula.geometry.meshing.mesh import export_step
 
-    case = _case(text, folder)
+    case = case_of(text, name)
     if link not in case.links:
         raise CaseError(f"there is no link '{printable(link)}'; the case has {', '.join(case.links)}")
     with scratch_folder("alula-") as scratch:
         [file] = export_step({"link": case.body(link)}, scratch)
         return file.read_bytes()
-
-
-def _case(text: str, folder: Path) -> Case:
-    try:
-        return validate(tomllib.loads(text), str(folder))
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"the text is no TOML ({error}); mend it first") from None
-
-
-def _written(write: Callable[[Path], None], name: str) -> bytes:
-    with scratch_folder("alula-") as scratch:
-        write(scratch / "out")
-        return (scratch / "out" / name).read_bytes()

@@ -15,7 +15,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
 from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.linkage import Link, Linkage
-from alula.geometry.linkage.pose import Pose, solve_pose
+from alula.geometry.linkage.pose import Pose, nearest_pose
 from alula.loads.case.part_points import KINDS
 from alula.loads.text.explain import sentence
 from alula.reports.workbench.toml_text import Path, value_at
@@ -158,7 +158,7 @@ class Plane:
             name: value_at(tables, ("parts", one.get("part", ""), "shape")) for name, one in self.links.items()
         }
         self.straight = {name for name in self.links if name != self.ground and self._straight(name)}
-        self.frames = self._posed(pose) or self._loose()
+        self.frames = self._posed(pose)
         self.at = {
             (link, point): self.frames[link][0] + cmath.rect(1.0, self.frames[link][1]) * at
             for (link, point), at in self.local.items()
@@ -192,25 +192,27 @@ class Plane:
             raise CaseError(f"links.{link}.points.{point}: there is no such point; choose one of the link's points")
         return self.at[link, point]
 
-    def _posed(self, pose: Pose | None) -> dict[str, Frame] | None:
-        """Return the frames of the pose; None where there is none."""
-        if not self.joints:
-            return None
-        try:
-            if pose is None or not self._shown(pose):
-                links = {name: Link.model_validate(link) for name, link in self.links.items()}
-                stated = self.tables.get("pose", {})
-                near = {name: size(one, "angle") for name, one in stated.get("near", {}).items()}
-                travel = size(stated["travel"], "length") if "travel" in stated else None
-                pose = solve_pose(
-                    Linkage(links, self.joints),
+    def _posed(self, pose: Pose | None) -> dict[str, Frame]:
+        """Return the frames of the pose, or of one near it while the case is changed or is not whole."""
+        if pose is None or not self._shown(pose):
+            frames, stated = self._loose(), self.tables.get("pose", {})
+            angles = {name: angle for name, (_, angle) in frames.items()}
+            if angles.keys() <= {self.ground}:
+                return frames
+            if pose is not None:
+                angles |= {name: angle for name, angle in pose.angles.items() if name not in stated.get("near", {})}
+            try:
+                pose = nearest_pose(
+                    Linkage({name: Link.model_validate(link) for name, link in self.links.items()}, self.joints),
                     coordinate=stated.get("coordinate"),
+                    near=angles,
                     angle=size(stated.get("angle", "0 deg"), "angle"),
-                    near=near,
-                    travel=travel,
+                    travel=size(stated["travel"], "length") if "travel" in stated else None,
                 )
-        except (CaseError, ValidationError, AttributeError):
-            return None
+            except (CaseError, ValidationError, ValueError):  # not whole, or a coordinate that is no link
+                pose = None
+            if pose is None:
+                return frames
         return {name: (complex(*pose.origins[name]), pose.angles[name]) for name in self.links}
 
     def _shown(self, pose: Pose) -> bool:

@@ -429,7 +429,7 @@ class Session:
 
 
 def _plain(document: Document | None) -> Any:
-    """Return the tables of a document as JSON has them, with times and what is no number as text; None where it has none."""
+    """Return the tables of a document as JSON has them, what it does not know as text; None where there are none."""
     if document is None:
         return None
     try:

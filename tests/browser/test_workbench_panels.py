@@ -1,4 +1,4 @@
-"""The panels of the page to work in: an entry, the text, what goes out; against what the commands say of the same text."""
+"""The panels of the page to work in: entries, text, solids, what goes out; against what the commands say."""
 
 import os
 import subprocess
@@ -11,8 +11,8 @@ import chromium
 import pytest
 
 from alula.fea.check.run import check_case
-from alula.reports.sentences.verdicts import checks_of, first_lines, opening
 from alula.loads.case.case_file import read_case, read_text
+from alula.reports.sentences.verdicts import checks_of
 
 SHOW = """
 const select = document.querySelector("#panel-forms select");
@@ -20,6 +20,7 @@ select.value = arguments[0];
 return select.value && select.dispatchEvent(new Event("change"));
 """
 WIDTH = """[data-path='["parts","bar","width"]']"""
+STEP = Path(__file__).parents[1] / "data" / "step" / "bell_crank.step"
 TEXT = "document.querySelector('#panel-text textarea').value"
 BLOBS = """
 window.handed = [];
@@ -73,7 +74,7 @@ def write(browser: chromium.Browser, selector: str, text: str) -> None:
     field.send_keys("\ue009a\ue000" + text + "\ue004")
 
 
-def test_a_width_in_the_form_changes_the_text_and_the_verdict(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
     """A wider bar: the text has it, its comments stay, and the verdict is that of ``alula check --fidelity beam``."""
     address, case = bench
     visit(browser, address)
@@ -116,8 +117,9 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
     write(browser, WIDTH, "9 apples")
     browser.wait(f"""document.querySelector({WIDTH!r})?.getAttribute("aria-invalid") === "true" """)
     field = browser.element(WIDTH)
-    told = browser.run("return document.getElementById(arguments[0]).textContent", field.get_attribute("aria-describedby"))
-    assert told.startswith("parts.bar.width") and "unit of length" in told
+    told = browser.element(f"#{field.get_attribute('aria-describedby')}").text
+    assert told.startswith("parts.bar.width")
+    assert "unit of length" in told
     show(browser, "links")
     browser.wait("document.querySelector('#panel-forms .to-line')")
     browser.element("#panel-forms .to-line").click()
@@ -138,10 +140,7 @@ def test_what_is_selected_in_the_drawing_is_shown(browser: chromium.Browser, ben
     lines = browser.run(f"return {TEXT}").split("\n")
     marked = "document.querySelector('#panel-text .mark')"
     place = 1 + lines.index("[[load_cases.lift.forces]]")
-    browser.wait(
-        f"Math.abs({marked}.getBoundingClientRect().top - document.querySelector('.numbers').getBoundingClientRect().top"
-        f" + document.querySelector('.numbers').scrollTop - {place - 1} * 19) < 12"
-    )
+    browser.wait(f"Math.abs({marked}.offsetTop + document.querySelector('.numbers').scrollTop - {place - 1} * 19) < 12")
     assert browser.run("return document.documentElement.scrollWidth") <= chromium.PHONE[0]
 
 
@@ -157,7 +156,9 @@ def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench
     browser.wait("window.handed.length === 4")
     browser.wait("window.handed.map((one) => one.type).join().includes('png')")
     drawn = browser.driver.execute_async_script(READ, "image/svg")
-    assert drawn.startswith("<svg") and "class=" not in drawn and 'fill="rgb(' in drawn
+    assert drawn.startswith("<svg")
+    assert "class=" not in drawn
+    assert 'fill="rgb(' in drawn
     case = browser.driver.execute_async_script(READ, "application")
     assert tomllib.loads(case)["parts"]["bar"]["width"] == "9 mm"
     page = browser.driver.current_window_handle
@@ -174,11 +175,12 @@ def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench
 
 
 def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
-    """The crank alone has a part, so that one link is solved: its model turns, and both bands are told."""
+    """The crank alone has a part, so that one link is solved, not finely: its model turns, and both bands are told."""
     address, _ = bench
     visit(browser, address)
     bare = [{"op": "set", "path": ["links", link, "part"], "value": None} for link in ("rocker", "coupler")]
     bare.append({"op": "set", "path": ["load_cases", "lift", "own_weight"], "value": False})
+    bare.append({"op": "set", "path": ["solid", "accuracy"], "value": "30 %"})
     browser.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", bare)
     browser.wait(f"{TEXT}.includes('own_weight = false')")
     open_panel(browser, "solids")
@@ -188,5 +190,25 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     open_panel(browser, "verdict")
     browser.wait("document.querySelector('#panel-verdict svg.bands')")
     told = browser.element("#panel-verdict svg.bands").get_attribute("aria-label")
-    assert told.startswith("crank: by hand ") and "; solid " in told
+    assert told.startswith("crank: by hand ")
+    assert "; solid " in told
     assert "with solids" in browser.element("#panel-verdict .stamp-line").text
+
+
+def test_a_part_from_cad_is_offered_to_the_pins_of_a_link(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """Two bores get the points of the coupler; the third one of the file is left over."""
+    address, case = bench
+    visit(browser, address)
+    select = "import(document.baseURI + 'page/store.js').then(({ store }) => store.put('selected', arguments[0]))"
+    browser.run(select, {"kind": "link", "name": "coupler"})
+    open_panel(browser, "out")
+    browser.element("#panel-out input[type=file]").send_keys(str(STEP))
+    browser.wait("document.querySelectorAll('#panel-out tbody tr').length === 3")
+    points = "[...document.querySelectorAll('#panel-out tbody select')].map((one) => one.value)"
+    assert browser.run(f"return {points}") == ["A", "B", ""]
+    browser.run(PRESS, "Use this part")
+    browser.wait(f"{TEXT}.includes('shape = \"step\"')")
+    tables = tomllib.loads(browser.run(f"return {TEXT}"))
+    assert tables["links"]["coupler"]["part"] == "bell_crank"
+    assert set(tables["parts"]["bell_crank"]["bores"]) == {"A", "B"}
+    assert case.with_name("bell_crank.step").read_bytes() == STEP.read_bytes()

@@ -172,6 +172,13 @@ class Forms {
     return last && !last.ground ? structuredClone(last) : this.fitted(option, beginning(option), [this.table, ""]);
   }
 
+  /** What an entry is when it is stated: of a list of tables one. */
+  begun(node, path, table = null) {
+    const value = beginning(node);
+    const several = Array.isArray(value) && typeof value[0] === "object" && !Array.isArray(value[0]) && options(node)[0].items;
+    return this.fitted(node, several ? value.slice(0, 1) : value, path, table);
+  }
+
   /** A value whose names are of this case: each that is not there is replaced by the first one that is. */
   fitted(node, value, path, table = null) {
     const option = optionOf(node, value);
@@ -180,7 +187,7 @@ class Forms {
       const names = this.namesOf(node, path, table);
       const moving = names.filter((name) => !this.tables[node["x-refers"]]?.[name]?.ground);
       const place = path.findLast(Number.isInteger) ?? 0; // the second of a list is another one than the first
-      return names.includes(value) ? value : (moving[place % moving.length] ?? value);
+      return names.includes(value) ? value : (path.at(-1) === "end" ? moving.at(-1) : moving[place % moving.length]) ?? value;
     }
     if (!value || typeof value !== "object") return value;
     const made = {};
@@ -236,6 +243,7 @@ class Forms {
     const change = ({ target }) => {
       const option = all[Number(target.value)];
       const fresh = beginning(option);
+      if (option["x-names"]) for (const name of at(this.tables, path.slice(0, -1))?.[option["x-names"]] ?? []) fresh[name] = beginning(option.additionalProperties);
       if (isTable(option) && value && typeof value === "object" && !Array.isArray(value)) {
         for (const name of Object.keys(option.properties)) if (name in value && !("const" in option.properties[name])) fresh[name] = value[name];
       }
@@ -312,7 +320,7 @@ class Forms {
     if (value === undefined) {
       const add = () => {
         this.open.add(key(path));
-        this.send([{ op: "set", path, value: this.fitted(node, beginning(node), path, table) }], null, path);
+        this.send([{ op: "set", path, value: this.begun(node, path, table) }], null, path);
       };
       return make("div", { class: "field unset" }, make("span", {}, label), make("button", { type: "button", onclick: add, "aria-label": `State ${label}` }, "State"), help, this.error(path));
     }
@@ -329,17 +337,19 @@ class Forms {
   inside(node, value, path, table) {
     const box = make("div", { class: "inside" });
     if (value === undefined || value === null) {
-      box.append(make("button", { type: "button", onclick: () => this.send([{ op: "set", path, value: this.fitted(node, beginning(node), path) }]) }, `State ${words(path.at(-1))}`));
+      box.append(make("button", { type: "button", onclick: () => this.send([{ op: "set", path, value: this.begun(node, path) }]) }, `State ${words(path.at(-1))}`));
       return box;
     }
     const option = optionOf(node, value);
-    if (typeof value === "string") box.append(this.input({ type: "string" }, value, path, table, { label: words(path.at(-1)) })); // such as "from-part"
-    if (typeof value === "string") return box;
+    if (typeof value === "string" && !options(node).some(isPlain)) { // such as "from-part"
+      box.append(this.input({ type: "string" }, value, path, table, { label: words(path.at(-1)) }));
+      return box;
+    }
     box.append(...this.kinds(node, value, path));
     if (isTable(option)) box.append(...this.fields(option, value, path));
     else if (isMap(option)) box.append(...this.map(option, value, path));
     else if (isList(option)) box.append(...this.list({ ...node, ...option }, value, path, table));
-    else box.append(this.input(node, value, path, table, {}));
+    else box.append(this.input(node, value, path, table, { label: words(path.at(-1)) }));
     return box;
   }
 

@@ -71,7 +71,7 @@ function down(event) {
     grab.pans = !grab.drag;
   } else if ([...TWO_ENDS, "load"].includes(tool)) {
     grab.second = store.state.ends !== null && tool !== "load";
-    if (!grab.second) begin(handle, toPlane(at), event.altKey);
+    if (!grab.second) store.put("ends", endAt(handle, toPlane(at), event.altKey));
   }
 }
 
@@ -292,10 +292,6 @@ function endAt(handle, place, free) {
   return { end: { at: to }, at: to, operations: [], handle: null };
 }
 
-function begin(handle, place, free) {
-  store.put("ends", endAt(handle, place, free));
-}
-
 function finish(handle, place, free) {
   const first = store.state.ends;
   const second = endAt(handle, place, free);
@@ -372,7 +368,7 @@ function enter(handle, target) {
   const where = thing?.kind === "link" ? middle(thing) : place;
   if (!TWO_ENDS.includes(tool)) use(thing, where, true);
   else if (store.state.ends) finish(thing, where, true);
-  else begin(thing, where, true);
+  else store.put("ends", endAt(thing, where, true));
 }
 
 function middle(handle) {

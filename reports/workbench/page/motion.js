@@ -15,24 +15,21 @@ export function mount(element) {
   const slider = add(track, "input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion" });
   const dead = draw(track, "svg", { class: "dead", "aria-hidden": "true" });
   const said = add(element, "output", {});
-  const turn = add(element, "button", { type: "button" }, "Turn it");
+  const one = add(element, "button", { type: "button", hidden: "" }, "Let it turn once");
   const use = add(element, "button", { type: "button" }, "Use this pose");
   const back = add(element, "button", { type: "button" }, "Back to the case's pose");
   const label = add(element, "label", { class: "choice" });
   const box = add(label, "input", { type: "checkbox" });
   label.append(" paths of points");
-  parts = { element, play, slider, dead, said, turn, use, back };
-  turn.addEventListener("click", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]));
+  parts = { element, play, slider, dead, said, one, use, back };
   play.addEventListener("click", () => (playing ? stop() : start()));
   slider.addEventListener("input", () => {
     stop();
     store.put("instant", Number(slider.value));
   });
   use.addEventListener("click", take);
-  back.addEventListener("click", () => {
-    stop();
-    store.put("instant", null);
-  });
+  one.addEventListener("click", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]));
+  back.addEventListener("click", leave);
   box.addEventListener("change", () => store.put("paths", box.checked));
   store.on("motion", () => {
     const { motion, instant } = store.state;
@@ -91,14 +88,15 @@ function show() {
   set(parts.play, { "aria-pressed": String(playing !== null) });
   parts.play.textContent = playing ? "Pause" : "Play";
   parts.element.hidden = !motion;
-  const now = store.state.document;
-  parts.turn.hidden = moves || !now?.tables || Boolean(now.tables.motion) || Boolean(now.problem) || store.state.drawn?.coordinate?.kind !== "angle";
   if (!moves) {
     const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
-    parts.said.textContent = (parts.turn.hidden && !told && motion?.problem) || "no motion";
+    const none = motion?.problem && !told && !store.state.document?.tables?.motion;
+    parts.said.textContent = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
+    parts.one.hidden = !none || store.state.drawn?.coordinate?.kind !== "angle";
     parts.dead.replaceChildren();
     return;
   }
+  parts.one.hidden = true;
   const { values, unit } = motion;
   const signs = unit === "deg" ? "°" : ` ${unit}`;
   const k = instant ?? nearest();

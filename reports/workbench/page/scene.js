@@ -21,7 +21,9 @@ export function scene({ drawn, motion, instant, held, loadCase } = store.state) 
   const links = drawn.links.map((link) => ({ ...link, ...frame(link, at, moved, motion) }));
   const joints = drawn.joints.map((joint) => {
     const points = pointsOf(joint, drawn);
-    return { ...joint, points, at: at.get(points.at(-1)) ?? joint.at };
+    const slotted = links.find((link) => link.name === joint.links[0]); // its slot turns with it
+    const way = joint.way && turned(joint.way, radians((slotted?.direction ?? 0) - (slotted?.angle ?? 0)));
+    return { ...joint, points, way, at: at.get(points.at(-1)) ?? joint.at };
   });
   const mine = (load) => load.load_case === loadCase || load.load_case === null;
   const loads = drawn.loads.filter((load) => mine(load) && moved === null).map((load) => ({

@@ -19,7 +19,7 @@ from planar_linkages import (
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.linkage import Linkage
-from alula.geometry.linkage.pose import CLOSED, Pose, constraint_jacobian, solve_pose
+from alula.geometry.linkage.pose import CLOSED, Pose, constraint_jacobian, nearest_pose, solve_pose
 
 ANGLE = math.radians(40)
 
@@ -287,3 +287,15 @@ def test_inputs_are_left_unchanged() -> None:
     assert near == OPEN_WING
     assert (linkage.links, linkage.joints) == before
     np.testing.assert_array_equal(pose.q, q)
+
+
+def test_the_nearest_pose_starts_from_rough_directions_and_is_none_where_the_loop_stays_open() -> None:
+    linkage, near = four_bar(40.0, 120.0, 80.0, 100.0), {"crank": 0.8, "coupler": 0.5, "rocker": 0.9}
+    solved = solve_pose(linkage, coordinate="crank", angle=0.7, near=near)
+    found = nearest_pose(linkage, coordinate="crank", angle=0.7, near=near)
+    assert found is not None
+    assert found.q == pytest.approx(solved.q, abs=1e-9)
+    free = nearest_pose(linkage, coordinate=None, near=near)  # of any mobility
+    assert free is not None
+    assert free.residual < CLOSED
+    assert nearest_pose(four_bar(40.0, 500.0, 80.0, 100.0), coordinate="crank", angle=0.7, near=near) is None

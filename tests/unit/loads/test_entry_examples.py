@@ -43,5 +43,5 @@ def test_entries_that_name_something_say_what():
 
 def test_a_schema_without_examples_stays_as_it_is():
     assert "examples" not in file_schema(Case)["$defs"]["Bar"]
-    [bar] = [found for found in options({"$ref": "#/$defs/Bar"}, file_schema(Case))]
+    [bar] = options({"$ref": "#/$defs/Bar"}, file_schema(Case))
     assert bar["title"] == "Bar"

@@ -40,11 +40,12 @@ def test_a_dropped_part_makes_a_case_with_its_bores(tmp_path: Path) -> None:
 
 def test_no_file_is_written_over(tmp_path: Path) -> None:
     """Another content under the same name gets a name of its own; the same content stands once."""
-    (tmp_path / "arm.step").write_bytes(b"mine")
+    mine = bytes(len(BELL_CRANK))
+    (tmp_path / "arm.step").write_bytes(mine)
     (tmp_path / "arm-2.step").symlink_to(tmp_path / "nowhere")
     assert parts.dropped("arm.step", BELL_CRANK, tmp_path)["file"] == "arm-3.step"
     assert parts.dropped("arm.step", BELL_CRANK, tmp_path)["file"] == "arm-3.step"
-    assert (tmp_path / "arm.step").read_bytes() == b"mine"
+    assert (tmp_path / "arm.step").read_bytes() == mine
     assert sorted(file.name for file in tmp_path.iterdir()) == ["arm-2.step", "arm-3.step", "arm.step"]
 
 
@@ -107,20 +108,20 @@ def test_names_of_files_are_plain(name: str, kept: str) -> None:
 def test_a_link_leaves_as_a_solid_with_its_bores(tmp_path: Path) -> None:
     """What is handed out as STEP is read back: two bores of the pins' diameter, as far apart as the points."""
     file = tmp_path / "crank.step"
-    file.write_bytes(out.step(read_text("four-bar")[0], "crank", tmp_path))
+    file.write_bytes(out.step(read_text("four-bar")[0], str(tmp_path / "mine.toml"), "crank"))
     first, second = part_facts(file).bores
     assert (first.diameter, second.diameter) == pytest.approx((3.0, 3.0))
     assert abs(second.centre[0] - first.centre[0]) == pytest.approx(40.0)
     with pytest.raises(CaseError, match="there is no link 'nobody'; the case has base, crank"):
-        out.step(read_text("four-bar")[0], "nobody", tmp_path)
+        out.step(read_text("four-bar")[0], str(tmp_path / "mine.toml"), "nobody")
 
 
 def test_the_report_is_that_of_the_check(tmp_path: Path) -> None:
-    """Of the text, not of a file: under its own load the four-bar is undecided by hand, under a hundred times that it fails."""
+    """Of the text, not of a file: by hand the four-bar is undecided; under a hundred times its load it fails."""
     text = read_text("four-bar")[0]
-    assert _verdict(out.report(text.replace("-5 N", "-500 N"), "mine", tmp_path, "beam")) == "fail"
+    assert _verdict(out.report(text.replace("-5 N", "-500 N"), str(tmp_path / "mine.toml"), "beam")) == "fail"
     with pytest.raises(CaseError, match="TOML"):
-        out.report("[links", "mine", tmp_path, "beam")
+        out.report("[links", str(tmp_path / "mine.toml"), "beam")
     assert not list(tmp_path.iterdir())
 
 
