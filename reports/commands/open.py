@@ -30,7 +30,7 @@ def open_case(
         if not case.exists() and str(case) in built_in_cases():
             raise CaseError(
                 f"case '{case}': it is a built-in case; write one of your own with "
-                f"'alula new {case}.toml --from {case}', and open that"
+                f"'alula new my-case.toml --from {case}', and open that"
             )
         new = case.suffix == ".toml" and case.parent.is_dir() and not case.exists()
         if not new:

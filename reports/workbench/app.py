@@ -143,7 +143,7 @@ def application(session: Session) -> Starlette:
 
     Returns
     -------
-    Starlette
+    ASGI application
     """
 
     async def index(request: Request) -> Response:

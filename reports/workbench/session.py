@@ -34,7 +34,7 @@ class ConflictError(AlulaError):
     """What a page asks does not fit how the case stands now; nothing was changed."""
 
 
-class Page:
+class Listener:
     """What a page has not been told yet: of each kind of event the newest, so that nothing piles up for a slow one."""
 
     def __init__(self) -> None:
@@ -105,7 +105,7 @@ class Session:
         self._drafts: Drafts | None = None
         self._draft: str | None = None  # what an earlier server kept, until it is taken or not
         self._drafted = ""
-        self._pages: set[Page] = set()
+        self._pages: set[Listener] = set()
         self._last: dict[str, str] = {}
         self._notice = ""
         self._files = asyncio.Lock()
@@ -114,16 +114,16 @@ class Session:
 
     # What pages are told.
 
-    def listen(self) -> Page:
+    def listen(self) -> Listener:
         """Return a page that hears how everything stands, and of all that changes from now on.
 
         Returns
         -------
-        Page
+        Listener
         """
         if len(self._pages) >= MOST_PAGES:
             raise ConflictError(f"{MOST_PAGES} pages show this workbench already; close one of them")
-        page = Page()
+        page = Listener()
         self._pages.add(page)
         self._tell_document()
         for kind, message in self._last.items():
@@ -131,12 +131,12 @@ class Session:
         self._last = {kind: message for kind, message in self._last.items() if not kind.startswith("notice")}
         return page
 
-    def leave(self, page: Page) -> None:
+    def leave(self, page: Listener) -> None:
         """Forget a page that is gone.
 
         Parameters
         ----------
-        page : Page
+        page : Listener
         """
         self._pages.discard(page)
 
@@ -429,7 +429,7 @@ class Session:
 
 
 def _plain(document: Document | None) -> Any:
-    """Return the tables of a document as JSON has them, what it does not know as text; None where there are none."""
+    """Return the tables of a document as JSON has them, with times and what is no number as text, or None."""
     if document is None:
         return None
     try:

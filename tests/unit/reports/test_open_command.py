@@ -20,7 +20,7 @@ from alula.reports.commands import open as command
     [
         ("nowhere/mine.toml", "there is no such file"),
         ("mine.json", "there is no such file"),
-        ("four-bar", "alula new four-bar.toml --from four-bar"),
+        ("four-bar", "alula new my-case.toml --from four-bar"),
         (".", "it is a folder"),
         ("empty.toml", "the file is empty"),
         ("binary.toml", "it is not UTF-8 text"),
