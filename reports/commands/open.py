@@ -14,7 +14,8 @@ app = typer.Typer()
 @app.command("open")
 def open_case(
     case: Annotated[
-        Path | None, typer.Argument(help="Path to a case file; without it the page offers what to start from.")
+        Path | None,
+        typer.Argument(help="Path to a case file; without it, or for a new one, the page offers what to start from."),
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of 127.0.0.1; 0: one that is free.")] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
@@ -31,7 +32,9 @@ def open_case(
                 f"case '{case}': it is a built-in case; write one of your own with "
                 f"'alula new my-case.toml --from {case}', and open that"
             )
-        case_text(case)
+        new = case.suffix == ".toml" and case.parent.is_dir() and not case.exists()
+        if not new:
+            case_text(case)
 
     def ready(address: str) -> None:
         print(f"The page: {address}\nCtrl-C ends it.", flush=True)

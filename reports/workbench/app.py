@@ -171,7 +171,7 @@ def application(session: Session) -> Starlette:
 
     async def starters(request: Request) -> Response:
         found = sorted(file.name for file in session.folder.glob("*.toml") if file.is_file())
-        return JSONResponse({"starters": _starters(), "files": found, "folder": str(session.folder)})
+        return JSONResponse({"starters": _starters(), "files": found, "folder": str(session.folder), "new": session.new})
 
     async def schema(request: Request) -> Response:
         return Response(_schema(), media_type="application/json")
@@ -237,7 +237,7 @@ def _page(name: str) -> Response:
 
 @cache
 def _starters() -> list[dict[str, str]]:
-    titles = {DRAWING: "A ground link, and all else to be drawn"}
+    titles = {DRAWING: "begins with two pins of the ground"}
     titles |= {name: read_tables(name)["title"] for name in built_in_cases()}
     return [{"name": name, "title": title} for name, title in titles.items()]
 
@@ -325,7 +325,7 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
     Parameters
     ----------
     case : Path or None
-        The case, in ``folder``.
+        The case, in ``folder``; one that is missing is to be made.
     folder : Path
         In which cases are opened.
     port : int
@@ -360,8 +360,10 @@ class _Server(uvicorn.Server):
 async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: Callable[[str], None]) -> None:
     session = Session(folder)
     try:
-        if case is not None:
+        if case is not None and case.exists():
             session.load(case)
+        elif case is not None:
+            session.new = case.name
     except BaseException:
         await session.close()
         raise

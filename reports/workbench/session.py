@@ -87,13 +87,15 @@ class Session:
     folder : Path
     path : Path
         The file of the open case.
+    new : str
+        What the page calls a new case until its user does.
     document : Document or None
         None before a case is open.
     solids : Solids
     """
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.path = folder, folder
+        self.folder, self.path, self.new = folder, folder, "my-case.toml"
         self.document: Document | None = None
         self._stored = ""  # the text that the file held when it was last read or written
         self._stamp: Stamp | None = None  # of the file then

@@ -59,11 +59,11 @@ function asked(handle) {
   if (handle.kind === "load") {
     const load = now.loads.find((one) => String(one.path) === String(handle.path));
     const [x, y] = load.vector;
-    fields = [{ label: "Fx", value: x, unit: "N" }, { label: "Fy", value: y, unit: "N" }, { label: "size", value: size(load.vector), unit: "N" }, { label: "direction", value: (Math.atan2(y, x) * 180) / Math.PI, unit: "°" }];
+    fields = [{ label: "size", value: size(load.vector), unit: "N" }, { label: "direction", value: (Math.atan2(y, x) * 180) / Math.PI, unit: "°" }, { label: "Fx", value: x, unit: "N" }, { label: "Fy", value: y, unit: "N" }];
     const change = (texts, changed) => {
-      const [fx, fy, newtons, degrees] = texts.map(parsed);
+      const [newtons, degrees, fx, fy] = texts.map(parsed);
       const way = (degrees * Math.PI) / 180;
-      return forceOperations(load, now.links, changed[2] || changed[3] ? [newtons * Math.cos(way), newtons * Math.sin(way)] : [fx, fy]);
+      return forceOperations(load, now.links, changed[0] || changed[1] ? [newtons * Math.cos(way), newtons * Math.sin(way)] : [fx, fy]);
     };
     return { at: load.at, title: `Load on ${load.link}`, fields, change };
   }

@@ -15,6 +15,7 @@ let svg, parent;
 const fingers = new Map();
 let grab = null; // what is held: {handle, from, moved, drag, gesture}
 let tapped = { time: 0, handle: null };
+let made = null; // handle of a load that is not drawn yet
 let nudged = { time: 0, handle: null, gesture: "" };
 
 export function mount(element) {
@@ -28,7 +29,9 @@ export function mount(element) {
   svg.addEventListener("keydown", keys);
   svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
+  document.addEventListener("pointerdown", ({ target }) => target.closest?.(".entry, #sheet") || entry.close());
   store.on("drawn", settle);
+  store.on("drawn", takeUp);
   store.on("drawn", entry.refresh);
   store.on("document", settle);
 }
@@ -55,7 +58,10 @@ function down(event) {
   entry.close();
   if (fingers.size === 2) return pinch();
   const { handle = null } = event.button === 1 ? {} : event.target;
-  if (handle) event.target.focus({ preventScroll: true });
+  if (handle) {
+    event.target.focus({ preventScroll: true });
+    store.put("selected", handle); // one that has the focus already tells of no new one
+  }
   else document.activeElement?.blur();
   const { tool } = store.state;
   grab = { handle, from: at, moved: false, gesture: newGesture(), drag: null };
@@ -326,7 +332,17 @@ function addLoad({ end, at, operations, to }) {
   const name = drawn.loads.find((load) => load.load_case === loadCase)?.path[1] ?? loadCase ?? "load";
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));
   const vector = drawnForce && size(drawnForce) > 0 ? drawnForce : [0, -10];
-  edit([...operations, { op: "load", load_case: name, ...target, force: vector.map((part) => `${part} N`) }]);
+  const path = ["load_cases", name, "forces", store.state.document.tables?.load_cases?.[name]?.forces?.length ?? 0];
+  made = { kind: "load", path };
+  edit([...operations, { op: "load", load_case: name, ...target, force: vector.map((part) => `${part} N`) }]).then(() => store.put("tool", "select"), () => (made = null));
+}
+
+/** Select a load that was made once it is drawn, with its numbers ready to be typed. */
+function takeUp() {
+  if (!made || !store.state.drawn?.loads.some((load) => same(load.path, made.path))) return;
+  store.put("selected", made);
+  entry.open(parent, made, false);
+  made = null;
 }
 
 /* The keyboard. */
@@ -392,7 +408,7 @@ function typed(event) {
 
 function escape(event) {
   if (event.target.closest?.("#panels, .entry")) return;
-  entry.close();
+  if (entry.isOpen()) return entry.close();
   if (grab?.drag && grab.moved) {
     grab = null;
     change("undo").catch(() => {});

@@ -50,14 +50,14 @@ function said() {
     document.title = now.name ? `${name} - alula` : name;
     const line = now.problem?.line ? `Line ${now.problem.line}: ` : "";
     find("problem").textContent = now.problem ? line + now.problem.sentence : "";
-    find("problem").hidden = !now.problem;
+    find("problem").hidden = !now.problem || Boolean(tools.nextStep(now)); // what is only begun is no mistake
     asked(now);
   });
   store.on("notice", (notice) => {
-    find("notice").textContent = notice?.sentence ?? "";
+    find("notice").firstElementChild.textContent = notice?.sentence ?? "";
     find("notice").hidden = !notice?.sentence;
   });
-  find("notice").addEventListener("click", () => store.put("notice", null));
+  find("notice").lastElementChild.addEventListener("click", () => store.put("notice", null));
 }
 
 const DISK = {

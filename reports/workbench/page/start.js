@@ -15,25 +15,33 @@ export function mount(element) {
 }
 
 async function show(element) {
-  const { starters, files, folder } = await send("starters").catch((problem) => {
+  const { starters, files, folder, new: proposed } = await send("starters").catch((problem) => {
     tell(problem.message);
-    return { starters: [], files: [], folder: "" };
+    return { starters: [], files: [], folder: "", new: "" };
   });
   element.replaceChildren();
+  const told = add(element, "p", { role: "alert" });
+  store.on("notice", (notice) => (told.textContent = notice?.sentence ?? ""));
+  add(element, "h2", {}, "Begin a case");
+  const label = add(element, "label", {}, "Its file ");
+  const name = add(label, "input", { "aria-label": "Name of the new file", spellcheck: "false" });
+  name.value = proposed;
+  label.append(` in ${folder}`);
+  const begin = (starter) => () => ({ starter, as: name.value.trim() });
+  const drawing = add(element, "p");
+  for (const one of starters.slice(0, 1)) button(drawing, "Draw a linkage", one.title, begin(one.name)).className = "first";
+  add(element, "p", {}, "Or start from a copy of one that is ready:");
+  const gallery = add(element, "ul");
+  for (const one of starters.slice(1)) button(add(gallery, "li"), one.name, one.title, begin(one.name));
+  if (!files.length) return;
   add(element, "h2", {}, `Open a case of ${folder}`);
   const here = add(element, "ul");
-  for (const name of files) button(here, name, "", { path: name });
-  if (!files.length) add(here, "li", {}, "There is none yet.");
-  add(element, "h2", {}, "Start from a case of the gallery");
-  const label = add(element, "label", {}, "Name of the new file ");
-  const name = add(label, "input", { "aria-label": "Name of the new file", spellcheck: "false" });
-  name.value = "my-case.toml";
-  const gallery = add(element, "ul");
-  for (const one of starters) button(gallery, one.name, one.title, () => ({ starter: one.name, as: name.value.trim() }));
+  for (const file of files) button(add(here, "li"), file, "", () => ({ path: file }));
 }
 
-function button(list, text, title, body) {
-  const row = add(list, "li");
-  add(row, "button", { type: "button" }, text).addEventListener("click", () => change("open", typeof body === "function" ? body() : body).catch(() => {}));
+function button(row, text, title, body) {
+  const one = add(row, "button", { type: "button" }, text);
+  one.addEventListener("click", () => change("open", body()).catch(() => {}));
   row.append(` ${title}`);
+  return one;
 }

@@ -96,17 +96,29 @@ function loadCases(element) {
   show();
 }
 
-/** What the tool that is taken up wants. */
+/** What a case that is drawn from nothing wants next; "" where something acts on it already. */
+export function nextStep(now) {
+  if (!now?.problem || !now.tables || Object.keys(now.tables.load_cases ?? {}).length) return "";
+  const moving = Object.values(now.tables.links ?? {}).filter((link) => !link.ground).length;
+  const joints = Object.values(now.tables.joints ?? {});
+  if (!moving) return "Begin with Add link: press on a pin of the ground and release where the link shall end.";
+  if (joints.some((joint) => joint.type)) return "";
+  const free = joints.reduce((left, joint) => left - 2 * ((joint.links?.length ?? 1) - 1), 3 * moving);
+  if (free > 1) return `It moves in ${free} ways, and one is to be left: Add link from a free end to another pin or to the ground.`;
+  return free === 1 ? "It moves in one way, as a drive needs it. Add more links, or Add load." : "";
+}
+
+/** What the tool that is taken up wants, and what the drawing does. */
 function hint() {
   const line = add(document.getElementById("plane"), "p", { id: "hint", "aria-live": "polite" });
   const show = () => {
-    const { tool, ends } = store.state;
+    const { tool, ends, document: now } = store.state;
     const second = ends && !ends.to ? " Now the second end." : "";
-    line.textContent = tool === "select" ? "" : (TOOLS.find(([name]) => name === tool)?.[3] ?? "") + second;
+    const wanted = tool === "select" ? "" : (TOOLS.find(([name]) => name === tool)?.[3] ?? "") + second;
+    line.textContent = [wanted, nextStep(now)].filter(Boolean).join(" ");
     line.hidden = !line.textContent;
   };
-  store.on("tool", show);
-  store.on("ends", show);
+  for (const name of ["tool", "ends", "document"]) store.on(name, show);
 }
 
 function shortcut(event) {

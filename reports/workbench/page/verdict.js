@@ -28,9 +28,15 @@ export function mount(holder, store) {
   const open = new Set();
   holder.append(stamp, rest);
 
+  /** What is told; without a check there is the problem alone, which stands above the drawing. */
+  function told() {
+    const found = shownVerdict(store.state.verdict);
+    return found?.checks?.length ? found : null;
+  }
+
   /** The badge, and whether the verdict is of what stands there now. */
   function head() {
-    const found = shownVerdict(store.state.verdict);
+    const found = told();
     const now = store.state.document;
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
@@ -39,7 +45,7 @@ export function mount(holder, store) {
 
   function draw() {
     head();
-    const found = shownVerdict(store.state.verdict);
+    const found = told();
     const now = store.state.document;
     if (!found) return rest.replaceChildren();
     const names = (table) => Object.keys(now?.tables?.[table] ?? {});
@@ -60,7 +66,7 @@ export function mount(holder, store) {
   }
 
   function badge(found, now) {
-    if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict: mend the case first." : "The verdict is being computed ...")];
+    if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict yet: the case is not whole." : "The verdict is being computed ...")];
     const computing = !now?.problem && (found.revision < (now?.revision ?? 0) || found.stage === "linear");
     const running = store.state.solids?.state === "running" ? "solids are being solved" : "";
     return [

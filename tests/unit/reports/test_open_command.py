@@ -18,7 +18,8 @@ from alula.reports.commands import open as command
 @pytest.mark.parametrize(
     ("case", "told"),
     [
-        ("nowhere.toml", "there is no such file"),
+        ("nowhere/mine.toml", "there is no such file"),
+        ("mine.json", "there is no such file"),
         ("four-bar", "alula new my-case.toml --from four-bar"),
         (".", "it is a folder"),
         ("empty.toml", "the file is empty"),

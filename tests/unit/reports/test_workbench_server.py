@@ -175,8 +175,9 @@ def test_a_starter_is_copied_with_its_files_and_over_nothing(bench, case):
 
 
 def test_a_drawing_starts_from_nothing(tmp_path):
-    with served.serving_of(None, tmp_path) as bench:
+    with served.serving_of(tmp_path / "mine.toml", tmp_path) as bench:
         assert bench.document()["path"] is None
+        assert json.loads(bench.ask("GET", "starters")[2])["new"] == "mine.toml"
         assert "no case is open" in sentence(retitled(bench, "x"))
         assert "no case is open" in sentence(bench.post("save"))
         assert bench.post("open", starter="empty", **{"as": "drawn.toml"})[0] == 200
