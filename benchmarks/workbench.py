@@ -18,9 +18,9 @@ from typing import Any
 from record import save
 
 from alula.loads.case.case_file import read_text
-from alula.reports.workbench.answers import pose_answer
-from alula.reports.workbench.verdicts import linear_answer
-from alula.reports.workbench.workers import Workers
+from alula.reports.workbench.live.answers import pose_answer
+from alula.reports.workbench.live.verdicts import linear_answer
+from alula.reports.workbench.live.workers import Workers
 
 CHANGES = 40
 DRAGS = {

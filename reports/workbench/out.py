@@ -6,7 +6,7 @@ from typing import Literal
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.tidying import scratch_folder
 from alula.loads.text.explain import printable
-from alula.reports.workbench.answers import case_of
+from alula.reports.workbench.live.answers import case_of
 
 
 def report(text: str, name: str, fidelity: Literal["beam", "solid"]) -> bytes:

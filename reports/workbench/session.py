@@ -14,11 +14,11 @@ from alula.loads.case.case_file import changed_case
 from alula.loads.compose.starting import case_files, write_new
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import LARGEST_FILE
-from alula.reports.workbench.document import Document
-from alula.reports.workbench.edits import EMPTY
+from alula.reports.workbench.editing.document import Document
+from alula.reports.workbench.editing.edits import EMPTY
 from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
-from alula.reports.workbench.solids import Solids
-from alula.reports.workbench.workers import Workers
+from alula.reports.workbench.live.solids import Solids
+from alula.reports.workbench.live.workers import Workers
 
 PERIOD = 1.0
 """Seconds from one look at the disk to the next, and from one draft to the next."""

@@ -13,8 +13,8 @@ from alula.loads.case.case_file import read_case, read_text
 from alula.reports.check.changes import change_records
 from alula.reports.commands.statics import statics_sections
 from alula.reports.sentences.verdicts import first_lines
-from alula.reports.workbench.answers import motion_answer, pose_answer
-from alula.reports.workbench.verdicts import whole_answer
+from alula.reports.workbench.live.answers import motion_answer, pose_answer
+from alula.reports.workbench.live.verdicts import whole_answer
 
 
 def posed(name, *pairs):

@@ -10,7 +10,7 @@ import pytest
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import built_in_cases
-from alula.reports.workbench.document import Document
+from alula.reports.workbench.editing.document import Document
 
 CASES = built_in_cases()
 

@@ -14,9 +14,9 @@ from alula.fea.common.verdict import Verdict
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, changed_tables, folder_of, read_case, validate
-from alula.reports.workbench.document import Document
-from alula.reports.workbench.edits import EMPTY, loose_positions
-from alula.reports.workbench.references import BY_KEY, BY_VALUE, NAMED, references
+from alula.reports.workbench.editing.document import Document
+from alula.reports.workbench.editing.edits import EMPTY, loose_positions
+from alula.reports.workbench.editing.references import BY_KEY, BY_VALUE, NAMED, references
 
 CASES = built_in_cases()
 

@@ -14,10 +14,10 @@ from alula.fea.check.run import check_case
 from alula.geometry.base.errors import CaseError
 from alula.geometry.keeping.kept import keeping
 from alula.reports.turnable.link import link_model
-from alula.reports.workbench import solids
-from alula.reports.workbench.answers import case_of
-from alula.reports.workbench.solids import Solids
-from alula.reports.workbench.verdicts import verdict_of
+from alula.reports.workbench.live import solids
+from alula.reports.workbench.live.answers import case_of
+from alula.reports.workbench.live.solids import Solids
+from alula.reports.workbench.live.verdicts import verdict_of
 
 TEXT = arm_case.ARM.format(part=arm_case.BAR, fillet=1.0, force=-1.0, minimum=3.0, thickness=3.0)
 TEXT += "[solid]\nmesh_size = 2.0\n"

@@ -10,10 +10,10 @@ import pytest
 
 from alula.geometry.base.child import environment, module_command
 from alula.loads.case.case_file import read_text
-from alula.reports.workbench import workers
-from alula.reports.workbench.answers import pose_answer
-from alula.reports.workbench.verdicts import linear_answer, whole_answer
-from alula.reports.workbench.workers import Workers
+from alula.reports.workbench.live import workers
+from alula.reports.workbench.live.answers import pose_answer
+from alula.reports.workbench.live.verdicts import linear_answer, whole_answer
+from alula.reports.workbench.live.workers import Workers
 
 TEXT, NAME = read_text("four-bar")[0], "four-bar"
 
@@ -136,7 +136,7 @@ def test_a_process_that_ends_by_itself_is_told_and_started_anew(told):
 
 def test_a_mistake_is_told_the_next_text_is_answered_and_the_end_of_requests_is_its_own():
     requests = [{"stage": "pose", "text": 5, "name": NAME}, {"stage": "pose", "text": TEXT, "name": NAME}]
-    command = module_command("alula.reports.workbench.workers", "answers")
+    command = module_command("alula.reports.workbench.live.workers", "answers")
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=environment(), stdin=pipe, stdout=pipe, stderr=pipe, text=True) as child:
         for request in requests:

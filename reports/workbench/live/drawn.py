@@ -30,7 +30,7 @@ from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.states.rubbing import is_of
 from alula.reports.figures.sprung import mark_line
 from alula.reports.words.numbers import number
-from alula.reports.workbench.edits import loose_positions
+from alula.reports.workbench.editing.edits import loose_positions
 
 Real = NDArray[np.float64]
 Plain = dict[str, Any]

@@ -9,10 +9,10 @@ from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 from alula.loads.text.nesting import refuse_deep
-from alula.reports.workbench.moves import lengthen, move, turn
-from alula.reports.workbench.plane import SAME, Plane, Point, loose_positions, told
-from alula.reports.workbench.references import free, remove, rename
-from alula.reports.workbench.toml_text import TomlText, value_at
+from alula.reports.workbench.editing.moves import lengthen, move, turn
+from alula.reports.workbench.editing.plane import SAME, Plane, Point, loose_positions, told
+from alula.reports.workbench.editing.references import free, remove, rename
+from alula.reports.workbench.editing.toml_text import TomlText, value_at
 
 __all__ = ["EMPTY", "loose_positions", "perform"]
 

@@ -7,8 +7,8 @@ from typing import Any
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case_file import parse_tables
-from alula.reports.workbench.edits import perform
-from alula.reports.workbench.toml_text import TomlText
+from alula.reports.workbench.editing.edits import perform
+from alula.reports.workbench.editing.toml_text import TomlText
 
 _MARK = "\ufeff"
 """A byte order mark, which some editors put ahead of a text."""

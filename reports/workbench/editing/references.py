@@ -8,7 +8,7 @@ from pydantic import TypeAdapter, ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import Name
 from alula.loads.case.case_file import keys_of
-from alula.reports.workbench.toml_text import Path, TomlText, value_at
+from alula.reports.workbench.editing.toml_text import Path, TomlText, value_at
 
 BY_KEY = {
     **dict.fromkeys(("near", "fit", "clearance"), "links"),

@@ -17,7 +17,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import changed_case, folder_of
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.states.kinetostatics import dead_points
-from alula.reports.workbench.drawn import drawn, drawn_loosely, joint_forces
+from alula.reports.workbench.live.drawn import drawn, drawn_loosely, joint_forces
 
 Plain = dict[str, Any]
 Stage = Callable[[str, str, Callable[[str, Plain], None]], None]
@@ -70,7 +70,7 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
     Returns
     -------
     dict
-        ``drawn`` as ``alula.reports.workbench.drawn.drawn``, loosely where no pose can be solved, None where nothing
+        ``drawn`` as ``alula.reports.workbench.live.drawn.drawn``, loosely where no pose can be solved, None where nothing
         can be read; ``forces`` as ``joint_forces``; ``problem``, the sentence that says why there is less, else None;
         ``ms``.
     """

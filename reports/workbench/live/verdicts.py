@@ -16,7 +16,7 @@ from alula.reports.check.changes import change_sentences, change_title, size_com
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import checks_of, first_lines, opening
 from alula.reports.words.numbers import sentence
-from alula.reports.workbench.answers import Plain, Stage, case_of
+from alula.reports.workbench.live.answers import Plain, Stage, case_of
 
 _SO_FAR = (
     "So far by linear theory of the loads as stated: large displacement, buckling of the linkage, its limit load and "

@@ -18,7 +18,7 @@ from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.pose import Pose, nearest_pose
 from alula.loads.case.part_points import KINDS
 from alula.loads.text.explain import sentence
-from alula.reports.workbench.toml_text import Path, value_at
+from alula.reports.workbench.editing.toml_text import Path, value_at
 
 Frame = tuple[complex, float]
 """Origin [mm] and angle [rad] of a link's frame."""

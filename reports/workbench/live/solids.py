@@ -40,7 +40,7 @@ Plain = dict[str, Any]
 Tell = Callable[[str, Plain], None]
 
 ROLE = __name__.rpartition(".")[2]
-"""Under which a process of ``alula.reports.workbench.workers`` answers with ``STAGES``."""
+"""Under which a process of ``alula.reports.workbench.live.workers`` answers with ``STAGES``."""
 THREADS = 2
 """As many as ``alula check`` takes unless it is told otherwise."""
 _LONGEST = 1 << 28
@@ -188,7 +188,7 @@ class _Run:
         """Start the process, take what it tells, and return its status."""
         pipe = asyncio.subprocess.PIPE
         self._child = child = await asyncio.create_subprocess_exec(
-            *module_command("alula.reports.workbench.workers", ROLE),
+            *module_command("alula.reports.workbench.live.workers", ROLE),
             stdin=pipe,
             stdout=pipe,
             stderr=complaints,
@@ -245,8 +245,8 @@ def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
     from alula.fea.outcomes.result import LinkResult, SolidResult
     from alula.geometry.keeping.kept import keeping
     from alula.reports.turnable.link import link_model
-    from alula.reports.workbench.answers import case_of
-    from alula.reports.workbench.verdicts import verdict_of
+    from alula.reports.workbench.live.answers import case_of
+    from alula.reports.workbench.live.verdicts import verdict_of
 
     lock, begun = threading.Lock(), time.perf_counter()
     shown: dict[str, str] = {}

@@ -12,8 +12,8 @@ import numpy as np
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.part_points import KINDS
-from alula.reports.workbench.plane import SAME, Frame, Plane, Point, size, told
-from alula.reports.workbench.toml_text import Path, TomlText, value_at
+from alula.reports.workbench.editing.plane import SAME, Frame, Plane, Point, size, told
+from alula.reports.workbench.editing.toml_text import Path, TomlText, value_at
 
 
 def move(draft: TomlText, plane: Plane, key: Point, to: complex) -> None:
