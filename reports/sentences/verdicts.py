@@ -175,7 +175,8 @@ def _stands(check: CheckOutcome, *, several: bool) -> str:
     sign = {Verdict.PASS: f" {sense.value}", Verdict.FAIL: f" {_MISSED[sense]}"}.get(
         check.verdict, f", limit {sense.value}"
     )
-    return f"{named(check)}{under} {band(check.value, digits_beside(check.value, check.limit))}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
+    value = band(check.value, digits_beside(check.value, check.limit))
+    return f"{named(check)}{under} {value}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
 
 
 def besides(found: Iterable[Caveat]) -> str:
