@@ -61,11 +61,12 @@ def commands() -> dict[str, list[str]]:
     """Every golden result by its name: the arguments of the command that gives it as JSON."""
     found = {"synth": ["synth", "--json"], "claims": ["claims", "--fidelity", "beam", "--json"]}
     for case in built_in_cases():
-        found[f"hand-{case}"] = ["check", case, "--fidelity", "beam", "--json"]
+        sets = [word for entry in solved.WINGS.get(case, ()) for word in ("--set", entry)]
+        found[f"hand-{case}"] = ["check", case, "--fidelity", "beam", "--json", *sets]
         if case in STARTERS:
             continue
         found |= {
-            f"statics-{case}": ["statics", case, "--json"],
+            f"statics-{case}": ["statics", case, "--json", *sets],
             f"auto-{case}": ["check", case, "--json", "--threads", "1"],
             f"solid-{case}": ["check", case, "--fidelity", "solid", "--json", "--threads", "1"],
         }
@@ -91,11 +92,10 @@ def slow(name: str) -> bool:
     """True for a result that ``make verify`` compares and ``make test`` does not.
 
     Braking is the flight's case in other air, and the longest of all by hand; the reference design of the flapping wing
-    is the chosen one with other lengths. The ornithopter has frequencies over its motion under six load cases, of which
-    the chosen flapping wing has two.
+    is the chosen one with other lengths.
     """
     alike = "owl-wing-braking", "flapping-wing-reference"
-    return meshed(name) or name.partition("-")[2] in alike or name in ("claims", "hand-ornithopter")
+    return meshed(name) or name.partition("-")[2] in alike or name == "claims"
 
 
 def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None]]:

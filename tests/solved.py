@@ -56,9 +56,15 @@ def share_masses() -> None:
     masses._measured = measured
 
 
+WINGS = dict.fromkeys(("flapping-wing-chosen", "ornithopter"), (PLANAR, "motion.poses=13"))
+"""Entries with which tests take cases that flap: by hand, layers and every degree of motions take most of a minute, and
+stand in other cases (``owl-wing-flight``, ``slider-crank``)."""
+
+
 @cache
 def by_hand(name: str, *overrides: str) -> CheckResult:
-    """Check a built-in case by hand calculation, with entries set anew."""
+    """Check a built-in case by hand calculation, with entries set anew; with ``WINGS`` where none are."""
+    overrides = overrides or WINGS.get(name, ())
 
     def solve() -> CheckResult:
         found = check_case(read_case(name, overrides), name=name, fidelity="beam")

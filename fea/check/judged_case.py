@@ -13,7 +13,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.judge import outcomes
-from alula.fea.judging.linkage import unless_it_gives_way
+from alula.fea.judging.linkage import no_equilibrium, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import limit_load_outcomes, linkage_numbers
 from alula.fea.judging.loading import Collapse, SolvedLinks
 from alula.fea.judging.solid_buckling import solid_buckling_outcomes
@@ -97,7 +97,9 @@ def judged(
         *whole,
     )
     doubted = [reduce(lambda one, doubt: doubt.on_buckling(one), hand.doubts, outcome) for outcome in every]
-    checks: Iterable[CheckOutcome] = unless_it_gives_way(doubted, {load_case} if moved.gives_way else ())
+    checks: Iterable[CheckOutcome] = unless_it_gives_way(
+        doubted, {load_case: no_equilibrium(moved)} if moved.gives_way else {}
+    )
     checks = as_known(case, checks, stiff=moved.state == "small" and forces.by_equilibrium)
     if hand.idle:
         borne = {name: joint.magnitude for name, joint in reactions.joints.items()}

@@ -13,7 +13,7 @@ may stand where they hold the linkage least, and the upper end tight ones.
 """
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from alula.fea.asked.asked import Asked
 from alula.fea.beam.theory import BeamCheck
@@ -156,15 +156,33 @@ def on_rims(rims: RimFactors) -> Reason:
     return reason("on_rims", value=rims.value, low=rims.low)
 
 
-def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] = ()) -> list[CheckOutcome]:
+def no_equilibrium(moved: LargeDisplacement) -> Reason:
+    """Tell why there is no equilibrium to judge.
+
+    Parameters
+    ----------
+    moved : LargeDisplacement
+        That gives way.
+
+    Returns
+    -------
+    Reason
+    """
+    return reason("equilibrium_unfollowed") if moved.unfollowed else NO_EQUILIBRIUM
+
+
+def unless_it_gives_way(
+    outcomes: Sequence[CheckOutcome], lost: Mapping[str, Reason] | None = None
+) -> list[CheckOutcome]:
     """Return outcomes of which none passes that rests on an equilibrium which the linkage does not have.
 
     Parameters
     ----------
     outcomes : sequence of CheckOutcome
         Of one or several load cases.
-    lost : collection of str, optional
-        Load cases without stable equilibrium, besides those under which the linkage as a whole fails.
+    lost : mapping of str to Reason, optional
+        Load cases of which no stable equilibrium is known, each with ``no_equilibrium``, besides those under which the
+        linkage as a whole fails.
 
     Returns
     -------
@@ -172,9 +190,11 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
         Under these load cases links, pins and gaps between layers that passed are not applicable, nor are points.
         What fails or is open in the undeformed pose stays so. Motors are judged on a rigid linkage and stay.
     """
-    failed = {one.load_case for one in outcomes if one.gives_way}
-    failed |= set(lost)
-    return [_in_no_equilibrium(one) if one.load_case in failed and _rests_on_it(one) else one for one in outcomes]
+    why = {**(lost or {}), **{one.load_case: NO_EQUILIBRIUM for one in outcomes if one.gives_way}}
+    return [
+        _in_no_equilibrium(one, why[one.load_case]) if one.load_case in why and _rests_on_it(one) else one
+        for one in outcomes
+    ]
 
 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
@@ -183,10 +203,10 @@ def _rests_on_it(outcome: CheckOutcome) -> bool:
     return outcome.quantity.origin == "loads"
 
 
-def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
+def _in_no_equilibrium(outcome: CheckOutcome, why: Reason) -> CheckOutcome:
     if outcome.verdict is Verdict.PASS or (outcome.subject.kind == "point" and outcome.value.unknowable):
-        return outcome.not_applicable(NO_EQUILIBRIUM)
-    return outcome.because(together(outcome.reason, NO_EQUILIBRIUM))
+        return outcome.not_applicable(why)
+    return outcome.because(together(outcome.reason, why))
 
 
 def _followed(load_case: str, moved: LargeDisplacement, beyond: Reason | None) -> CheckOutcome:

@@ -178,6 +178,11 @@ class LargeDisplacement:
         return self.state in ("unstable", "no equilibrium")
 
     @property
+    def unfollowed(self) -> bool:
+        """True where equilibrium was not followed up to the whole load, so that nobody knows whether it is held."""
+        return self.gives_way and math.isinf(self.lost)
+
+    @property
     def slack(self) -> Scatter:
         """Scatter of load over stiffness: what is stated, and what plain beams do not know."""
         return self.scatter.times(self.eyes)

@@ -1,7 +1,7 @@
 """Which size to seek with ``alula size``, in a range with a value that passes by hand calculation.
 
 A pass keeps its size at one end, and the range goes down from it. Else values above are tried, twice the size and then
-up to four times it, or what the case's own rules take of that. The check must pass there, and all else that loads make:
+up to four times it, or what the case's own rules take of that. The check must pass there, and all others of the case:
 so nothing is tried where a link leaves what hand calculation was calibrated for.
 """
 

@@ -2,12 +2,13 @@
 
 Loads times a factor are moduli and strengths over it: shape, and safety factors, are those under the larger loads.
 A number that solids gave is taken as many times as large as hand calculation finds its own at the changed value.
-Of a size all checks count that loads make, under every load case, since ``alula size`` asks for a pass of all.
+Of a size all checks count, under every load case, since ``alula size`` asks for a pass of all.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from alula.fea.beam.calibration import uncalibrated
 from alula.fea.check.run import check_case
@@ -21,22 +22,12 @@ from alula.fea.common.verdict import (
     Verdict,
 )
 from alula.fea.outcomes.result import CheckResult, HandResult, LoadCaseResult
+from alula.fea.whole.outcomes import KINDS
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import (
-    BearingCheck,
-    ConnectionCheck,
-    DisplacementCheck,
-    EyeCheck,
-    FatigueCheck,
-    LimitLoadCheck,
-    LineContactCheck,
-    PinCheck,
-    SafetyFactorCheck,
-    WallCheck,
-)
+from alula.loads.records.check_spec import MotorCheck
 
 MODULI = ("youngs_modulus", "sustained_modulus")
 STRENGTHS = (
@@ -49,10 +40,6 @@ STRENGTHS = (
     "strength",
 )
 """Entries of a card, each with its range where it has one."""
-_STATIC = (
-    *(SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, EyeCheck, WallCheck),
-    *(LineContactCheck, ConnectionCheck, FatigueCheck, LimitLoadCheck),
-)
 _IN_CHECKS = ("pressure", "shear_strength", "shear_strength_range", "tensile_strength", "clamping_force")
 """What checks of contact and connections state of strengths and pressures beside cards."""
 _OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
@@ -235,26 +222,42 @@ class Trials:
         """
         wanted = None if _whole(check) else _links([check])  # a linkage that holds its load is looked at in full next
         plain, found = self._plain(check.load_case), self._checked(check.load_case, change, wanted)
-        after = None if found is None else _outcomes(found).get(_key(check))
-        if plain is None or found is None or after is None or (found.gives_way and check.subject != LINKAGE):
+        if plain is None or found is None or (found.gives_way and check.subject != LINKAGE):
             return 0.0
-        if after.value.unknowable:
+        after = _outcomes(found).get(_key(check))
+        if not _whole(check) and (after is None or after.value.unknowable):
             return 0.0
-        return min(_margins(check, _outcomes(plain), _outcomes(found)), default=after.margin)
+        margins = _margins(check, _outcomes(plain), _outcomes(found))
+        return min(margins, default=0.0 if after is None else after.margin)
 
-    def holds(self, change: Change) -> bool:
-        """Return whether every check that loads make is expected to keep its limit with a change.
+    def holds(self, size: Resized) -> bool:
+        """Return whether every check of the case is expected to keep its limit with another size.
 
         Parameters
         ----------
-        change : Scaled or Resized
+        size : Resized
 
         Returns
         -------
         bool
             What hand calculation does not judge is left aside.
         """
-        return all(self._holds(load_case, change) for load_case in self.result.load_cases)
+        plain, found = self._every, self._whole_check(size)
+        return (
+            plain is not None
+            and found is not None
+            and all(
+                not after.gives_way
+                and all(
+                    margin >= 1.0 - _EXACT
+                    for one in told.checks
+                    for margin in _margins(one, _outcomes(before), _outcomes(after))
+                )
+                for told, before, after in zip(
+                    *(one.load_cases.values() for one in (self.result, plain, found)), strict=True
+                )
+            )
+        )
 
     def beyond(self, load_case: str, size: Resized) -> bool:
         """Return whether a size takes a link out of what hand calculation was calibrated for: then it does not hold.
@@ -287,13 +290,18 @@ class Trials:
         }
         return any(_uncalibrated(changed, link) and not _uncalibrated(case, link) for link in decided)
 
-    def _holds(self, load_case: str, change: Change) -> bool:
-        plain, found = self._plain(load_case), self._checked(load_case, change)
-        if plain is None or found is None or found.gives_way:
-            return False
-        before, after = _outcomes(plain), _outcomes(found)
-        told = [one for one in self.result.load_cases[load_case].checks if goes_with_load(one)]
-        return all(margin >= 1.0 - _EXACT for one in told for margin in _margins(one, before, after))
+    @cached_property
+    def _every(self) -> CheckResult | None:
+        """The whole case as it is, by hand."""
+        by_hand = all(map(_by_hand, self.result.load_cases.values()))
+        return self.result if by_hand else self._whole_check(Scaled())
+
+    def _whole_check(self, change: Change) -> CheckResult | None:
+        """All load cases with all checks, also those of what no load makes; None where one refuses the change."""
+        try:
+            return check_case(change.on(self.result.case), name=self.result.name, fidelity="beam", threads=1)
+        except (CaseError, CannotRunError):
+            return None
 
     def _plain(self, load_case: str) -> LoadCaseResult | None:
         """The case as it is, by hand."""
@@ -312,7 +320,7 @@ class Trials:
             case = change.on(self.result.case)
         except CaseError:
             return None
-        checks = {name: check for name, check in case.all_checks.items() if isinstance(check, _STATIC)}
+        checks = {name: check for name, check in case.all_checks.items() if not isinstance(check, (*KINDS, MotorCheck))}
         alone = case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "checks": checks})
         try:
             found = check_case(alone, name=self.result.name, fidelity="beam", threads=1, bare=True, told=wanted)
@@ -341,8 +349,8 @@ def _margins(
 ) -> Iterator[float]:
     """Yield the margin that a check is expected to have with a change; none where hand calculation does not tell it."""
     before, after = plain.get(_key(check)), found.get(_key(check))
-    if after is not None and _whole(check):
-        yield after.margin
+    if _whole(check):  # by its share of the load or by its factor; none of both where no load that counts bends it
+        yield min((one.margin for one in found.values() if _whole(one)), default=math.inf)
         return
     if before is None or after is None or (after.margin == math.inf and not _left_open(after)):
         return  # not compressed any more, or not told by hand
@@ -352,6 +360,8 @@ def _margins(
         yield check.margin * after.margin / before.margin
     elif before.margin == 0.0 and not before.value.unknowable:
         yield after.margin if check.margin == 0.0 else 0.0
+    elif before.margin == math.inf and not _left_open(before):
+        yield after.margin
     # Else no beam tells, and the number goes with the change by definition.
 
 

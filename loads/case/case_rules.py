@@ -242,6 +242,10 @@ def _check_body(entry: str, body: Body, *, moves: bool) -> None:
 
 def _check_check(case: CoreCase, name: str, check: Check) -> None:
     """Check what a check refers to."""
+    for entry in ("links", "joints"):
+        named = vars(check).get(entry, ())
+        if twice := [one for i, one in enumerate(named) if one in named[:i]]:
+            raise CaseError(f"checks.{name}.{entry}: '{twice[0]}' stands there twice; name each once")
     for link in vars(check).get("links", ()):
         require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
     if isinstance(check, PinCheck | BearingCheck):

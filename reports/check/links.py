@@ -63,14 +63,16 @@ def links_section(result: CheckResult) -> Section:
 def _summary(result: CheckResult, names: Sequence[str]) -> Iterator[Part]:
     """Yield a table of all links, each under its worst load case, and one under every load case."""
     cases = result.load_cases.values()
-    lost = [case.name for case in cases if case.gives_way]
-    if lost:
-        under = f" under {joined(lost)}" if len(cases) > 1 else ""
-        yield Text(
-            f"The linkage gives way{under}, so no link passes: numbers of the links are those of the undeformed pose, "
-            "which is no equilibrium.",
-            "apart",
-        )
+    open_cases = [case.name for case in cases if case.large_displacement.unfollowed]
+    lost = [case.name for case in cases if case.gives_way and case.name not in open_cases]
+    for how, names in (("gives way", lost), ("was not followed to its load", open_cases)):
+        if names:
+            under = f" under {joined(names)}" if len(cases) > 1 else ""
+            yield Text(
+                f"The linkage {how}{under}, so no link passes: numbers of the links are those of the undeformed pose, "
+                "which is no equilibrium.",
+                "apart",
+            )
     every = [(case, link) for case in cases for link in case.links.values()]
     if len(cases) == 1:
         yield _table(every, several=False, key="links")

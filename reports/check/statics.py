@@ -167,7 +167,7 @@ def ground_section(result: CheckResult) -> Section:
         anchor = anchor_loads(case)
         shape = ", in the deformed pose" if anchor.deformed else ""
         if anchor.unstable:
-            shape = ", in the undeformed pose, since the deformed one has no stable equilibrium"
+            shape = ", in the undeformed pose, since no stable equilibrium was found on the deformed one"
         rows = {**anchor.joints, f"total, about {anchor.about}": anchor.total}
         parts.append(
             Table(

@@ -20,7 +20,7 @@ from alula.reports.sections.section import Folded, Items, Part, Section, Text, s
 from alula.reports.sections.table import Column, Mark, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import inapplicable, named
-from alula.reports.words.numbers import joined, sentence
+from alula.reports.words.numbers import digits_beside, joined, sentence
 
 MOST = 8
 """Checks that the first screen of a page shows; the others stand below."""
@@ -235,8 +235,8 @@ def has_all(checks: Sequence[CheckOutcome]) -> bool:
 
 def _against(check: CheckOutcome) -> tuple[Number, Number]:
     """Return value and limit of a check."""
-    sense = check.quantity.sense.value
-    return Number(check.value, check.unit), Number(check.limit, check.unit, stated=True, sense=sense)
+    sense, digits = check.quantity.sense.value, digits_beside(check.value, check.limit)
+    return Number(check.value, check.unit, digits), Number(check.limit, check.unit, stated=True, sense=sense)
 
 
 def _held(checks: Sequence[CheckOutcome]) -> tuple[str, ...]:

@@ -1,8 +1,10 @@
 """Sentences whose words are put together from what they are told, where a text with places would not do."""
 
 from collections.abc import Callable
+from functools import partial
 
-from alula.reports.words.numbers import short
+from alula.fea.common.band import Band
+from alula.reports.words.numbers import digits_beside, plain, short
 
 Ends = tuple[float, float]
 
@@ -37,7 +39,15 @@ def _held(ways: tuple[str, ...], free: int) -> str:
     return f"{every}, {left} of it left free" if free else every
 
 
+def _beside_limit(how: str, low: float, high: float, limit: float) -> str:
+    digits = digits_beside(Band(value=low, low=low, high=high), limit)
+    return f"its band {short(low, digits)} to {short(high, digits)} {how.format(plain(limit))}"
+
+
 ARRANGED: dict[str, Callable[..., str]] = {
+    "band_holds_limit": partial(_beside_limit, "holds the limit {}, so it may pass or fail"),
+    "band_keeps_limit": partial(_beside_limit, "lies wholly on the safe side of the limit {}"),
+    "band_misses_limit": partial(_beside_limit, "lies wholly on the wrong side of the limit {}"),
     "limit_within": _limit_within,
     "clear_by_hand": _clear_by_hand,
     "held": _held,

@@ -9,7 +9,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity, Sense, Verdict, dec
 from alula.loads.text.caveat import Caveat, Heading
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import by_heading
-from alula.reports.words.numbers import band, joined, measured, number, plain, sentence
+from alula.reports.words.numbers import band, digits_beside, joined, measured, number, plain, sentence
 from alula.reports.words.terminal import KEPT
 
 if TYPE_CHECKING:
@@ -175,7 +175,8 @@ def _stands(check: CheckOutcome, *, several: bool) -> str:
     sign = {Verdict.PASS: f" {sense.value}", Verdict.FAIL: f" {_MISSED[sense]}"}.get(
         check.verdict, f", limit {sense.value}"
     )
-    return f"{named(check)}{under} {band(check.value)}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
+    value = band(check.value, digits_beside(check.value, check.limit))
+    return f"{named(check)}{under} {value}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
 
 
 def besides(found: Iterable[Caveat]) -> str:
@@ -367,7 +368,7 @@ def _with_limit(check: CheckOutcome, *, several: bool) -> str:
     """Return a check's quantity, its value with the band, and its limit."""
     unit = f" {check.quantity.unit}".rstrip()
     under, sign = f" {_under(check, several=several)}".rstrip(), check.quantity.sense.value
-    value = measured(check.value, check.quantity.unit)
+    value = measured(check.value, check.quantity.unit, digits_beside(check.value, check.limit))
     return f"{named(check, long=True)}{under}, {value}; limit {sign} {plain(check.limit)}{unit}"
 
 

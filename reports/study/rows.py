@@ -13,6 +13,7 @@ from alula.fea.study.store import Store
 from alula.fea.tolerance.result import ToleranceNumber
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Number, Section
+from alula.reports.words.numbers import digits_beside
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,9 +181,10 @@ def checked(found: VariantNumber) -> dict[str, Any]:
         A text and two numbers.
     """
     unit = shown_unit(found)
+    value = Band(value=found.value, low=found.low, high=found.high)
     return {
         "what": f"{found.quantity} of {found.subject}",
-        "value": Number(Band(value=found.value, low=found.low, high=found.high), unit),
+        "value": Number(value, unit, digits_beside(value, found.limit)),
         "limit": Number(found.limit, unit, stated=True, sense=sense_of(found).value),
     }
 

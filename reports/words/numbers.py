@@ -110,6 +110,27 @@ def band(value: Band, digits: int = 3) -> str:
     return shown if low == high else f"{shown} ({low} to {high})"
 
 
+def digits_beside(value: Band, limit: float) -> int:
+    """Return with how many significant digits no number of a band is told as at a limit, or beyond it, that is not.
+
+    Parameters
+    ----------
+    value : Band
+    limit : float
+        In its unit.
+
+    Returns
+    -------
+    int
+        From 3, as bands are told, to 17, with which all numbers that differ are told apart.
+    """
+    ends = [end for end in (value.value, value.low, value.high) if end != limit]
+    digits = 3
+    while digits < 17 and any((float(f"{end:.{digits - 1}e}") - limit) * (end - limit) <= 0.0 for end in ends):
+        digits += 1
+    return digits
+
+
 def measured(value: Band, unit: str, digits: int = 3) -> str:
     """Return a band with its unit, which what is not known has not.
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from edited_cases import PLANAR
 from scipy.optimize import brentq
+from told import flat, printed
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import LINKAGE, Verdict
@@ -125,7 +126,8 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
 def test_a_path_that_is_not_followed_to_the_load_decides_nothing(share, monkeypatch) -> None:
     """Of one that passes and one that fails else; nothing that rests on its equilibrium passes either."""
     monkeypatch.setattr(EquilibriumPath, "follow", lambda *_, **__: raised(UnfollowedError(0.4)))
-    result = check_case(parallelogram(share * critical()), fidelity="beam").load_cases["weight"]
+    whole = check_case(parallelogram(share * critical()), fidelity="beam")
+    result = whole.load_cases["weight"]
     moved, (found,) = result.large_displacement, [c for c in result.checks if c.subject == LINKAGE]
     assert (moved.state, moved.held, moved.lost) == ("no equilibrium", 0.4, np.inf)
     assert found.verdict is Verdict.UNDECIDED
@@ -133,6 +135,9 @@ def test_a_path_that_is_not_followed_to_the_load_decides_nothing(share, monkeypa
     assert moved.limit_load.high == np.inf
     assert found.value.high == 1.0
     assert not [c for c in result.checks if c.verdict is Verdict.PASS and c.quantity.origin == "loads"]
+    assert all("whether the linkage holds its load is not known" in told(c.reason) for c in result.checks if c != found)
+    assert "gives way" not in printed(whole)
+    assert "The linkage was not followed to its load, so no link passes" in flat(printed(whole))
 
 
 def raised(error: Exception) -> None:

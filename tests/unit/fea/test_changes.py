@@ -1,5 +1,6 @@
 """What is told to change a verdict does so: loads, strengths and moduli are changed by it and checked anew."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -19,7 +20,7 @@ from alula.fea.sizing.size_range import _entry, _taken, size_range
 from alula.fea.sizing.tried import Resized, Trials
 from alula.geometry.materials.family import most_of_family
 from alula.geometry.materials.material import library
-from alula.loads.case.case_file import read_case
+from alula.loads.case.case_file import read_case, read_text
 from alula.reports.sentences import told as in_words
 from alula.reports.sentences.verdicts import headline, named
 
@@ -151,6 +152,21 @@ def test_a_size_out_of_calibration_is_refuted_without_solving_anything():
     assert size_range(trials, check) is None
     assert not trials._done
     assert not trials.holds(far)
+    plain = owl.load_cases["weight"]
+    strength = [one for one in plain.checks if one.quantity is Quantity.SAFETY_FACTOR]
+
+    def beyond(checks=plain.checks, links=plain.links, case=owl.case):
+        changed = replace(owl, case=case, load_cases={"weight": replace(plain, checks=checks, links=links)})
+        return Trials(result=changed).beyond("weight", far)
+
+    assert beyond(strength)
+    assert not beyond([replace(one, value=Band.exact(10.0)).left_open("its model") for one in strength])
+    idle = [replace(one, value=Band.exact(math.inf), verdict=Verdict.PASS) for one in strength]
+    assert not beyond(idle)
+    assert not beyond([replace(one, value=Band.unknown("singular")) for one in strength])
+    assert not beyond([replace(one, quantity=Quantity.BUCKLING_FACTOR) for one in strength])  # that is not calibrated
+    assert not beyond(links=plain.links | {"AE": "a solid"})
+    assert not beyond(case=far.on(owl.case))  # it was out before
 
 
 def test_nothing_is_told_of_what_does_not_go_with_the_loads(thick):
@@ -256,6 +272,29 @@ def another_card(case, change):
         if change.material in ("", name):
             cards[name] = card.model_copy(update=scaled)
     return case.model_copy(update={"materials": {**case.materials, **cards}})
+
+
+@pytest.mark.parametrize(("most", "holds"), [("200 g", True), ("30 g", False)])
+def test_a_size_that_leaves_a_linkage_small_is_told_where_the_whole_check_takes_it(most, holds, tmp_path):
+    """At twice its thickness linear theory will do for the clamp, and has no share of the load: no size was told.
+
+    It weighs 24 g as it is, which no load makes: the size was told whatever a check of mass asks.
+    """
+    file = tmp_path / "heavy.toml"
+    file.write_text(f'{read_text("four-bar")[0]}\n[checks.light]\ntype = "mass"\nmaximum = "{most}"\n')
+    bent = {"parts.bar.thickness": "3 mm", "load_cases.lift.forces.0.force": ["0 N", "-120 N"]}
+    eased = {"checks.strength.minimum": 0.5, "checks.stiffness.maximum": "2 mm"}
+    result, found = checked(read_case(str(file)).with_values(CLAMP | METAL | bent | eased))
+    share = found[Quantity.LOAD_SHARE, "the linkage"]
+    assert (share.verdict, found[Quantity.MASS, "the linkage"].verdict) == (Verdict.UNDECIDED, Verdict.PASS)
+    trials, twice = Trials(result=result), Resized(entry="parts.bar.thickness", value="6 mm")
+    again, stiff = checked(twice.on(result.case))
+    assert again.load_cases["lift"].large_displacement.state == "small"
+    assert trials.expected(share, twice) == stiff[Quantity.BUCKLING_FACTOR, "the linkage"].margin > 1.0
+    assert trials.holds(twice) is holds
+    assert not trials.holds(Resized(entry="parts.bar.width", value="1 mm"))  # its eyes are no wider than their holes
+    [told] = changes(result)
+    assert (told.size is not None) is holds
 
 
 @pytest.mark.parametrize("name", ADVISED)

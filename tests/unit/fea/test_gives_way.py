@@ -74,7 +74,7 @@ LOST = [Verdict.UNDECIDED, Verdict.UNDECIDED, Verdict.PASS, Verdict.FAIL]
 def test_under_a_load_case_that_is_lost_links_and_pins_are_left_open_and_under_another_not(lost):
     """Whether it was found so on the deformed shape, or the linkage fails as a whole."""
     both = [*every("a"), *every("b")]
-    found = unless_it_gives_way(both, {lost})
+    found = unless_it_gives_way(both, {lost: NO_EQUILIBRIUM})
     for name, verdicts in (("a", LOST if lost == "a" else HELD), ("b", LOST if lost == "b" else HELD)):
         assert [one.verdict for one in found if one.load_case == name] == verdicts
         reasons = [told(NO_EQUILIBRIUM) in told(one.reason) for one in found if one.load_case == name]
@@ -135,9 +135,9 @@ def test_what_solids_tell_of_their_links_is_told_with_other_air_play_and_frictio
 def test_where_the_linkage_gives_way_no_gap_between_layers_passes():
     gap = CheckOutcome.of("c", LINKAGE, "a", Quantity.LAYER_GAP, Band.exact(0.4), 0.0)
     plane = CheckOutcome.of("c", LINKAGE, "a", Quantity.CLEARANCE, Band.exact(0.4), 0.0)
-    one, other = unless_it_gives_way([gap, plane], {"a"})
+    one, other = unless_it_gives_way([gap, plane], {"a": NO_EQUILIBRIUM})
     assert (one.verdict, one.applies, other) == (Verdict.UNDECIDED, False, plane)
-    assert unless_it_gives_way([gap], {"b"}) == [gap]
+    assert unless_it_gives_way([gap], {"b": NO_EQUILIBRIUM}) == [gap]
 
 
 def test_play_that_may_pass_a_dead_point_leaves_no_load_that_is_held_for_sure():

@@ -83,6 +83,8 @@ BAD = [
     ("load_cases.weight.forces.0.link=XX", ["load_cases.weight.forces.0.link", "'XX'", "not a moving link"]),
     ("load_cases.weight.forces.0.at=XX", ["load_cases.weight.forces.0", "'XX'", "its points are C, D, H"]),
     ('checks.strength.links=["AG"]', ["checks.strength.links", "'AG'", "choose one of"]),
+    ('checks.strength.links=["GF", "AE", "GF"]', ["checks.strength.links: 'GF' stands there twice; name each once"]),
+    ('checks.x={type="pins",minimum=2,joints=["A", "A"]}', ["checks.x.joints: 'A' stands there twice"]),
     ("hand_calculations.whole-wing.part=x", ["hand_calculations.whole-wing.part", "'x'", "choose one of tube"]),
     ('published_statics.links=["XX"]', ["published_statics.links", "'XX'", "choose one of GF"]),
     ("joints.A.type=weld", ["joints.A.type", "'weld'", "'revolute', 'pin-in-slot' or 'slider'"]),

@@ -163,6 +163,6 @@ def test_shafts_slots_and_wings_are_said_where_the_case_has_them():
 
 
 def test_layers_say_how_wide_holes_are_taken_to_be():
-    layers = told(solved.by_hand("ornithopter"))["Layers"]
+    layers = told(solved.by_hand("slider-crank"))["Layers"]
     assert layers.startswith("Pins between layers are beams that touch their holes at the rims. Holes are as wide as")
     assert "how far running pins tilt" in layers

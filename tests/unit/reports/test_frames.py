@@ -118,9 +118,9 @@ def test_forces_of_the_undeformed_pose_are_called_so(wing):
     assert load_case.large_displacement.state == "no equilibrium"
     assert result_record(wing)["load_cases"]["weight"]["anchor"]["unstable"] is True
     page = html.unescape(render(wing, {}))
-    assert "On the ground, in the undeformed pose, since the deformed one has no stable equilibrium" in page
+    assert "On the ground, in the undeformed pose, since no stable equilibrium was found on the deformed one" in page
     text = printed(wing)
-    shape = "in the undeformed pose, since the deformed one has no stable equilibrium"
+    shape = "in the undeformed pose, since no stable equilibrium was found on the deformed one"
     assert f"Loads on the ground On the ground, {shape} at Fx [N]" in flat(text)
     # Forces in the plane leave no force along z and no moment about x and y, whatever rounding says.
     total = anchor_loads(load_case).total

@@ -2,6 +2,7 @@
 
 import pytest
 from bars_in_layers import parallel_bars
+from edited_cases import PLANAR
 from result_paths import compare, documented
 from slotted_cases import piston_entries
 from told_motion import record as motion_record
@@ -19,11 +20,11 @@ def moved(name, *overrides):
 
 
 def test_a_motion():
-    wing = moved("flapping-wing-chosen", "motion.poses=19", "load_cases.held.own_weight=false")
+    wing = moved("flapping-wing-chosen", PLANAR, "motion.poses=5", "load_cases.held.own_weight=false")
     piston = motion_record(solve_case_motion(validate(piston_entries())), "piston")
-    rubbed = moved("owl-wing-static", "motion.poses=19", "joints.A.friction=0.2")
+    rubbed = moved("owl-wing-static", "motion.poses=5", "joints.A.friction=0.2")
     bars = motion_record(solve_case_motion(parallel_bars()), "bars")
-    loose = moved("owl-wing-static", "motion.poses=19", 'joints.C.clearance="0.1 mm"')
+    loose = moved("owl-wing-static", "motion.poses=5", 'joints.C.clearance="0.1 mm"')
     entries = piston_entries()
     entries["joints"]["P"]["clearance"] = "0.1 mm"
     pushed = motion_record(solve_case_motion(validate(entries)), "piston")

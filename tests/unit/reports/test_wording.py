@@ -3,10 +3,14 @@ from dataclasses import replace
 
 import pytest
 
+from alula.fea.asked.tiers import TierVerdict
 from alula.fea.common.band import Band
-from alula.fea.common.verdict import Quantity, Verdict, by_nearness, reason_for
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Tier, Verdict, by_nearness, reason_for
+from alula.fea.study.numbers import VariantNumber
+from alula.reports.sections.checks import check_table
 from alula.reports.sentences import told
 from alula.reports.sentences import verdicts as wording
+from alula.reports.study.rows import number_text
 from alula.reports.words import numbers
 from alula.reports.words.terminal import KEPT
 
@@ -176,6 +180,7 @@ def test_what_is_not_known_has_no_unit(result, changed):
         ((0.116, math.inf), 2.0, Verdict.UNDECIDED, "its band 0.116 to ∞ holds the limit 2, so it may pass or fail"),
         ((-math.inf, 1.0), 0.0, Verdict.UNDECIDED, "its band −∞ to 1 holds the limit 0, so it may pass or fail"),
         ((3.0, math.inf), 2.0, Verdict.PASS, "its band 3 to ∞ lies wholly on the safe side of the limit 2"),
+        ((1.9, 1.996), 2.0, Verdict.FAIL, "its band 1.9 to 1.996 lies wholly on the wrong side of the limit 2"),
         ((0.1, 0.2), 2.0, Verdict.FAIL, "its band 0.1 to 0.2 lies wholly on the wrong side of the limit 2"),
     ],
 )
@@ -184,6 +189,24 @@ def test_why_a_band_gives_its_verdict(ends, limit, verdict, text):
     low, high = ends
     value = high if math.isinf(low) else low
     assert told(reason_for(Band(value=value, low=low, high=high), limit, verdict)) == text
+
+
+def test_no_number_beside_its_limit_is_rounded_to_the_limit_or_beyond_it():
+    """A size at 1.996 was told as "2.00 (2.00 to 2.00) (≥ 2)"."""
+    assert numbers.digits_beside(Band(value=1.9, low=1.0, high=2.1), 2.0) == 3
+    assert numbers.digits_beside(Band(value=2.1, low=2.0, high=math.inf), 2.0) == 3
+    assert numbers.digits_beside(Band(value=2.1, low=2.0004, high=math.inf), 2.0) == 5
+    assert numbers.digits_beside(Band.unknown("gone"), 2.0) == 3
+    assert numbers.digits_beside(Band.exact(-1e-9), 0.0) == 3
+    ends, told_ends = {"value": 1.99, "low": 1.98, "high": 1.996}, "1.990 (1.980 to 1.996)"
+    stepped = VariantNumber(quantity="safety factor", subject="GF", unit="1", limit=2.0, **ends)
+    assert number_text(stepped) == f"safety factor of GF {told_ends} (≥{KEPT}2)"
+    check = CheckOutcome.of("strength", Subject.link("GF"), "rest", Quantity.SAFETY_FACTOR, Band(**ends), 2.0)
+    assert str(check_table([check], several=False).rows[0][4]) == told_ends
+    assert told_ends in wording.decision(Verdict.FAIL, [check], several=False)
+    tier = TierVerdict(tier=Tier.BREAK, links=("GF",), unasked=(), decides=check, asks="strength")
+    [line] = wording.tier_lines([tier], several=False)
+    assert f"{told_ends} <{KEPT}2." in line
 
 
 def test_a_number_that_is_not_known_is_open_for_its_reason():
