@@ -198,7 +198,7 @@ def envelope(
     """Check every link over the whole motion: least safety factor and fatigue."""
     from alula.fea.check.run import effort_of
     from alula.fea.motion.envelope import envelope_case
-    from alula.reports.commands.envelope import tell_envelope
+    from alula.reports.commands.motion import tell_envelope
 
     with begun("envelope", case, overrides, output, threads=threads, memory=memory) as parsed:
         result = envelope_case(

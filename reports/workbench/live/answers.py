@@ -70,9 +70,9 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
     Returns
     -------
     dict
-        ``drawn`` as ``alula.reports.workbench.live.drawn.drawn``, loosely where no pose can be solved, None where nothing
-        can be read; ``forces`` as ``joint_forces``; ``problem``, the sentence that says why there is less, else None;
-        ``ms``.
+        ``drawn`` as ``alula.reports.workbench.live.drawn.drawn``, loosely where no pose can be solved, None where
+        nothing can be read; ``forces`` as ``joint_forces``; ``problem``, the sentence that says why there is less,
+        else None; ``ms``.
     """
     start, seen, forces, problem = time.perf_counter(), None, None, None
     case: Case | None = None

@@ -606,7 +606,7 @@ def test_stress_along_a_link_is_that_of_its_field(result):
 
 
 def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch, capsys):
-    from alula.reports.commands.envelope import tell_envelope
+    from alula.reports.commands.motion import tell_envelope
     from alula.reports.figures import figures
 
     monkeypatch.setattr(figures, "plots_of", lambda scenes, points: ({}, ("no renderer",)))
@@ -648,7 +648,7 @@ def test_the_page_says_why_a_check_is_open_what_is_not_checked_and_lists_the_wor
 
 
 def test_console_names_link_angle_and_verdict(result, capsys):
-    from alula.reports.commands.envelope import tell_envelope
+    from alula.reports.commands.motion import tell_envelope
 
     tell_envelope(result)
     text = capsys.readouterr().out
