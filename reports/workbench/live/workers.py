@@ -248,4 +248,4 @@ class _Service:
 
 
 if __name__ == "__main__":
-    _Service().run(import_module(f"alula.reports.workbench.{sys.argv[1]}").STAGES)  # imported while the page loads
+    _Service().run(import_module(f"alula.reports.workbench.live.{sys.argv[1]}").STAGES)  # imported while the page loads
