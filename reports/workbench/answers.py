@@ -4,6 +4,7 @@ import math
 import time
 import tomllib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -47,17 +48,10 @@ def case_of(text: str, name: str) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
-    return _case(_tables(text), name)
-
-
-def _tables(text: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text.removeprefix("\ufeff"))
+        tables = tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:
         raise CaseError(f"this is not valid TOML: {error}; correct that line") from None
-
-
-def _case(tables: dict[str, Any], name: str) -> Case:
     return changed_case(tables, (), name, folder_of(name))
 
 
@@ -81,11 +75,9 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
         ``ms``.
     """
     start, seen, forces, problem = time.perf_counter(), None, None, None
-    tables: dict[str, Any] = {}
     case: Case | None = None
     try:
-        tables = _tables(text)
-        case = _case(tables, name)
+        case = case_of(text, name)
         seen = drawn(case, case.solve_pose())
         if early is not None:
             early(_posed(seen, None, None, start))
@@ -93,8 +85,8 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
         seen, forces = drawn(case, statics.pose, statics), joint_forces(statics)
     except AlulaError as error:
         problem = str(error)
-    if seen is None and tables:
-        seen = drawn_loosely(tables, case)
+        with suppress(ValueError, RecursionError):  # no TOML
+            seen = seen or drawn_loosely(tomllib.loads(text.removeprefix("\ufeff")), case)
     return _posed(seen, forces, problem, start)
 
 

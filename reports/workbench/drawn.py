@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from alula.fea.standing.case_statics import CaseStatics
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import parse
 from alula.geometry.bodies.body import Body
 from alula.geometry.clearance.shape import link_shape
 from alula.geometry.joints.joint import Joint
@@ -29,10 +30,12 @@ from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.states.rubbing import is_of
 from alula.reports.figures.sprung import mark_line
 from alula.reports.words.numbers import number
-from alula.reports.workbench.plane import Frame, Plane, size
+from alula.reports.workbench.edits import loose_positions
 
 Real = NDArray[np.float64]
 Plain = dict[str, Any]
+Frame = tuple[complex, float]
+"""Origin [mm] and angle [rad] of a link's frame."""
 
 _BAR = 0.022
 """Width of a link without part, as a share of the linkage's size: that of the drawings of reports."""
@@ -93,34 +96,31 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
         As ``drawn``, without springs; None where links, points and joints cannot be read.
     """
     try:
-        plane, pose = Plane(tables), tables.get("pose", {})
-        links = {name: Link.model_validate(one) for name, one in plane.links.items()}
-        ends = {name: both[1] for name, both in plane.ends.items() if both[1] in plane.local}
-        whole = _size([plane.place(*key) for key in plane.local])
-        kind, text = ("travel", "length") if "travel" in pose else ("angle", "angle")
-        value = size(pose.get(kind, "0 deg"), text) if pose.get("coordinate") else 0.0
+        places, pose = loose_positions(tables), tables.get("pose", {})
+        links = {name: Link.model_validate(one) for name, one in tables.get("links", {}).items()}
+        joints = {name: Joint.model_validate(one) for name, one in tables.get("joints", {}).items()}
+        frames = {name: (complex(*one["origin"]), float(one["angle"])) for name, one in places.items()}
+        at = {(name, point): complex(*xy) for name, one in places.items() for point, xy in one["points"].items()}
+        ends = {name: (joint.links[1], (joint.points or (name, name))[1]) for name, joint in joints.items()}
+        kind, dimension = ("travel", "length") if "travel" in pose else ("angle", "angle")
+        value = parse(pose.get(kind, "0 deg"), dimension) if pose.get("coordinate") else 0.0
         held = {"kind": kind, "value": math.degrees(value) if kind == "angle" else value, "least": None, "most": None}
-        load_cases, drive = tables.get("load_cases", {}), tables.get("drive", {})
+        load_cases, drive, whole = tables.get("load_cases", {}), tables.get("drive", {}), _size([*at.values()])
         return {
-            "links": [_link(name, one, plane.frames[name], whole, case) for name, one in links.items()],
+            "links": [_link(name, one, frames[name], whole, case) for name, one in links.items()],
             "joints": [
-                _joint(
-                    name,
-                    joint,
-                    plane.place(*ends[name]),
-                    cmath.rect(1.0, plane.frames[joint.links[0]][1] + joint.direction),
-                )
-                for name, joint in plane.joints.items()
-                if name in ends
+                _joint(name, joint, at[ends[name]], cmath.rect(1.0, frames[joint.links[0]][1] + joint.direction))
+                for name, joint in joints.items()
+                if ends[name] in at and joint.links[0] in frames
             ],
-            "loads": [load for name, one in load_cases.items() for load in _loose_loads(plane, name, one)],
+            "loads": [load for name, one in load_cases.items() for load in _loose_loads(name, one, at, frames)],
             "springs": [],
             "coordinate": {"name": pose["coordinate"], **held} if pose.get("coordinate") else None,
             "drive": {"link": drive["link"], "joint": drive["joint"]} if drive.keys() >= {"link", "joint"} else None,
             "size": whole,
             "load_cases": list(load_cases),
         }
-    except (CaseError, ValidationError, AttributeError, TypeError):  # tables of another form
+    except (CaseError, ValueError, AttributeError, TypeError):  # tables of another form
         return None
 
 
@@ -166,7 +166,7 @@ def _outline(body: Body) -> tuple[tuple[tuple[float, float], ...], ...]:
 
 
 def _size(places: list[complex]) -> float:
-    return float(np.hypot(np.ptp(np.real(places)), np.ptp(np.imag(places))))
+    return float(np.hypot(np.ptp(np.real(places)), np.ptp(np.imag(places)))) if places else 0.0
 
 
 def _pair(place: complex) -> list[float]:
@@ -240,20 +240,22 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
             yield _load(path, name, "weight", body.link, at, body.resultant(pose.placement)[:3])
 
 
-def _loose_loads(plane: Plane, name: str, tables: Mapping[str, Any]) -> Iterator[Plain]:
+def _loose_loads(
+    name: str, tables: Mapping[str, Any], at: Mapping[tuple[str, str], complex], frames: Mapping[str, Frame]
+) -> Iterator[Plain]:
     """Yield the forces of a load case that can be read."""
     for i, stated in enumerate(tables.get("forces", [])):
         try:
             force = PointForce.model_validate(stated)
         except ValidationError:
             continue
-        if (force.link, force.at) in plane.local:
-            at, push = np.array(_pair(plane.place(force.link, force.at))), vector3(force.force)
+        if (force.link, force.at) in at:
+            place, push = np.array(_pair(at[force.link, force.at])), vector3(force.force)
             if force.axes == "link":
-                turned = complex(*push[:2]) * cmath.rect(1.0, plane.frames[force.link][1])
+                turned = complex(*push[:2]) * cmath.rect(1.0, frames[force.link][1])
                 push = np.array([*_pair(turned), 0.0])
             path = ["load_cases", name, "forces", i]
-            yield _load(path, name, "force", force.link, at, push, force.at) | {"axes": force.axes}
+            yield _load(path, name, "force", force.link, place, push, force.at) | {"axes": force.axes}
 
 
 def _at(pose: Pose, link: str, local: Real) -> Real:
