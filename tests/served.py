@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from alula.reports.workbench import serving, session
+from alula.reports.workbench import app, session
 
 
 class Quiet:
@@ -96,7 +96,7 @@ def serving_of(case: Path | None, folder: Path, workers: Any = Quiet, period: fl
     made: list[Any] = []
     listening, addresses = threading.Event(), list[str]()
 
-    class Known(serving._Server):
+    class Known(app._Server):
         def __init__(self, config: Any) -> None:
             super().__init__(config)
             made.append(self)
@@ -106,10 +106,10 @@ def serving_of(case: Path | None, folder: Path, workers: Any = Quiet, period: fl
         listening.set()
 
     with (
-        patch.object(serving, "_Server", Known), patch.object(session, "Workers", workers),
+        patch.object(app, "_Server", Known), patch.object(session, "Workers", workers),
         patch.object(session, "Solids", Quiet), patch.object(session, "PERIOD", period),
     ):  # fmt: skip
-        thread = threading.Thread(target=serving.serve, args=(case, folder, 0, ready), daemon=True)
+        thread = threading.Thread(target=app.serve, args=(case, folder, 0, ready), daemon=True)
         thread.start()
         assert listening.wait(30)
         bench = Workbench(addresses[0])

@@ -23,8 +23,8 @@ def open_case(
     """Open a page to work in: draw, drag, and see the verdict change."""
     from alula.geometry.base.errors import CaseError
     from alula.loads.case.case_file import built_in_cases
+    from alula.reports.workbench.app import serve
     from alula.reports.workbench.keeping import case_text
-    from alula.reports.workbench.serving import serve
 
     if case is not None:
         if not case.exists() and str(case) in built_in_cases():

@@ -137,6 +137,10 @@ class Page:
         if folder:
             from PIL import Image
 
+            self.browser.run(
+                "for (const one of document.querySelectorAll('code')) "
+                "one.textContent = one.textContent.replace(/\\S+\\/(?=\\w+\\.toml)/, '')"
+            )  # the folder of this run
             with Image.open(io.BytesIO(self.browser.driver.get_screenshot_as_png())) as image:
                 image.convert("RGB").quantize(160, dither=Image.Dither.NONE).save(Path(folder) / f"{name}.png", optimize=True)
 

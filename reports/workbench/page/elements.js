@@ -39,6 +39,16 @@ export function command(text) {
   return make("span", { class: "command" }, code, " ", make("button", { type: "button", onclick: copy }, "Copy"), told);
 }
 
+/** Draw a box anew; who stood in it by keyboard stands at the same place afterwards. */
+export function keepingFocus(box, draw) {
+  const stops = () => [...box.querySelectorAll("a[href], button, input, select, textarea, summary, [tabindex]")];
+  const place = stops().indexOf(document.activeElement);
+  draw();
+  if (place < 0 || box.contains(document.activeElement)) return;
+  const now = stops();
+  now[Math.min(place, now.length - 1)]?.focus({ preventScroll: true });
+}
+
 /** A number as a reader takes it in: four significant digits. */
 export function number(value) {
   if (value === null || value === undefined) return "-";

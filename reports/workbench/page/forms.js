@@ -1,6 +1,6 @@
 /** The entries of the case as forms, made from the JSON Schema: one table, and one of its entries, at a time. */
 
-import { make, unused, worded } from "./elements.js";
+import { keepingFocus, make, unused, worded } from "./elements.js";
 import { beginning, isList, isMap, isPlain, isTable, itemOf, optionOf, options, schema, titleOf } from "./schema.js";
 import { edit } from "./server.js";
 import { same } from "./store.js";
@@ -44,7 +44,7 @@ class Forms {
   later() {
     this.asked ??= requestAnimationFrame(() => {
       this.asked = null;
-      this.draw();
+      keepingFocus(this.holder, () => this.draw());
     });
   }
 

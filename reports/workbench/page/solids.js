@@ -1,6 +1,6 @@
 /** Links as solids: asked for or by itself after a pause, how far they are, and their models to turn. */
 
-import { make, number } from "./elements.js";
+import { keepingFocus, make, number } from "./elements.js";
 import { send, tell } from "./server.js";
 
 const PAUSE = 3000; // ms without a change until solids are solved by themselves
@@ -70,7 +70,7 @@ export function mount(holder, store) {
     }
   }
 
-  for (const key of ["solids", "document"]) store.on(key, draw);
+  for (const key of ["solids", "document"]) store.on(key, () => keepingFocus(list, draw));
   store.on("document", later);
   draw();
 }

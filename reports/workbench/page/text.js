@@ -16,6 +16,7 @@ export function mount(holder, store) {
   let typed = null; // the timer of what was typed and not sent
   let gesture = newGesture();
   let marked = null;
+  let numbered = "";
   const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
 
   /** Put an element at a line; positions are set by script, since the page's policy knows no style attributes. */
@@ -35,6 +36,8 @@ export function mount(holder, store) {
   function number() {
     const count = area.value.split("\n").length;
     const bad = store.state.document?.problem?.line;
+    if (numbered === `${count} ${bad}`) return; // while one drags, lines stay as many
+    numbered = `${count} ${bad}`;
     numbers.replaceChildren(...Array.from({ length: count }, (_, k) => (k + 1 === bad ? make("b", {}, `${k + 1}\n`) : `${k + 1}\n`)));
   }
 

@@ -1,6 +1,6 @@
 /** The verdict: what decides it, what would change it, and how hand and solid differ. */
 
-import { command, make, number } from "./elements.js";
+import { command, keepingFocus, make, number } from "./elements.js";
 import { edit, send, tell } from "./server.js";
 import { same } from "./store.js";
 
@@ -28,13 +28,25 @@ export function mount(holder, store) {
   const open = new Set();
   holder.append(stamp, rest);
 
-  function draw() {
+  /** What is known; a problem of the case stands above the drawing, and is no verdict. */
+  function known() {
+    const found = shownVerdict(store.state.verdict);
+    return store.state.document?.problem && !found?.checks?.length ? null : found;
+  }
+
+  /** The badge, and whether the verdict is of what stands there now. */
+  function head() {
+    const found = known();
     const now = store.state.document;
-    const told = shownVerdict(store.state.verdict);
-    const found = told?.checks?.length ? told : null; // without a check there is the problem alone, which stands above the drawing
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
     stamp.replaceChildren(...badge(found, now));
+  }
+
+  function draw() {
+    head();
+    const found = known();
+    const now = store.state.document;
     if (!found) return rest.replaceChildren();
     const names = (table) => Object.keys(now?.tables?.[table] ?? {});
     const subjectOf = (name) => (names("links").includes(name) ? { kind: "link", name } : names("joints").includes(name) ? { kind: "joint", name } : null);
@@ -122,7 +134,8 @@ export function mount(holder, store) {
     return box;
   }
 
-  for (const key of ["verdict", "document", "selected", "solids"]) store.on(key, draw);
+  for (const key of ["verdict", "selected", "solids"]) store.on(key, () => keepingFocus(rest, draw));
+  store.on("document", head);
   draw();
 }
 

@@ -105,6 +105,15 @@ def test_a_drag_in_steps_follows_although_the_pose_shown_is_of_an_earlier_step()
     assert document.text == opened("four-bar").text
 
 
+def test_a_drag_after_a_turn_that_the_pose_shown_does_not_have_yet() -> None:
+    pose, document = read_case("four-bar").solve_pose(), opened("four-bar")
+    document.apply([{"op": "turn", "to": 60}], pose)
+    document.apply([{"op": "move", "joint": "B", "to": [130.0, 80.0]}], pose)
+    new = stated(document, "four-bar").solve_pose()
+    assert new.position("crank", "A") == pytest.approx([20.0, 40.0 * math.sin(math.pi / 3.0)], abs=1e-5)
+    assert new.position("coupler", "B") == pytest.approx([130.0, 80.0], abs=1e-5)
+
+
 def test_points_without_joint_keep_their_distance_and_slide_along_a_bar() -> None:
     case = read_case("four-bar")
     pose, document = case.solve_pose(), opened("four-bar")
@@ -310,6 +319,15 @@ def test_numbers_of_the_verdict_stay_and_its_subjects_are_renamed() -> None:
         for result in (by_hand("finger"), check_case(new, fidelity="beam"))
     )
     assert {(check, kind, names.get(name, name)): value for (check, kind, name), value in before.items()} == after
+
+
+def test_paths_of_tolerances_are_renamed_and_a_removed_heading_leaves_one_empty_line() -> None:
+    document = Document(opened("four-bar").text + '\n[tolerances]\n"links.crank.points.A" = "0.2 mm"\n')
+    document.apply([{"op": "rename", "path": ["links", "crank", "points", "A"], "to": "Q"}], None)
+    document.apply([{"op": "rename", "path": ["links", "crank"], "to": "arm"}], None)
+    assert document.tables()["tolerances"] == {"links.arm.points.Q": "0.2 mm"}
+    document.apply([{"op": "remove", "path": ["links", "coupler"]}], None)
+    assert "\n\n\n" not in document.text
 
 
 @pytest.mark.parametrize("name", CASES)

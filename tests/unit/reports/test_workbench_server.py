@@ -14,7 +14,6 @@ from alula.geometry.base.units import parse
 from alula.loads.case.case_file import read_case, read_tables, read_text
 from alula.reports.workbench import session
 from alula.reports.workbench.app import LARGEST_REQUEST
-from alula.reports.workbench.document import Document
 
 TITLE = {"op": "set", "path": ["title"]}
 
