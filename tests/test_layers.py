@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 LAYERS = {
     "geometry": (
-        *("base", "materials", "imported", "bodies", "parts"),
+        *("base", "keeping", "materials", "imported", "bodies", "parts"),
         *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
     "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),

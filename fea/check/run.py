@@ -32,8 +32,8 @@ from alula.fea.standing.joint_forces import LAYERED_FRAME
 from alula.fea.whole.layer_gaps import layer_gap_outcomes
 from alula.fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.kept import tally
 from alula.geometry.bodies.body import PartKind
+from alula.geometry.keeping.kept import tally
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case

@@ -24,11 +24,12 @@ from alula.fea.judging.loading import Collapse, Judged, SolvedLinks
 from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
+from alula.fea.plastic.load_path import NoPlasticStateError
 from alula.fea.plastic.yield_law import YieldLaw
 from alula.fea.refine.link_task import ElasticLink
 from alula.fea.superposition.solid_shares import Shares
 from alula.geometry.base.errors import CannotRunError
-from alula.geometry.base.kept import NotKept, kept
+from alula.geometry.keeping.kept import NotKept, kept
 from alula.geometry.materials.material import Material
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
@@ -123,7 +124,7 @@ def find_collapses(
             for loads in links.get(link, ()):
                 progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
                 try:
-                    one: Collapse = _collapse(
+                    (one,) = _collapse(
                         ElasticLink.of(body, material),
                         yield_law(material),
                         loads,
@@ -150,10 +151,17 @@ def _collapse(
     mesh: Callable[[float], TaggedMesh],
     threads: int | None,
     until: float,
-) -> LinkCollapse | NotKept[LinkCollapse]:
-    """As ``collapse_of``, with meshes of the link that settings make; what time cut short is not kept."""
-    found = collapse_of(link, law, loads, mesh, largest_strain=largest, threads=threads, until=until)
-    return found if time.perf_counter() < until else NotKept(found)
+) -> tuple[Collapse] | NotKept[tuple[Collapse]]:
+    """Return the only one: as ``collapse_of``, with meshes that settings make; a path that has no state is a sentence.
+
+    What time cut short is not kept.
+    """
+    found: Collapse
+    try:
+        found = collapse_of(link, law, loads, mesh, largest_strain=largest, threads=threads, until=until)
+    except NoPlasticStateError as error:
+        found = str(error)
+    return (found,) if time.perf_counter() < until else NotKept((found,))
 
 
 def as_elastic(one: Asked) -> Asked:

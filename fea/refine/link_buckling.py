@@ -14,7 +14,7 @@ from alula.fea.solid.buckling_factor import BucklingProblem
 from alula.fea.solid.solution import SolidCase, SolidSolution
 from alula.fea.solid.stress import stress_field
 from alula.geometry.base.errors import CannotRunError
-from alula.geometry.base.kept import NotKept, kept
+from alula.geometry.keeping.kept import NotKept, kept
 from alula.loads.records.bearing import WIDE
 
 LARGEST_ERROR = 0.5

@@ -36,7 +36,7 @@ from alula.fea.refine.target_sizes import SERIES_RATIO, element_sizes, next_size
 from alula.fea.solid.solution import SolidSolution, solve_solid
 from alula.geometry.base import child
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
-from alula.geometry.base.kept import kept
+from alula.geometry.keeping.kept import kept
 from alula.geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 

@@ -22,7 +22,7 @@ from alula.fea.elements.space import DisplacementSpace
 from alula.fea.solid.bore_motion import condensed
 from alula.fea.tractions.link_tractions import SPREAD, LinkTractions
 from alula.fea.tractions.pin_pressure import PinPressure
-from alula.geometry.base.kept import kept
+from alula.geometry.keeping.kept import kept
 from alula.geometry.parts.part import Body
 from alula.loads.records.applied import shifted
 from alula.loads.records.bearing import NARROW, WIDE

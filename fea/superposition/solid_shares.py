@@ -7,21 +7,22 @@ mesh. What comes out are factors on the band that the link has as stated, for ea
 of an answer lies at a place that no mesh was refined for, the fourfold estimate there counts beside the factor.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.common.link_loads import Plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.elements.space import DisplacementSpace
-from alula.fea.refine.link_series import STRESS, CasePrecision, PeakQuantity
+from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.refine.link_task import ElasticLink, LinkTask
 from alula.fea.refine.refinement import RefinedSolid
 from alula.fea.superposition.link_answers import LinkAnswers, Rule
-from alula.fea.superposition.link_measure import LinkMeasure, StatePeaks
+from alula.fea.superposition.link_measure import LinkMeasure
 from alula.geometry.base.errors import CannotRunError
-from alula.geometry.base.kept import kept
+from alula.geometry.keeping.kept import kept
 
 Real = NDArray[np.float64]
 Shares = Mapping[PeakQuantity, Scatter]
@@ -53,53 +54,65 @@ def solid_shares(
     CannotRunError
         Where memory does not suffice or a solver fails.
     """
-    solved = tuple(one.load for one in refined.solution.cases)
-    return _shares(task.link, refined.solution.space, solved, refined.precision, tuple(causes), threads=threads)
-
-
-@kept(but=("threads",))
-def _shares(
-    link: ElasticLink,
-    space: DisplacementSpace,
-    solved: tuple[str, ...],
-    precision: tuple[CasePrecision, ...],
-    causes: tuple[LinkAnswers, ...],
-    *,
-    threads: int | None,
-) -> tuple[Shares, ...]:
-    """As ``solid_shares``, of a link on its finest mesh; ``solved`` are the names of loads whose precision is given."""
-    every = [(i, j, plate) for i, cause in enumerate(causes) for j, way in enumerate(cause.every) for plate in way]
-    measure = LinkMeasure.of_loads(link, space, [plate for *_, plate in every], threads=threads)
-    of_cause, answers = np.array([every[one.record][:2] for one in measure.variants]).T
-    wanted: list[PeakQuantity] = ["displacement", *STRESS.values(), *(("layers",) if link.layers is not None else ())]
-    found: list[dict[PeakQuantity, Scatter]] = [{} for _ in causes]
-    for quantity in wanted:
-        peaks = measure.peaks(quantity)
-        for number, cause in enumerate(causes):
-            own = np.flatnonzero(of_cause == number)
+    every = tuple(cause.every for cause in causes)
+    found: list[dict[PeakQuantity, Scatter]] = []
+    for cause, peaks in zip(causes, _peaks(task.link, refined.solution.space, every, threads=threads), strict=True):
+        found.append({})
+        for quantity, one in peaks.items():
             rule = cause.displacement if quantity == "displacement" else cause.stress
-            factors, largest = _factors(peaks.value[own], answers[own], rule), int(own[np.argmax(peaks.value[own])])
-            if quantity != "displacement" and answers[largest] > 0:
-                most = _elsewhere(measure, zip(precision, solved, strict=True), quantity, peaks, cause, largest)
-                factors = replace(factors, high=max(factors.high, most))
-            found[number][quantity] = factors
+            factors = _factors(one.values, one.answers, rule)
+            most = _elsewhere(refined, quantity, cause, one.elsewhere)
+            found[-1][quantity] = replace(factors, high=max(factors.high, most))
     return tuple(found)
 
 
-def _elsewhere(
-    measure: LinkMeasure,
-    precision: Iterable[tuple[CasePrecision, str]],
-    quantity: PeakQuantity,
-    peaks: StatePeaks,
-    cause: LinkAnswers,
-    largest: int,
-) -> float:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Peaks:
+    """Peaks of a number in all answers of a cause.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+        Of all answers under all pressures of pins and transfers of torque.
+    answers : ndarray of int, shape (k,)
+        To which each belongs; 0 as stated.
+    elsewhere : float
+        The largest with its error, where it is a stress of another answer; else 0.
+    """
+
+    values: Real
+    answers: NDArray[np.int64]
+    elsewhere: float
+
+
+@kept(but=("threads",))
+def _peaks(
+    link: ElasticLink, space: DisplacementSpace, causes: tuple[tuple[Plates, ...], ...], *, threads: int | None
+) -> tuple[dict[PeakQuantity, _Peaks], ...]:
+    """Return the peaks of all answers of each cause on a mesh of the link; the rules of causes do not enter."""
+    every = [(i, j, plate) for i, cause in enumerate(causes) for j, way in enumerate(cause) for plate in way]
+    measure = LinkMeasure.of_loads(link, space, [plate for *_, plate in every], threads=threads)
+    of_cause, answers = np.array([every[one.record][:2] for one in measure.variants]).T
+    wanted: list[PeakQuantity] = ["displacement", *STRESS.values(), *(("layers",) if link.layers is not None else ())]
+    found: list[dict[PeakQuantity, _Peaks]] = [{} for _ in causes]
+    for quantity in wanted:
+        peaks = measure.peaks(quantity)
+        for number, told in enumerate(found):
+            own = np.flatnonzero(of_cause == number)
+            largest, elsewhere = int(own[np.argmax(peaks.value[own])]), 0.0
+            if quantity != "displacement" and answers[largest] > 0:
+                at = int(peaks.node[largest]), float(peaks.value[largest])
+                elsewhere = measure.ends(quantity, largest, *at)[1]
+            told[quantity] = _Peaks(values=peaks.value[own], answers=answers[own], elsewhere=elsewhere)
+    return tuple(found)
+
+
+def _elsewhere(refined: RefinedSolid, quantity: PeakQuantity, cause: LinkAnswers, most: float) -> float:
     """Return a peak of another answer with its error, over the upper end as stated; 0 where that is unknown."""
     names = {plate.name for plate in cause.stated}
-    tops = [one.high(quantity) for one, load in precision if load in names]
-    if not tops or not 0.0 < max(tops) < np.inf:
-        return 0.0
-    return measure.ends(quantity, largest, int(peaks.node[largest]), float(peaks.value[largest]))[1] / max(tops)
+    precision = zip(refined.precision, refined.solution.cases, strict=True)
+    tops = [one.high(quantity) for one, case in precision if case.load in names]
+    return most / max(tops) if tops and 0.0 < max(tops) < np.inf else 0.0
 
 
 def _factors(values: Real, answers: NDArray[np.int64], rule: Rule) -> Scatter:

@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.kept import kept
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
+from alula.geometry.keeping.kept import kept
 
 LARGEST_FILE = 200_000_000
 """Bytes."""

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import AlulaError
-from alula.geometry.base.kept import kept
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.bodies.body_rules import check_body
 from alula.geometry.bodies.cut_section import CutSection
+from alula.geometry.keeping.kept import kept
 from alula.geometry.meshing.mesh_settings import COARSE, MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.geometry.parts.part import Body

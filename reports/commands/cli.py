@@ -91,7 +91,7 @@ def check(
     """Check a case: pose, joint forces, stress, verdict."""
     from alula.fea.check.run import check_case, effort_of
     from alula.fea.findings.of_check import with_findings
-    from alula.geometry.base.kept import keeping
+    from alula.geometry.keeping.kept import keeping
     from alula.reports.check.folder import report_names
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections

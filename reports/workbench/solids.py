@@ -1,6 +1,6 @@
 """The check by solids in the background: a process that tells how far each link is, its model, and the verdict.
 
-What was solved before is kept (``alula.geometry.base.kept``): a changed link alone is solved anew, and what ended
+What was solved before is kept (``alula.geometry.keeping.kept``): a changed link alone is solved anew, and what ended
 before a check was stopped is found by the next one. A check is stopped by killing its process and the meshers that it
 started.
 
@@ -243,7 +243,7 @@ def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
     """Check a text, in the process: tell links, models and the verdict."""
     from alula.fea.check.run import WatchedLink, check_case, effort_of
     from alula.fea.outcomes.result import LinkResult, SolidResult
-    from alula.geometry.base.kept import keeping
+    from alula.geometry.keeping.kept import keeping
     from alula.reports.turnable.link import link_model
     from alula.reports.workbench.answers import case_of
     from alula.reports.workbench.verdicts import verdict_of

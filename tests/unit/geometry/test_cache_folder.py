@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from alula.geometry.base.cache_folder import cache_folder
+from alula.geometry.keeping.cache_folder import cache_folder
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="rights of folders are those of POSIX")
 

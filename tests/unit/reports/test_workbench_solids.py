@@ -12,7 +12,7 @@ import pytest
 
 from alula.fea.check.run import check_case
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.kept import keeping
+from alula.geometry.keeping.kept import keeping
 from alula.reports.turnable.link import link_model
 from alula.reports.workbench import solids
 from alula.reports.workbench.answers import case_of

@@ -6,8 +6,8 @@ by itself. What is wrong with the folder or a file never stops a run: what canno
 written is not kept.
 
 A result is pickled, since it is a tree of records, and is read only from a folder into which this user alone may write
-(``alula.geometry.base.cache_folder``). It is written to a temporary file, and moved to its name at once, so that a
-process that is killed leaves no half of it, and two that write the same one do no harm. A checksum tells a file that is
+(``alula.geometry.keeping.cache_folder``). It is written to a temporary file, and moved to its name at once, so that a
+process that is killed leaves no half of it, and two that write the same one do no harm. A digest tells a file that is
 not what was written; it is removed. The name is the key: files of other versions are never met, and go when the folder
 is full, as the least recently used do.
 """
@@ -31,10 +31,10 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from pydantic_core import PydanticCustomError
 
-from alula.geometry.base.cache_folder import cache_folder
-from alula.geometry.base.content import digest
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
+from alula.geometry.keeping.cache_folder import cache_folder
+from alula.geometry.keeping.content import digest
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -66,7 +66,7 @@ class NotKept(Generic[T]):
 
 
 @dataclass
-class Store:
+class KeptResults:
     """Results in a folder.
 
     Attributes
@@ -87,7 +87,17 @@ class Store:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def get(self, key: str) -> Any:
-        """Return a result, or ``_MISSING``; a file that is not what was written is removed."""
+        """Return a result; a file that is not what was written is removed.
+
+        Parameters
+        ----------
+        key : str
+
+        Returns
+        -------
+        object
+            ``_MISSING`` where there is none.
+        """
         path = self.folder / key
         result: Any = _MISSING
         try:
@@ -106,7 +116,13 @@ class Store:
         return result
 
     def put(self, key: str, result: object) -> None:
-        """Keep a result, if that can be done."""
+        """Keep a result, if that can be done.
+
+        Parameters
+        ----------
+        key : str
+        result : object
+        """
         draft = None
         try:
             body = pickle.dumps(result, protocol=pickle.HIGHEST_PROTOCOL)
@@ -125,7 +141,13 @@ class Store:
                     Path(draft).unlink(missing_ok=True)
 
     def counted(self, key: str, *, found: bool) -> None:
-        """Count a result that was asked for; one of this run's own is none of an earlier one."""
+        """Count a result that was asked for; one of this run's own is none of an earlier one.
+
+        Parameters
+        ----------
+        key : str
+        found : bool
+        """
         with self._lock:
             self.asked += 1
             self.found += found and key not in self._own
@@ -150,11 +172,11 @@ class Store:
                 size -= one
 
 
-_store: Store | None = None
+_store: KeptResults | None = None
 
 
 @contextmanager
-def keeping(*, anew: bool = False) -> Iterator[Store | None]:
+def keeping(*, anew: bool = False) -> Iterator[KeptResults | None]:
     """Keep what marked functions find during a block, in all threads of this process, and take what was kept before.
 
     Parameters
@@ -164,7 +186,7 @@ def keeping(*, anew: bool = False) -> Iterator[Store | None]:
 
     Yields
     ------
-    Store or None
+    KeptResults or None
         None where nothing is kept, and where there is no folder for it.
 
     Raises
@@ -174,7 +196,7 @@ def keeping(*, anew: bool = False) -> Iterator[Store | None]:
     """
     global _store
     folder = None if anew else cache_folder("solved")
-    before, _store = _store, None if folder is None else Store(folder, _limit())
+    before, _store = _store, None if folder is None else KeptResults(folder, _limit())
     try:
         yield _store
     finally:

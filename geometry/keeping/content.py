@@ -5,26 +5,24 @@ import struct
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from functools import partial
-from types import FunctionType, MethodType
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
 OWN = "alula."
-"""Whose classes and functions are known by their names, since the sources that they come from are told besides."""
+"""Whose classes are known by their names, since the sources that they come from are told besides."""
 
 
 def digest(value: object) -> str:
     """Return the digest of a value's content.
 
-    Of a record every field counts; of a function its name and what it encloses.
+    Of a record every field counts.
 
     Parameters
     ----------
     value : object
-        Numbers, texts, arrays, collections, records of alula and its functions.
+        Numbers, texts, arrays, collections, and records of alula.
 
     Returns
     -------
@@ -54,9 +52,9 @@ def _feed(found: Any, value: Any) -> None:
         content = value if isinstance(value, bytes) else str(value).encode("utf-8", "surrogatepass")
         told({int: "int", str: "str", bytes: "bytes"}.get(type(value), type(value).__name__), len(content))
         found.update(content)
-    elif type(value) is float:
-        told("float")
-        found.update(struct.pack("<d", value))
+    elif type(value) in (float, complex):
+        told(type(value).__name__)
+        found.update(struct.pack("<dd", value.real, value.imag))
     elif isinstance(value, np.ndarray | np.generic):
         if value.dtype.hasobject:
             raise TypeError("an array of objects has no content of its own")
@@ -83,14 +81,6 @@ def _feed(found: Any, value: Any) -> None:
         told("tuple" if isinstance(value, tuple) else "list", len(value))
         for one in value:
             _feed(found, one)
-    elif isinstance(value, FunctionType):
-        _name(told, value)
-        enclosed = [cell.cell_contents for cell in value.__closure__ or ()]
-        _feed(found, [value.__defaults__, value.__kwdefaults__, enclosed])
-    elif isinstance(value, MethodType):
-        _feed(found, [value.__self__, value.__func__])
-    elif isinstance(value, partial):
-        _feed(found, [value.func, value.args, value.keywords])
     else:
         raise TypeError(f"the content of a {type(value).__name__} is not known")
 
