@@ -10,9 +10,9 @@ import shutil
 from pathlib import Path
 from typing import NamedTuple
 
-from alula.geometry.base.cache_folder import cache_folder
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
+from alula.geometry.keeping.cache_folder import cache_folder
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import file_text
 
