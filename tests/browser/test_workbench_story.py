@@ -115,9 +115,8 @@ class Page:
 
     def drawn(self, links):
         """Wait until so many links move, and the drawing is of the newest text."""
-        self.until(
-            f"now.drawn?.revision === now.document.revision && now.drawn.links.filter((one) => !one.ground).length === {links}"
-        )
+        moving = "now.drawn.links.filter((one) => !one.ground).length"
+        self.until(f"now.drawn?.revision === now.document.revision && {moving} === {links}")
 
     def verdict(self, stage="whole"):
         """Return the verdict on the newest text."""
@@ -138,11 +137,13 @@ class Page:
             from PIL import Image
 
             self.browser.run(
-                "for (const one of document.querySelectorAll('code')) "
-                "one.textContent = one.textContent.replace(/\\S+\\/(?=\\w+\\.toml)/, '')"
-            )  # the folder of this run
+                "const style = new CSSStyleSheet(); style.replaceSync('.command { display: none !important }');"
+                "document.adoptedStyleSheets = [style];"
+                "return new Promise(requestAnimationFrame)"
+            )  # commands name the folder of this run
             with Image.open(io.BytesIO(self.browser.driver.get_screenshot_as_png())) as image:
-                image.convert("RGB").quantize(160, dither=Image.Dither.NONE).save(Path(folder) / f"{name}.png", optimize=True)
+                few = image.convert("RGB").quantize(160, dither=Image.Dither.NONE)
+                few.save(Path(folder) / f"{name}.png", optimize=True)
 
 
 def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tmp_path):
