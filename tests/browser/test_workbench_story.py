@@ -27,7 +27,7 @@ CONTROL, ENTER, TAB, ESCAPE, RIGHT, UP = "\ue009", "\ue007", "\ue004", "\ue00c",
 REACHED = """
 const shown = (one) => one.checkVisibility() && !one.disabled && !one.closest("[hidden]");
 const all = [...document.querySelectorAll("button, input, select, textarea, summary, a[href], [tabindex]")];
-const wanted = all.filter((one) => shown(one) && one.tabIndex >= 0);
+const wanted = all.filter((one) => shown(one) && (one.tabIndex >= 0 || !one.matches("[role=tab]")));
 return [wanted.indexOf(document.activeElement), wanted.length];
 """
 
