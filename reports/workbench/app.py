@@ -171,9 +171,8 @@ def application(session: Session) -> Starlette:
 
     async def starters(request: Request) -> Response:
         found = sorted(file.name for file in session.folder.glob("*.toml") if file.is_file())
-        return JSONResponse(
-            {"starters": _starters(), "files": found, "folder": str(session.folder), "new": session.new}
-        )
+        told = {"starters": _starters(), "files": found, "folder": str(session.folder), "new": session.new}
+        return JSONResponse(told)
 
     async def schema(request: Request) -> Response:
         return Response(_schema(), media_type="application/json")

@@ -88,9 +88,7 @@ def plain_file_name(name: str) -> str:
     """
     stem, end = os.path.splitext(name.replace("\\", "/").rpartition("/")[2])
     if end.lower() not in ENDINGS:
-        raise CaseError(
-            f"'{printable(name[:_LONGEST])}' is no STEP file by its name; drop one that ends with .step or .stp"
-        )
+        raise CaseError(f"'{printable(name[:_LONGEST])}' is no STEP file by its name; drop one that ends with .step")
     return (re.sub(r"[^\w+ -]+", "-", stem).strip("-_+ ")[:_LONGEST] or "part") + end.lower()
 
 

@@ -28,15 +28,15 @@ export function mount(holder, store) {
   const open = new Set();
   holder.append(stamp, rest);
 
-  /** What is told; without a check there is the problem alone, which stands above the drawing. */
-  function told() {
+  /** What is known; a problem of the case stands above the drawing, and is no verdict. */
+  function known() {
     const found = shownVerdict(store.state.verdict);
-    return found?.checks?.length ? found : null;
+    return store.state.document?.problem && !found?.checks?.length ? null : found;
   }
 
   /** The badge, and whether the verdict is of what stands there now. */
   function head() {
-    const found = told();
+    const found = known();
     const now = store.state.document;
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
@@ -45,7 +45,7 @@ export function mount(holder, store) {
 
   function draw() {
     head();
-    const found = told();
+    const found = known();
     const now = store.state.document;
     if (!found) return rest.replaceChildren();
     const names = (table) => Object.keys(now?.tables?.[table] ?? {});
