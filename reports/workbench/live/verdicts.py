@@ -69,9 +69,9 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     -------
     dict
         ``stage`` whole; ``verdict``; ``sentences``, the verdict in words; ``checks``, with value, band and limit in
-        their unit, None for what is not known or has no end; ``links``: link -> ``use``, the largest share of strength
-        that it takes at the unfavourable end of its band, None where no check asks, and ``verdict``; ``changes``, each
-        with ``text``, ``command`` and ``operations``, edits that make it, None where it is no single entry;
+        their unit, None for what is not known or has no end; ``links``: link -> ``use``, the band of the share
+        of strength that it takes, from 0 where none is known, or None where no check tells, and ``verdict``;
+        ``changes``, each with ``text``, ``command`` and ``operations``, edits that make it, None where it is no single entry;
         ``warnings``; ``ms``.
     """
     start = time.perf_counter()
@@ -150,11 +150,12 @@ def _known(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _use(checks: Sequence[CheckOutcome]) -> float | None:
-    """Return the largest share of strength that a link takes: the limit over the low end of its band."""
-    margins = [one.margin for one in checks if one.applies and one.quantity.tier is not Tier.NEITHER]
-    known = [1.0 / margin for margin in margins if margin > 0.0]
-    return max(known, default=None)
+def _use(checks: Sequence[CheckOutcome]) -> list[float] | None:
+    """Return the band of the largest share of strength that a link takes: the limit over either end of a margin."""
+    asked = [one for one in checks if one.applies and one.quantity.tier is not Tier.NEITHER]
+    margins = [one.quantity.margins(one.value.value, one.value.low, one.value.high, one.limit)[1:] for one in asked]
+    uses = [(1.0 / most, 1.0 / least) for least, most in margins if least > 0.0]
+    return [max(ends) for ends in zip(*uses, strict=True)] or None
 
 
 def _changes(result: CheckResult) -> list[Plain]:

@@ -1,6 +1,6 @@
 /** Exact numbers: a small form beside what is chosen. */
 
-import { edit } from "./server.js";
+import { edit, tell } from "./server.js";
 import { scene, key } from "./scene.js";
 import { add } from "./svg.js";
 import { minus, number, size, toScreen } from "./view.js";
@@ -27,10 +27,11 @@ export function forceOperations(load, links, [x, y]) {
   return own.map((part, k) => ({ op: "set", path: [...load.path, "force", k], value: `${Number(part.toFixed(6))} N` }));
 }
 
+const parsed = (text) => (text ? Number(text.replace(",", ".")) : NaN);
+
 /** The numbers of a thing, each with what a new value does: {at, title, fields: [{label, value, unit}], change(texts, changed)}. */
 function asked(handle) {
   const now = scene();
-  const parsed = (text) => Number(text.replace(",", "."));
   const place = (at) => [{ label: "x", value: at[0], unit: "mm" }, { label: "y", value: at[1], unit: "mm" }];
   const lengths = (links, point) => links.filter((link) => !link.ground).flatMap((link) => link.pieces.map((ends, k) => ({ link, ends, names: names(link)[k] })))
     .filter(({ link, names: both }) => !point || both.some((name) => point.includes(key(link.name, name))))
@@ -95,6 +96,11 @@ export function open(parent, handle, focus) {
     event.preventDefault();
     const texts = inputs.map((input) => input.value.trim());
     const changed = texts.map((text, k) => text !== shown[k]);
+    const wrong = what.fields.findIndex((field, k) => changed[k] && !field.make && !Number.isFinite(parsed(texts[k])));
+    if (wrong >= 0) {
+      tell(`${what.fields[wrong].label}: '${texts[wrong]}' is no number; write how many ${what.fields[wrong].unit} it is.`);
+      return inputs[wrong].select();
+    }
     finish(parent, changed.some(Boolean) ? what.change(texts, changed) : []);
   });
   form.addEventListener("keydown", (event) => event.key === "Escape" && finish(parent, []));

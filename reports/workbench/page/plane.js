@@ -11,7 +11,7 @@ import { angle, fit, gridStep, minus, number, plus, round125, size, toScreen, tu
 const ARROW = 0.2;
 /** Use of strength: what is up to here, how it is named, its colour, and its hatching for who sees no colours. */
 export const USES = [
-  [0.5, "up to 50 %", "#c3d8cc"], [0.8, "80 %", "#e6d993"], [1, "100 %", "#ebaf63"], [Infinity, "more", "#e08a80"],
+  [0.5, "up to 50 %", "#c3d8cc"], [0.8, "80 %", "#e6d993"], [1, "100 %", "#ebaf63"], [Infinity, "may be more", "#d9b8d0"], [NaN, "is more", "#e08a80"],
 ];
 let svg, groups, perNewton = 0, waiting = false, hovered = null;
 
@@ -32,7 +32,7 @@ export function mount(element) {
 
 function marks(defs) {
   const pattern = draw(defs, "pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" });
-  draw(pattern, "rect", { width: 6, height: 6, fill: USES[3][2] });
+  draw(pattern, "rect", { width: 6, height: 6, fill: USES.at(-1)[2] });
   draw(pattern, "line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#b3261e", "stroke-width": 2 });
 }
 
@@ -85,12 +85,14 @@ function forcesOf(now) {
   return found.filter((one) => one.magnitude > 1e-9 * largest);
 }
 
-/** The use of a link's strength, in words and as a colour. */
+/** The use of a link's strength, in words and as a colour; where its band goes beyond the limit, it is told whole. */
 export function useOf(link) {
   const { use = null, verdict } = shownVerdict(store.state.verdict)?.links?.[link.name] ?? {};
   if (use === null || link.ground || store.state.instant !== null || store.state.drawn.problem) return { text: "", colour: "#9fb1c1", over: false };
+  const [least, most] = use.map((share) => number(100 * share, 2));
   const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
-  return { text: `${number(100 * use, 2)} %${sign}`, colour: USES.find(([most]) => use <= most)[2], over: use > 1 };
+  const text = use[1] <= 1 || least === most ? most : use[0] > 0 ? `${least} to ${most}` : `up to ${most}`;
+  return { text: `${text} %${sign}`, colour: (use[0] > 1 ? USES.at(-1) : USES.find(([end]) => use[1] <= end))[2], over: use[0] > 1 };
 }
 
 function drawAll() {
@@ -384,7 +386,7 @@ function legend(now) {
   const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
   const key = largest ? round125(largest / 2) : 0;
   const entries = [
-    ...(uses ? [["", "strength used (✗ fails, ? undecided):"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
+    ...(uses ? [["", "strength used, at the worst (✗ fails, ? undecided):"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
     ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
     ...(now?.loads.length ? [["load", "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),

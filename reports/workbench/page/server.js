@@ -72,7 +72,7 @@ export function connect() {
   let lost = false;
   source.onerror = () => {
     lost = true;
-    tell("The server of alula does not answer; what is shown may be old.");
+    tell("The server of alula has ended. Start it again with alula open, and use the page that it opens: changes that were not saved are offered there.");
   };
   source.onopen = () => {
     if (lost) store.put("notice", null);

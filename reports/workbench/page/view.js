@@ -16,7 +16,7 @@ export function rounded(value, step) {
 /** A number for people: three digits that count, none before the point lost. */
 export function number(value, digits = 3) {
   const size = Math.abs(value);
-  if (size < 1e-9) return "0";
+  if (size < 1e-8) return "0";
   const behind = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return String(Number(value.toFixed(Math.min(behind, 12))));
 }
