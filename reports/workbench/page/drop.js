@@ -24,7 +24,7 @@ export function mountDrop(holder, store) {
     const answer = await fetch(`drop/${encodeURIComponent(file.name)}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file }).catch(() => null);
     const told = (await answer?.json().catch(() => null)) ?? {};
     if (!answer?.ok) return (said.textContent = told.sentence ?? "The server of alula does not answer; start it again with alula open.");
-    said.textContent = `'${told.file}' stands beside the case: ${told.size.map(number).join(" × ")} mm, ${told.bores.length} bore${told.bores.length > 1 ? "s" : ""} that may be pins'.`;
+    said.textContent = `'${told.file}' stands beside the case: ${told.size.map(number).join(" × ")} mm, ${told.bores.length} bore${told.bores.length > 1 ? "s" : ""} that may hold pins.`;
     offer(told);
   }
 

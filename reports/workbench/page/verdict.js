@@ -54,8 +54,8 @@ export function mount(holder, store) {
       ...(found.sentences ?? []).map((sentence) => make("p", {}, sentence)),
       found.verdict === "undecided" && found.stage === "whole" && found.checks.length ? make("p", {}, make("button", { type: "button", onclick: solve }, "Check with solids")) : null,
       changes(found),
-      table(found, subjectOf),
       sideBySide(),
+      table(found, subjectOf),
       warnings(found),
     ].flat().filter(Boolean));
   }
