@@ -210,9 +210,10 @@ class _Service:
             except _StoppedError:
                 self._stoppable, done = False, False
             except Exception as error:  # a mistake of alula's own, which leaves the next text to be answered
-                self._stoppable, done = False, True
+                self._stoppable, done = False, not self._stop  # a library may tell another error where ours was raised
                 wrong = f"the {request['stage']} of this text was not found: {type(error).__name__}: {error}"
-                self._write({"event": "notice", "data": {"sentence": wrong}})
+                if done:
+                    self._write({"event": "notice", "data": {"sentence": wrong}})
             self._write({"done": done})
 
     def _interrupted(self, *_: object) -> None:

@@ -17,6 +17,7 @@ export function rounded(value, step) {
 export function number(value, digits = 3) {
   const size = Math.abs(value);
   if (size < 1e-8) return "0";
+  if (size >= 1e7) return value.toExponential(digits - 1);
   const behind = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return String(Number(value.toFixed(Math.min(behind, 12))));
 }

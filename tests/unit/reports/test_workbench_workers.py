@@ -4,6 +4,7 @@ import asyncio
 import json
 import random
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -158,3 +159,31 @@ def test_changed_files_of_parts_are_not_taken_for_the_same(tmp_path):
     assert [name for name, *_ in first] == ["arm.step"]
     assert workers._files(tmp_path, text) != first
     assert workers._files(tmp_path / "gone", text) == []
+
+
+MASKS = """
+import time
+from alula.reports.workbench.live.workers import _Service
+
+def masks(text, name, tell):
+    tell("begun", {})
+    try:
+        while True:
+            time.sleep(0.01)
+    except BaseException:
+        raise TypeError("as NumPy says where its comparison is interrupted")
+
+_Service().run({"masks": masks})
+"""
+
+
+def test_a_library_that_tells_an_error_of_its_own_when_it_is_stopped_is_no_mistake():
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        [sys.executable, "-c", MASKS], env=environment(), stdin=pipe, stdout=pipe, stderr=pipe, text=True
+    ) as child:
+        print(json.dumps({"stage": "masks", "text": "", "name": ""}), file=child.stdin, flush=True)
+        assert json.loads(child.stdout.readline())["event"] == "begun"
+        print(json.dumps({"stop": True}), file=child.stdin, flush=True)
+        assert json.loads(child.stdout.readline()) == {"done": False}
+        child.stdin.close()
