@@ -71,8 +71,8 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
         ``stage`` whole; ``verdict``; ``sentences``, the verdict in words; ``checks``, with value, band and limit in
         their unit, None for what is not known or has no end; ``links``: link -> ``use``, the band of the share
         of strength that it takes, from 0 where none is known, or None where no check tells, and ``verdict``;
-        ``changes``, each with ``text``, ``command`` and ``operations``, edits that make it, None where it is no single entry;
-        ``warnings``; ``ms``.
+        ``changes``, each with ``text``, ``command`` and ``operations``, edits that make it, None where it is no single
+        entry; ``warnings``; ``ms``.
     """
     start = time.perf_counter()
     try:
