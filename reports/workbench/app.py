@@ -23,6 +23,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.imported.read import LARGEST_FILE
+from alula.geometry.keeping.kept import keeping
 from alula.loads.case.case_file import built_in_cases, read_tables
 from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
@@ -348,7 +349,7 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
     except UnicodeEncodeError:
         shown = printable((case or folder).name)
         raise CaseError(f"'{shown}' or a folder above it has a name that is no UTF-8 text; rename it") from None
-    with contextlib.closing(_listening(port)) as bound:
+    with contextlib.closing(_listening(port)) as bound, keeping():
         asyncio.run(_serve(case, folder, bound, ready))
 
 

@@ -12,6 +12,7 @@ import served
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
+from alula.geometry.keeping.kept import kept as marked
 from alula.loads.case.case_file import read_case, read_tables, read_text
 from alula.reports.workbench import session
 from alula.reports.workbench.app import LARGEST_REQUEST, serve
@@ -240,10 +241,16 @@ def test_pages_are_counted(bench, monkeypatch):
             assert "close one" in json.loads(found)["sentence"]
 
 
-def test_the_report_is_of_no_origin(bench, monkeypatch):
+def test_the_report_is_of_no_origin_and_takes_what_was_solved_before(bench, cache, monkeypatch):
     from alula.reports.workbench import app
 
-    monkeypatch.setattr(app.out, "report", lambda *asked: b"<!DOCTYPE html>")
+    @marked()
+    def solved(text):
+        return f"<!DOCTYPE html>{text}"[:15].encode()
+
+    monkeypatch.setattr(app.out, "report", lambda text, *asked: solved(text))
+    assert bench.ask("GET", "out/report")[0] == 200
+    assert list((cache / "solved").iterdir())
     _, headers, found = bench.ask("GET", "out/report")
     assert found == b"<!DOCTYPE html>"
     policy = headers["content-security-policy"]
