@@ -292,6 +292,7 @@ class Session:
             if starter:
                 write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
             self.load(file)
+            self.solids.stop()  # nobody waits for those of the case before
 
     def load(self, file: Path) -> None:
         """Open a case, and offer what was not saved of it.

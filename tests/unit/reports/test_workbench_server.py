@@ -526,4 +526,7 @@ def test_a_case_is_left_only_when_it_is_saved(bench, case: Path):
     assert "not saved" in sentence(bench.post("open", starter="four-bar", **{"as": "new.toml"}))
     assert not case.with_name("new.toml").exists()
     bench.post("save")
+    solids = bench.server.session.solids
+    assert solids.asked == []
     assert bench.post("open", starter="four-bar", **{"as": "new.toml"}) == (200, {"revision": 2})
+    assert solids.asked == ["stop"]
