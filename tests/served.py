@@ -22,6 +22,9 @@ class Quiet:
     def ask(self, *asked: Any) -> None:
         self.asked.append(asked)
 
+    def stop(self) -> None:
+        self.asked.append("stop")
+
     async def close(self) -> None: ...
 
 

@@ -65,7 +65,7 @@ def rim_growth(pins: PinStates, factor: float) -> RimGrowth:
     Returns
     -------
     RimGrowth
-        With upper ends that are infinite where the frame is unstable by linear theory.
+        From 0 to infinity where the frame is unstable by linear theory: nothing is known of it then.
     """
     path = divided(pins, COARSE_SUBDIVISIONS)
     rims, plain, ends = path.rims, path.condensed(), path.rims.beam_ends

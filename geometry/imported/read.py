@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
-from alula.geometry.base.errors import CaseError
+from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
 from alula.geometry.keeping.kept import kept
@@ -85,7 +85,10 @@ def _ask(task: str, path: Path, digest: str, mesh_unit: float | None) -> Any:
     subject: tuple[object, ...] = str(path.absolute()), digest
     if mesh_unit is not None:
         task, subject = f"{task} of mesh", (*subject, mesh_unit)
-    return ask_kernel(task, subject, words=words, time_limit=TIME_LIMIT, memory=MEMORY_LIMIT)
+    found = ask_kernel(task, subject, words=words, time_limit=TIME_LIMIT, memory=MEMORY_LIMIT)
+    if file_digest(path, mesh=mesh_unit is not None) != digest:  # nothing is kept for the content that it had
+        raise CannotRunError(f"the file '{path.name}' changed while it was read; run once more")
+    return found
 
 
 def file_digest(path: Path, *, mesh: bool = False) -> str:

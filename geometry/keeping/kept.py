@@ -219,7 +219,7 @@ def _limit() -> float:
     try:
         return parse(text, "memory")
     except PydanticCustomError as error:
-        raise CaseError(f"{SIZE}: it is '{text}', but {error.message()}; write for example \"1 GB\"") from None
+        raise CaseError(f"{SIZE}: it is '{text}', but {error.message()}") from None
 
 
 def kept(*, but: tuple[str, ...] = ()) -> Callable[[Callable[P, T | NotKept[T]]], Callable[P, T]]:

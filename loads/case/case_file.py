@@ -103,6 +103,7 @@ def parse_tables(text: str, where: str) -> dict[str, Any]:
     """
     try:
         tables = tomllib.loads(text)
+        repr(tables)  # which no sentence could tell, were it one of thousands of hexadecimal digits
     except RecursionError:
         raise too_deep(where) from None
     except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits

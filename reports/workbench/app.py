@@ -23,10 +23,12 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.imported.read import LARGEST_FILE
+from alula.geometry.keeping.kept import keeping
 from alula.loads.case.case_file import built_in_cases, read_tables
 from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
 from alula.reports.workbench import out
+from alula.reports.workbench.keeping import is_plain
 from alula.reports.workbench.parts import dropped
 from alula.reports.workbench.session import DRAWING, ConflictError, Session
 
@@ -170,8 +172,8 @@ def application(session: Session) -> Starlette:
         return StreamingResponse(stream(), media_type="text/event-stream")
 
     async def starters(request: Request) -> Response:
-        found = sorted(file.name for file in session.folder.glob("*.toml") if file.is_file())
-        told = {"starters": _starters(), "files": found, "folder": str(session.folder), "new": session.new}
+        names = (one.name for one in session.folder.glob("*.toml") if is_plain(one.name, ".toml") and one.is_file())
+        told = {"starters": _starters(), "files": sorted(names), "folder": str(session.folder), "new": session.new}
         return JSONResponse(told)
 
     async def schema(request: Request) -> Response:
@@ -337,9 +339,14 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
     Raises
     ------
     CaseError
-        For a port that is in use or forbidden, and for a case that cannot be read.
+        For a port that is in use or forbidden, and for a case that cannot be read, or whose path is no text.
     """
-    with contextlib.closing(_listening(port)) as bound:
+    try:
+        str(case or folder).encode()
+    except UnicodeEncodeError:
+        shown = printable((case or folder).name)
+        raise CaseError(f"'{shown}' or a folder above it has a name that is no UTF-8 text; rename it") from None
+    with contextlib.closing(_listening(port)) as bound, keeping():
         asyncio.run(_serve(case, folder, bound, ready))
 
 

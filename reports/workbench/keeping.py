@@ -70,6 +70,21 @@ def case_text(path: Path) -> str:
     return file_text(str(path), "case", missing=missing, empty="the file is empty; start from 'alula new'", mark=True)
 
 
+def is_plain(name: str, suffix: str) -> bool:
+    """Return whether ``plain_name`` takes a name.
+
+    Parameters
+    ----------
+    name, suffix : str
+
+    Returns
+    -------
+    bool
+    """
+    plain = name.isprintable() and not set(name) & set('/\\:*?"<>|') and not name.startswith(".") and len(name) <= 120
+    return plain and Path(name).name == name and name.lower().endswith(suffix) and len(name) > len(suffix)
+
+
 def plain_name(name: str, suffix: str) -> str:
     """Return the name of a file in the folder of a case.
 
@@ -89,8 +104,7 @@ def plain_name(name: str, suffix: str) -> str:
     CaseError
         For a path, a hidden file, another suffix, and what no system takes for a name.
     """
-    plain = name.isprintable() and not set(name) & set('/\\:*?"<>|') and not name.startswith(".") and len(name) <= 120
-    if not plain or Path(name).name != name or not name.lower().endswith(suffix) or len(name) == len(suffix):
+    if not is_plain(name, suffix):
         raise CaseError(f"'{printable(name)}' must be the plain name of a file that ends in {suffix}; write another")
     return name
 

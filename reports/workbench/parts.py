@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.tidying import scratch_folder
 from alula.geometry.imported.arrangement import single_frame
 from alula.geometry.imported.read import LARGEST_FILE
@@ -53,7 +53,10 @@ def dropped(name: str, data: bytes, folder: Path) -> dict[str, Any]:
     with scratch_folder("alula-") as scratch:
         file = scratch / kept
         file.write_bytes(data)
-        found = inspect_file(file, None)
+        try:
+            found = inspect_file(file, None)
+        except AlulaError as error:
+            raise type(error)(str(error).replace(str(file), kept)) from None
         entries = part_entries(found)
     if not entries:
         raise CaseError(f"'{kept}': no bore was found that may be a pin's, so that nothing can hold the part")

@@ -16,6 +16,7 @@ from alula.loads.text.explain import printable
 from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.editing.edits import EMPTY
+from alula.reports.workbench.editing.toml_text import value_at
 from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
@@ -255,16 +256,15 @@ class Session:
         """Return the pose of a text that balances by itself; other poses an edit finds on its own."""
         with suppress(AlulaError):
             tables = Document(text).tables()
-            if tables.get("pose", {}).get("equilibrium"):
+            if value_at(tables, ("pose", "equilibrium")):
                 case = changed_case(tables, (), str(self.path), str(self.folder))
                 return solve_case_statics(case, str(self.path)).pose
         return None
 
     def _changed(self) -> None:
         """Tell how the document stands after a change, and have it answered."""
-        if self._draft is not None:
-            draft, self._draft = self._draft, None
-            self._set_aside(draft, "was not taken")
+        if self._draft is not None and self._set_aside(self._draft, "was not taken"):
+            self._draft = None
         document = self._open()
         try:
             document.tables()
@@ -292,6 +292,7 @@ class Session:
             if starter:
                 write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
             self.load(file)
+            self.solids.stop()  # nobody waits for those of the case before
 
     def load(self, file: Path) -> None:
         """Open a case, and offer what was not saved of it.
@@ -312,8 +313,8 @@ class Session:
         if not self._drafts.alone:
             self._say("this case is open in another alula as well; what is not saved here is not kept")
         kept, base = self._drafts.kept()
-        if kept not in (None, text) and base != digest(text):
-            self._set_aside(kept or "", "was made from another text than the file has now")
+        other = kept is not None and kept != text and base != digest(text)
+        if other and self._set_aside(kept or "", "was made from another text than the file has now"):
             kept = None
         self._changed()
         self._draft = None if kept == text else kept
@@ -391,7 +392,7 @@ class Session:
             await asyncio.sleep(PERIOD)
             try:
                 await self._tick()
-            except AlulaError as error:
+            except Exception as error:  # whatever it is, the next look and draft are due
                 self._say(str(error))
 
     async def _tick(self) -> None:
@@ -406,14 +407,16 @@ class Session:
                     await self._save()
                 except AlulaError as error:
                     self._say(str(error))
-            if not self.saved and text != self._drafted and self._drafts is not None:
+            if not self.saved and text != self._drafted and self._drafts is not None and self._draft is None:
                 await asyncio.to_thread(self._drafts.keep, text, self._stored)
                 self._drafted = text
 
-    def _set_aside(self, draft: str, why: str) -> None:
+    def _set_aside(self, draft: str, why: str) -> bool:
+        """Give a draft a file of its own, and say so; where that fails it is still offered, and no other is kept."""
         place = self._drafts.set_aside(draft) if self._drafts is not None else None
-        if place is not None:
-            self._say(f"what was not saved earlier {why}; it stands in '{place}'")
+        told = "cannot be set aside, and is still offered" if place is None else f"{why}; it stands in '{place}'"
+        self._say(f"what was not saved earlier {told}")
+        return place is not None
 
     async def close(self) -> None:
         """Keep what is not saved, and end streams and workers."""
@@ -421,7 +424,7 @@ class Session:
         for page in self._pages:
             page.close()
         if self._drafts is not None:
-            if not self.saved:
+            if not self.saved and self._draft is None:
                 with suppress(AlulaError):
                     self._drafts.keep(self._open().text, self._stored)
             self._drafts.close()

@@ -85,7 +85,7 @@ def perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) ->
     refuse_deep(operation, "edit")
     try:
         _perform(draft, operation, pose)
-    except (LookupError, TypeError, ValueError, AttributeError):  # of another form than the operation or the case has
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, StopIteration):  # of another form
         raise CaseError(
             f"edit {operation.get('op')}: it does not fit what the case states; undo, or correct the text"
         ) from None

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from alula.fea.standing.case_statics import solve_case_statics
-from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.base.errors import AlulaError
 from alula.geometry.linkage.continuation import DeadPointError
 from alula.geometry.linkage.motion import Motion, solve_motion
 from alula.loads.case.case import Case
-from alula.loads.case.case_file import changed_case, folder_of
+from alula.loads.case.case_file import changed_case, folder_of, parse_tables
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.states.kinetostatics import dead_points
 from alula.reports.workbench.live.drawn import drawn, drawn_loosely, joint_forces
@@ -48,11 +48,7 @@ def case_of(text: str, name: str) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
-    try:
-        tables = tomllib.loads(text.removeprefix("\ufeff"))
-    except (ValueError, RecursionError) as error:
-        raise CaseError(f"this is not valid TOML: {error}; correct that line") from None
-    return changed_case(tables, (), name, folder_of(name))
+    return changed_case(parse_tables(text.removeprefix("\ufeff"), "case"), (), name, folder_of(name))
 
 
 def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = None) -> Plain:

@@ -9,6 +9,7 @@ import asyncio
 import json
 import os
 import queue
+import re
 import signal
 import sys
 import threading
@@ -78,13 +79,13 @@ class Workers:
 
 
 def _files(folder: Path, text: str) -> list[tuple[str, int, int]]:
-    """Return the files of a folder that a text names, with their time and size."""
-    try:
-        with os.scandir(folder) as entries:
-            named = [(one.name, one.stat()) for one in entries if one.name in text and one.is_file()]
-    except OSError:  # the folder has gone, or a file meanwhile
-        return []
-    return sorted((name, found.st_mtime_ns, found.st_size) for name, found in named)
+    """Return the files that a text names, from a folder on, with their time and size."""
+    found = []
+    for name in sorted(set(re.findall(r"""["']([^"'\n]+\.\w+)["']""", text))):
+        with suppress(OSError):  # no file
+            state = (folder / name).stat()
+            found.append((name, state.st_mtime_ns, state.st_size))
+    return found
 
 
 class _Asked(NamedTuple):
@@ -115,6 +116,10 @@ class _Line:
         self._task.cancel()
         with suppress(asyncio.CancelledError):
             await self._task
+        await self._end()
+
+    async def _end(self) -> None:
+        self._at_work = None
         if self._child is not None and self._child.returncode is None:
             self._child.kill()
             await self._child.wait()
@@ -126,7 +131,8 @@ class _Line:
             self._child.stdin.write(json.dumps(request).encode() + b"\n")
 
     async def _run(self) -> None:
-        await self._start()
+        with suppress(OSError):  # the first text tells
+            await self._start()
         while True:
             await self._new.wait()
             self._new.clear()
@@ -135,7 +141,12 @@ class _Line:
             for stage in self._stages:
                 if stage != self._stages[0] and self._new.is_set():
                     break
-                await self._answer(asked, stage)
+                try:
+                    await self._answer(asked, stage)
+                except Exception as error:  # it cannot be started, a line is no answer, or a mistake of alula's own
+                    wrong = f"the {stage} of this text was not found: {error}"
+                    self._tell("notice", {"revision": asked.revision, "sentence": wrong})
+                    await self._end()
 
     async def _start(self) -> None:
         pipe, command = asyncio.subprocess.PIPE, module_command(__name__, self._role)
@@ -153,6 +164,8 @@ class _Line:
             for line in known[stage].values():
                 self._heard(asked, json.loads(line))
             return
+        if self._child is None or self._child.returncode is not None:
+            await self._start()
         self._at_work = asked.key, stage
         told = await self._told(asked, stage)
         self._at_work = None

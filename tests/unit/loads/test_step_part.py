@@ -7,7 +7,9 @@ import pytest
 from imported_case import imported_case
 
 from alula.fea.beam.cut_beam import beam_sections, cut_remark
-from alula.geometry.base.errors import AlulaError, CaseError
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.imported import read
+from alula.geometry.keeping.kept import keeping
 from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
 from alula.loads.case.case_file import read_case
 from alula.reports.sentences import told
@@ -111,6 +113,26 @@ def test_a_file_that_changes_meanwhile_is_noticed(tmp_path):
     moved = body.part.model_copy(update={"shift": (0.0, 0.0, 1.0)})  # no worker has built it
     with pytest.raises(AlulaError, match=r"plate.step.* changed while it was used"):
         mass_properties(type(body)(part=moved, pins=body.pins, ends=(), holes=()))
+
+
+def test_a_file_that_changes_while_it_is_read_is_not_kept_for_what_it_was(tmp_path, monkeypatch):
+    monkeypatch.setenv("ALULA_CACHE", str(tmp_path / "cache"))
+    imported_case(tmp_path)
+    file, asked = tmp_path / "plate.step", []
+
+    def kernel(*request, **limits):
+        asked.append(request)
+        if len(asked) == 1:
+            file.write_bytes(file.read_bytes() + b" ")
+        return "found"
+
+    monkeypatch.setattr(read, "ask_kernel", kernel)
+    before = file.read_bytes()
+    with keeping() as store, pytest.raises(CannotRunError, match=r"plate.step.* changed while it was read"):
+        read.part_surface(file)
+    assert not list(store.folder.iterdir())
+    file.write_bytes(before)
+    assert read.part_surface(file) == "found"
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,7 @@ def test_a_problem_is_one_sentence_and_what_can_be_is_drawn():
     assert held["problem"].startswith("drive.transfer")
     assert {link["name"] for link in held["drawn"]["links"]} == {"base", "crank", "coupler", "rocker"}
     nothing = posed("four-bar", ("schema_version = 1", "schema_version ="))
-    assert nothing["problem"].startswith("this is not valid TOML")
+    assert nothing["problem"].startswith("case: this is not valid TOML")
     assert nothing["drawn"] is None
     assert posed("four-bar", ("schema_version = 1", "links = 5\nschema_version = 1"))["drawn"] is None
 

@@ -60,8 +60,9 @@ def test_no_file_is_written_over(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_no_part_leaves_nothing(name: str, data: bytes, told: str, tmp_path: Path) -> None:
-    with pytest.raises(CaseError, match=told):
+    with pytest.raises(CaseError, match=told) as found:
         parts.dropped(name, data, tmp_path)
+    assert str(found.value).startswith(f"'{name}'"), "not where it was looked into"
     assert not list(tmp_path.iterdir())
 
 

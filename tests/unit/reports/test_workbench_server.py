@@ -10,10 +10,12 @@ import pytest
 import served
 
 from alula.fea.standing.case_statics import solve_case_statics
+from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
+from alula.geometry.keeping.kept import kept as marked
 from alula.loads.case.case_file import read_case, read_tables, read_text
 from alula.reports.workbench import session
-from alula.reports.workbench.app import LARGEST_REQUEST
+from alula.reports.workbench.app import LARGEST_REQUEST, serve
 
 TITLE = {"op": "set", "path": ["title"]}
 
@@ -174,6 +176,15 @@ def test_a_starter_is_copied_with_its_files_and_over_nothing(bench, case):
     assert sorted(file.name for file in case.parent.iterdir()) == ["mine.toml", "new.toml", "owl-wing-anchor.step"]
 
 
+def test_files_whose_names_are_no_plain_text_are_not_offered(bench, case, tmp_path):
+    for name in (b"\xff.toml", b"new\nline.toml", b".hidden.toml"):
+        Path(os.fsdecode(os.fsencode(case.parent) + b"/" + name)).write_bytes(case.read_bytes())
+    assert json.loads(bench.ask("GET", "starters")[2])["files"] == ["mine.toml"]
+    odd = Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.toml"))
+    with pytest.raises(CaseError, match=r"\A'\?\.toml' .* rename it\Z"):
+        serve(odd, tmp_path, 0, print)
+
+
 def test_a_drawing_starts_from_nothing(tmp_path):
     with served.serving_of(tmp_path / "mine.toml", tmp_path) as bench:
         assert bench.document()["path"] is None
@@ -194,6 +205,13 @@ def test_what_is_no_request_changes_nothing(bench, body):
         assert status == 422
         assert "\n" not in json.loads(found)["sentence"]
     assert bench.document()["revision"] == 0
+
+
+def test_a_text_of_any_kind_is_answered(bench):
+    for number, text in enumerate(("x = 0x" + "f" * 5000, "pose = 5", "pose = [1]", "x" + ".x" * 3000 + " = 1")):
+        assert bench.post("text", revision=number, text=text, gesture="") == (200, {"revision": number + 1})
+        assert bench.document()["text"] == text
+        assert bench.post("edit", revision=number + 1, operations=[{"op": "turn", "to": 10**400}])[0] == 422
 
 
 def test_entries_have_types(bench):
@@ -223,10 +241,16 @@ def test_pages_are_counted(bench, monkeypatch):
             assert "close one" in json.loads(found)["sentence"]
 
 
-def test_the_report_is_of_no_origin(bench, monkeypatch):
+def test_the_report_is_of_no_origin_and_takes_what_was_solved_before(bench, cache, monkeypatch):
     from alula.reports.workbench import app
 
-    monkeypatch.setattr(app.out, "report", lambda *asked: b"<!DOCTYPE html>")
+    @marked()
+    def solved(text):
+        return f"<!DOCTYPE html>{text}"[:15].encode()
+
+    monkeypatch.setattr(app.out, "report", lambda text, *asked: solved(text))
+    assert bench.ask("GET", "out/report")[0] == 200
+    assert list((cache / "solved").iterdir())
     _, headers, found = bench.ask("GET", "out/report")
     assert found == b"<!DOCTYPE html>"
     policy = headers["content-security-policy"]
@@ -360,13 +384,14 @@ def test_a_read_only_file_stays_as_it_is(bench, case):
     assert 'title = "x"' in bench.document()["text"]
 
 
-def test_a_full_disk_loses_nothing(bench, case, monkeypatch):
-    def full(descriptor):
-        raise OSError(28, "No space left on device")
+def full_disk(descriptor):
+    raise OSError(28, "No space left on device")
 
+
+def test_a_full_disk_loses_nothing(bench, case, monkeypatch):
     before = case.read_bytes()
     retitled(bench, "x")
-    monkeypatch.setattr(os, "fsync", full)
+    monkeypatch.setattr(os, "fsync", full_disk)
     assert "No space left" in sentence(bench.post("save"))
     assert case.read_bytes() == before
     assert [file.name for file in case.parent.iterdir()] == ["mine.toml"]
@@ -435,6 +460,28 @@ def test_a_draft_that_is_not_taken_is_set_aside(case, cache, change):
     assert '"newer"' in kept(cache)[0]
 
 
+@pytest.mark.parametrize("change", ["deleted", "edited on a full disk"])
+def test_an_offered_draft_outlives_what_happens_before_the_answer(case, cache, monkeypatch, change):
+    before = case.read_bytes()
+    with served.serving_of(case, case.parent) as bench:
+        retitled(bench, "unsaved")
+    with served.serving_of(case, case.parent) as bench, bench.events() as events:
+        assert events.next("document")["draft"]
+        if change == "deleted":
+            case.unlink()
+            events.next("document", disk="deleted")
+        else:
+            with monkeypatch.context() as full:
+                full.setattr(os, "fsync", full_disk)
+                retitled(bench, "newer")
+                assert "still offered" in events.next("notice")["sentence"]
+        time.sleep(0.2)  # some looks at the disk
+    assert [text for text in kept(cache) if '"unsaved"' in text]
+    case.write_bytes(before)
+    with served.serving_of(case, case.parent) as bench:
+        assert bench.document()["draft"]
+
+
 def test_a_second_server_is_told_and_keeps_off(case, cache):
     with served.serving_of(case, case.parent) as first:
         retitled(first, "of the first")
@@ -479,4 +526,7 @@ def test_a_case_is_left_only_when_it_is_saved(bench, case: Path):
     assert "not saved" in sentence(bench.post("open", starter="four-bar", **{"as": "new.toml"}))
     assert not case.with_name("new.toml").exists()
     bench.post("save")
+    solids = bench.server.session.solids
+    assert solids.asked == []
     assert bench.post("open", starter="four-bar", **{"as": "new.toml"}) == (200, {"revision": 2})
+    assert solids.asked == ["stop"]

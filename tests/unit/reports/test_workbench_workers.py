@@ -135,6 +135,34 @@ def test_a_process_that_ends_by_itself_is_told_and_started_anew(told):
     told(story)
 
 
+@pytest.mark.parametrize("fault", ["no start", "no answer", "no page"])
+def test_whatever_goes_wrong_is_told_and_the_next_text_is_answered(fault, monkeypatch):
+    async def story():
+        page, start = Page(), asyncio.create_subprocess_exec
+        monkeypatch.setattr(workers, "ROLES", {"answers": ("pose",)})
+
+        async def failing(*command, **more):
+            if fault == "no start":
+                raise OSError("no process can be started")
+            return await start(*(("echo", "no answer") if fault == "no answer" else command), **more)
+
+        def tell(event, data):
+            if fault == "no page" and event != "notice":
+                raise KeyError("a mistake")
+            page.tell(event, data)
+
+        with monkeypatch.context() as broken:
+            broken.setattr(asyncio, "create_subprocess_exec", failing)
+            answering = Workers(tell, Path())
+            answering.ask(1, TEXT, NAME)
+            assert "was not found" in (await page.until("notice", 1))["sentence"]
+        answering.ask(2, TEXT, NAME)
+        await page.until("notice" if fault == "no page" else "drawn", 2)
+        await answering.close()
+
+    asyncio.run(story())
+
+
 def test_a_mistake_is_told_the_next_text_is_answered_and_the_end_of_requests_is_its_own():
     requests = [{"stage": "pose", "text": 5, "name": NAME}, {"stage": "pose", "text": TEXT, "name": NAME}]
     command = module_command("alula.reports.workbench.live.workers", "answers")
@@ -150,13 +178,14 @@ def test_a_mistake_is_told_the_next_text_is_answered_and_the_end_of_requests_is_
 
 
 def test_changed_files_of_parts_are_not_taken_for_the_same(tmp_path):
-    text, file = 'file = "arm.step"', tmp_path / "arm.step"
+    text, file = 'file = "parts/arm.step"', tmp_path / "parts" / "arm.step"
     assert workers._files(tmp_path, text) == []
+    file.parent.mkdir()
     file.write_text("one")
     (tmp_path / "other.step").write_text("one")
     first = workers._files(tmp_path, text)
     file.write_text("another")
-    assert [name for name, *_ in first] == ["arm.step"]
+    assert [name for name, *_ in first] == ["parts/arm.step"]
     assert workers._files(tmp_path, text) != first
     assert workers._files(tmp_path / "gone", text) == []
 
