@@ -37,7 +37,9 @@ def test_the_demo_succeeds_whenever_the_check_ran(tmp_path, status, succeeds):
     result = make("demo", f"BIN={tmp_path}", f"INSTALLED={installed}", f"DEMO={tmp_path}/demo", "PYTHON=true")
     assert (result.returncode == 0) == succeeds, result.stderr
     assert ("report.html" in result.stdout) == succeeds
-    assert (tmp_path / "arguments").read_text() == f"check owl-wing-static --fidelity solid -o {tmp_path}/demo\n"
+    assert (
+        tmp_path / "arguments"
+    ).read_text() == f"check owl-wing-static --fidelity solid --fresh -o {tmp_path}/demo\n"
 
 
 @pytest.mark.parametrize("failing", ["", "ruff", "mypy", "pytest"])

@@ -10,6 +10,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.doubts.causes import COUPLES, Cause, Stated, causes_of
+from alula.fea.doubts.force_doubt import rim_doubt
 from alula.fea.doubts.load_growth import Growths, growths
 from alula.fea.doubts.other_case import Doubt, OtherCase, Plates, widened
 from alula.fea.doubts.play_doubt import play_at_joint
@@ -141,6 +142,7 @@ class LoadCaseByHand:
             grown=found.bent,
             links=told,
         )
+        growth = growth.times(rim_doubt(case, load_case, moved, stated.shared, loads, told))
         return replace(found, growth=growth, causes=(*causes_of(stated), *doubts))
 
     @property

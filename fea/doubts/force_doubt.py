@@ -8,6 +8,7 @@ in the frame, whose pins keep its angles: the answers of sharing hold that growt
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +17,11 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import COUPLES, Source
-from alula.fea.doubts.load_growth import Growths, telling
+from alula.fea.doubts.load_growth import Growths, slack, telling
 from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
 from alula.fea.links.second_order import on_tilting_pins
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.nonlinear.rim_growth import rim_growth
 from alula.fea.standing.joint_forces import JointForces
 from alula.fea.superposition.link_answers import LinkAnswers, Rule, widest
 from alula.loads.case.case import Case
@@ -127,6 +130,15 @@ def sharing_answers(
     -------
     LinkAnswers
     """
+    tight, *others = _ways(case, load_case, link, forces, loads)
+    stated, *tilted = _on_tilting_pins(case, link, [tight, *others])
+    rule = widest(COUPLES)
+    stated = stated if grown else on_plates(case, link, tight)
+    return LinkAnswers(stated=stated, others=tuple(tilted), stress=rule, displacement=rule)
+
+
+def _ways(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> tuple[LinkLoads, ...]:
+    """What acts on a link with tight pins, and in the ways of sharing that count."""
     body = case.body(link)
     tight, *others = (
         link_loads(load_case, link, body, reactions, loads) for reactions in (forces.reactions, *forces.sharings)
@@ -136,11 +148,58 @@ def sharing_answers(
     across = across.reshape(len(others), -1)
     least = forces.pins.least(link) if forces.pins is not None else None
     least = int(np.argmin(np.linalg.norm(across, axis=1))) if least is None else least
-    chosen = {*outermost(across).tolist(), least}
-    stated, *tilted = _on_tilting_pins(case, link, [tight, *(others[i] for i in sorted(chosen))])
-    rule = widest(COUPLES)
-    stated = stated if grown else on_plates(case, link, tight)
-    return LinkAnswers(stated=stated, others=tuple(tilted), stress=rule, displacement=rule)
+    return tight, *(others[i] for i in sorted({*outermost(across).tolist(), least}))
+
+
+def rim_doubt(
+    case: Case,
+    load_case: str,
+    moved: LargeDisplacement,
+    forces: JointForces,
+    loads: Sequence[Load],
+    links: Sequence[str] | None = None,
+) -> Growths:
+    """Return what pins in their holes make of growth on the deformed shape, beside what ``sharing_answers`` hold of it.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    moved : LargeDisplacement
+        The frame's answer, whose growth is that of tight pins.
+    forces : JointForces
+        As of ``sharing_doubt``.
+    loads : sequence of Load
+        That act on the links.
+    links : sequence of str, optional
+        Whose numbers are wanted; all when left out.
+
+    Returns
+    -------
+    Growths
+        Of stresses of links and pins, where that is looked for.
+    """
+    if moved.pins is None or moved.state not in ("small", "deformed") or not forces.sharings:
+        return Growths()
+    found = rim_growth(moved.pins, slack(case, load_case, case.checked_links)[1])
+    stress = dict[str, Scatter]()
+    for link, one in telling(found.links).items():
+        if links is None or link in links:
+            own = _by_itself(case, load_case, link, forces, loads)
+            stress[link] = replace(one, low=min(one.low / own.low, 1.0), high=max(one.high / own.high, 1.0))
+    return Growths(stress=telling(stress), pins=telling(found.pins))
+
+
+def _by_itself(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> Scatter:
+    """Growth of a link's ends of stress, by hand, that bends by itself on pins that tilt."""
+    _, *ways = _ways(case, load_case, link, forces, loads)
+    plain, tilted = [on_plates(case, link, way) for way in ways], _on_tilting_pins(case, link, ways)
+    numbers = numbers_by_hand(case, link, [*plain, *tilted])[0]
+    before, after = numbers[: len(ways)], numbers[len(ways) :]
+    if not before.min() > 0.0:
+        return Scatter()
+    return Scatter(low=float(after.min() / before.min()), high=float(after.max() / before.max()))
 
 
 def growths_by_hand(

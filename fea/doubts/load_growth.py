@@ -20,7 +20,6 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
-from alula.fea.nonlinear.rim_growth import rim_growth
 from alula.fea.nonlinear.stability import growth
 from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError, CaseError
@@ -154,7 +153,7 @@ def growths(
     -------
     Growths
     """
-    low, high = _slack(case, load_case, hands)
+    low, high = slack(case, load_case, hands)
     plain = by_hand_numbers(hands, moved.reactions or reactions)
     stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     found = Growths()
@@ -162,7 +161,7 @@ def growths(
         found = stated.of_small(moved, plain, high)
     elif low < high and moved.state in ("deformed", "off", "unknown"):
         found = stated.between(pose, plain, low, high)
-    return found.times(_on_rims(moved, high))
+    return found
 
 
 def beyond_undeformed(
@@ -197,10 +196,10 @@ def beyond_undeformed(
     Growths
         With upper ends that are infinite where the linkage gives way.
     """
-    high, plain = _slack(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
+    high, plain = slack(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
     stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     if moved.state == "small":
-        return stated.of_small(moved, plain, high).times(_on_rims(moved, high))
+        return stated.of_small(moved, plain, high)
     if moved.gives_way:
         return _told([dict.fromkeys(kind, (1.0, math.inf)) for kind in plain])
     plain = plain if moved.reactions is None else stated.on_tight_pins(moved, plain)
@@ -220,22 +219,26 @@ def beyond_undeformed(
                 if value > least
             }
         )
-    return _told(found).times(_on_rims(moved, high))
+    return _told(found)
 
 
-def _on_rims(moved: LargeDisplacement, high: float) -> Growths:
-    """Growth of stresses with pins in their holes over that with tight ones, where it is looked for."""
-    if moved.pins is None or moved.state not in ("small", "deformed"):
-        return Growths()
-    found = rim_growth(moved.pins, high)
-    return Growths(stress=telling(found.links), pins=telling(found.pins))
+def slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
+    """Return the least and the largest load over modulus, over what it is.
 
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+    links : iterable of str
+        Whose moduli count.
 
-def _slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
-    """Least and largest load over modulus, over what it is."""
-    load, slack = load_scatter(case, load_case), [compliance_scatter(case.material_of(link)) for link in links]
-    low = load.low * min((s.low for s in slack), default=1.0)
-    high = load.high * max((s.high for s in slack), default=1.0)
+    Returns
+    -------
+    tuple of 2 float
+    """
+    load, soft = load_scatter(case, load_case), [compliance_scatter(case.material_of(link)) for link in links]
+    low = load.low * min((s.low for s in soft), default=1.0)
+    high = load.high * max((s.high for s in soft), default=1.0)
     return low, high
 
 

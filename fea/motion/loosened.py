@@ -29,6 +29,7 @@ from alula.fea.buckling.buckling import least_factor
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import distinct, play_source
+from alula.fea.doubts.force_doubt import rim_doubt
 from alula.fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
 from alula.fea.doubts.play_doubt import play_doubt
 from alula.fea.links.link_by_hand import numbers_by_hand, on_plates, plates_by_hand
@@ -349,13 +350,14 @@ def _grown_at(moved: CaseMotion, load_case: str, i: int, histories: Mapping[str,
     hands = {link: found[0][1] for link, found in plates.items()}
     inverse = {link: max(1.0 / least_factor(case, link, hand.check) for _, hand in plates[link]) for link in hands}
     try:
-        reactions = forces_at(moved, load_case, i).reactions
+        forces = forces_at(moved, load_case, i)
         shape = with_growth(case, load_case, shape_at(moved, load_case, i), loads)
     except (CaseError, CannotRunError):
         return _GrownPose()
-    stress, _, forces, torques = by_hand_numbers(hands, reactions)
-    found = beyond_undeformed(case, load_case, pose, loads, shape, reactions, hands)
-    return _GrownPose(stress=stress, inverse=inverse, forces=forces, torques=torques, growths=found)
+    stress, _, magnitudes, torques = by_hand_numbers(hands, forces.reactions)
+    found = beyond_undeformed(case, load_case, pose, loads, shape, forces.reactions, hands)
+    found = found.times(rim_doubt(case, load_case, shape, forces, loads, tuple(hands)))
+    return _GrownPose(stress=stress, inverse=inverse, forces=magnitudes, torques=torques, growths=found)
 
 
 def _worst(found: Iterable[Scatter | None]) -> Scatter:
