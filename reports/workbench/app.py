@@ -184,7 +184,7 @@ def application(session: Session) -> Starlette:
 
     async def report(request: Request) -> Response:
         fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
-        data = await asyncio.to_thread(out.report, session.text, str(session.path), fidelity)
+        data = await asyncio.to_thread(out.report, session.whole, str(session.path), fidelity)
         return Response(data, media_type="text/html", headers={"Content-Security-Policy": REPORT})
 
     async def case(request: Request) -> Response:
@@ -192,7 +192,7 @@ def application(session: Session) -> Starlette:
 
     async def step(request: Request) -> Response:
         link = request.path_params["link"]
-        return _file(await asyncio.to_thread(out.step, session.text, str(session.path), link), f"{link}.step")
+        return _file(await asyncio.to_thread(out.step, session.whole, str(session.path), link), f"{link}.step")
 
     async def drop(request: Request) -> Response:
         data = await _received(request, LARGEST_FILE)

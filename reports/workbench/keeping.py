@@ -7,8 +7,9 @@ import json
 import os
 import secrets
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
@@ -107,6 +108,29 @@ def plain_name(name: str, suffix: str) -> str:
     if not is_plain(name, suffix):
         raise CaseError(f"'{printable(name)}' must be the plain name of a file that ends in {suffix}; write another")
     return name
+
+
+def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
+    """Refuse a case whose parts are files outside of its folder: the page reads nothing there.
+
+    Parameters
+    ----------
+    tables : mapping
+        Of the case, not validated.
+    folder : Path
+
+    Raises
+    ------
+    CaseError
+    """
+    parts, home = tables.get("parts"), Path(os.path.realpath(folder))
+    for name, part in parts.items() if isinstance(parts, dict) else ():
+        file = part.get("file") if isinstance(part, dict) else None
+        if isinstance(file, str) and not Path(os.path.realpath(home / file.replace("\0", ""))).is_relative_to(home):
+            raise CaseError(
+                f"parts.{printable(name)}.file: '{printable(file)}' is not in the folder of the case, and the page "
+                "reads no other; copy it there"
+            )
 
 
 def write_whole(path: Path, data: bytes) -> None:

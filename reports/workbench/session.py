@@ -17,7 +17,16 @@ from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.editing.edits import EMPTY
 from alula.reports.workbench.editing.toml_text import value_at
-from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_whole
+from alula.reports.workbench.keeping import (
+    Drafts,
+    Stamp,
+    case_text,
+    digest,
+    plain_name,
+    refuse_elsewhere,
+    stamp_of,
+    write_whole,
+)
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
 
@@ -235,6 +244,7 @@ class Session:
         """Start or stop the check by solids."""
         document = self._open()
         if do == "start":
+            refuse_elsewhere(document.tables(), self.folder)
             self.solids.start(document.revision, document.text, str(self.path), fidelity)
         else:
             self.solids.stop()
@@ -243,6 +253,18 @@ class Session:
     def text(self) -> str:
         """Of the open case, without a byte order mark."""
         return self._open().text.removeprefix("\ufeff")
+
+    @property
+    def whole(self) -> str:
+        """The same, of a case that may be read.
+
+        Raises
+        ------
+        CaseError
+            As ``refuse_elsewhere``.
+        """
+        refuse_elsewhere(self._open().tables(), self.folder)
+        return self.text
 
     def _open(self, revision: int | None = None) -> Document:
         """Return the document, which has to be the one that a page knows."""
@@ -256,6 +278,7 @@ class Session:
         """Return the pose of a text that balances by itself; other poses an edit finds on its own."""
         with suppress(AlulaError):
             tables = Document(text).tables()
+            refuse_elsewhere(tables, self.folder)
             if value_at(tables, ("pose", "equilibrium")):
                 case = changed_case(tables, (), str(self.path), str(self.folder))
                 return solve_case_statics(case, str(self.path)).pose
@@ -267,7 +290,7 @@ class Session:
             self._draft = None
         document = self._open()
         try:
-            document.tables()
+            refuse_elsewhere(document.tables(), self.folder)
         except CaseError as error:
             self._find(str(error))
         else:

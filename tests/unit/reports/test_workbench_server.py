@@ -185,6 +185,19 @@ def test_files_whose_names_are_no_plain_text_are_not_offered(bench, case, tmp_pa
         serve(odd, tmp_path, 0, print)
 
 
+@pytest.mark.parametrize("file", ["/etc/hostname", "../lever.step", "near/../../lever.step", "link.step"])
+def test_no_part_leads_out_of_the_folder(bench, case, file):
+    (case.parent / "link.step").symlink_to("/etc/hostname")
+    text = bench.document()["text"] + f'\n[parts.far]\nshape = "step"\nmaterial = "pla-fdm-xy"\nfile = "{file}"\n'
+    assert bench.post("text", revision=bench.document()["revision"], text=text)[0] == 200
+    assert "parts.far.file" in bench.document()["problem"]["sentence"]
+    assert "parts.far.file" in sentence(bench.post("solids", do="start"))
+    assert bench.ask("GET", "out/report")[0] == bench.ask("GET", "out/step/crank")[0] == 422
+    operation = {"op": "set", "path": ["parts", "far", "file"], "value": "lever.step"}  # one that may be
+    assert bench.post("edit", revision=bench.document()["revision"], operations=[operation])[0] == 200
+    assert bench.document()["tables"]["parts"]["far"]["file"] == "lever.step"
+
+
 def test_a_drawing_starts_from_nothing(tmp_path):
     with served.serving_of(tmp_path / "mine.toml", tmp_path) as bench:
         assert bench.document()["path"] is None
