@@ -8,10 +8,11 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
+from alula.loads.case.part_points import KINDS
 from alula.loads.text.nesting import refuse_deep
 from alula.reports.workbench.editing.moves import lengthen, move, turn
 from alula.reports.workbench.editing.plane import SAME, Plane, Point, loose_positions, told
-from alula.reports.workbench.editing.references import free, remove, rename
+from alula.reports.workbench.editing.references import free, hand_over, remove, rename
 from alula.reports.workbench.editing.toml_text import TomlText, value_at
 
 __all__ = ["EMPTY", "loose_positions", "perform"]
@@ -71,7 +72,8 @@ def perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) ->
     draft : TomlText
         The case.
     operation : mapping
-        "op" and what it needs: set, append, remove, rename, move, length, turn, link, join, split, load, layer, ground.
+        "op" and what it needs: set, append, remove, rename, move, length, turn, link, join, split, hand, load, layer,
+        ground.
         Places are [x, y] in mm in the pose shown, angles in degrees.
     pose : Pose, optional
         The pose shown.
@@ -121,6 +123,8 @@ def _perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) -
             _join(draft, pose, first, second)
         case {"op": "split", "joint": str(joint)}:
             remove(draft, ("joints", joint))
+        case {"op": "hand", "link": str(link), "point": str(point), "to": str(to)}:
+            _hand(draft, Plane(draft.tables, pose), (link, point), to)
         case {"op": "load", "load_case": str(name), "link": str(link), "point": str(point), "force": [*force]}:
             Plane(draft.tables).place(link, point)
             forces = value_at(draft.tables, ("load_cases", name, "forces")) or []
@@ -266,6 +270,22 @@ def _join(draft: TomlText, pose: Pose | None, first: Mapping[str, Any], second: 
     if abs(plane.place(*moved) - plane.place(*still)) > SAME:
         move(draft, plane, moved, plane.place(*still))
     _joint(draft, plane, one, other)
+
+
+def _hand(draft: TomlText, plane: Plane, key: Point, to: str) -> None:
+    """Give a point to another link, at the place where it is; on a straight one at the nearest place of its axis."""
+    place = plane.place(*key)
+    if to not in plane.links or to == key[0]:
+        raise CaseError(f"edit hand: '{to}' is no other link; choose one that is there")
+    if {plane.shapes[key[0]], plane.shapes[to]} & {*KINDS}:
+        raise CaseError("edit hand: points of a part from a file come from its bores; change that file, or the part")
+    origin, angle = plane.frames[to]
+    at = (place - origin) / cmath.rect(1.0, angle)
+    at = complex(at.real, 0.0) if to in plane.straight else at
+    taken = draft.tables["links"][to].get("points", {})
+    name = key[1] if key[1] not in taken else next(_names(draft.tables))
+    draft.put(("links", to, "points", name), [told(at.real, "length"), told(at.imag, "length")])
+    hand_over(draft, *key, to, name)
 
 
 def _layer(draft: TomlText, link: str, to: int) -> None:

@@ -182,6 +182,41 @@ def _rename_point(draft: TomlText, link: str, name: str, to: str, joint: str) ->
     _rename_tolerances(draft, path, to)
 
 
+def hand_over(draft: TomlText, link: str, point: str, to: str, name: str) -> None:
+    """Let all that refers to a point of a link refer to one of another link, and remove the point.
+
+    Parameters
+    ----------
+    draft : TomlText
+        The case.
+    link, point : str
+        Whose point it is so far.
+    to, name : str
+        The other link, and the point of it that is there already.
+
+    Raises
+    ------
+    CaseError
+        For a joint that would be of one link alone.
+    """
+    found = [(one.path, None) for one in _of_point(draft.tables, link, point)]
+    if _of_own_name(draft.tables, link, point):
+        found.append((("joints", point, "links", draft.tables["joints"][point]["links"].index(link)), point))
+    for path, joint in found:
+        if path[0] == "joints":
+            links = list(draft.tables["joints"][path[1]]["links"])
+            if to in links:
+                raise CaseError(f"joints.{path[1]}: it would join '{to}' to itself; give the point to a third link")
+            draft.put((*path[:2], "links"), [to if n == path[-1] else one for n, one in enumerate(links)])
+            if joint is None or joint != name:
+                points = draft.tables["joints"][path[1]].get("points", [joint, joint])
+                draft.put((*path[:2], "points"), [name if n == path[-1] else one for n, one in enumerate(points)])
+        elif value_at(draft.tables, (*path[:-1], "link")) == link:
+            draft.put((*path[:-1], "link"), to)
+            draft.put(path, name)
+    draft.remove(("links", link, "points", point))
+
+
 def _is_point(path: Path) -> bool:
     return len(path) == 4 and path[0] == "links" and path[2] == "points"
 

@@ -50,7 +50,9 @@ function asked(handle) {
   if (handle.kind === "point") {
     const at = now.at.get(key(handle.link, handle.point));
     fields = [...place(at), ...lengths(now.links.filter((link) => link.name === handle.link), [key(handle.link, handle.point)])];
-    return { at, title: `Point ${handle.point} of ${handle.link}`, fields, change: moves({ link: handle.link, point: handle.point }) };
+    const others = now.links.filter((link) => link.name !== handle.link).map((link) => link.name);
+    const hand = (to) => ({ op: "hand", link: handle.link, point: handle.point, to });
+    return { at, title: `Point ${handle.point} of ${handle.link}`, fields, change: moves({ link: handle.link, point: handle.point }), choice: { label: "give it to", others, make: hand } };
   }
   if (handle.kind === "link") {
     const link = now.links.find((one) => one.name === handle.name);
@@ -91,6 +93,11 @@ export function open(parent, handle, focus) {
     row.append(` ${unit}`);
     return input;
   });
+  if (what.choice?.others.length) {
+    const select = add(add(form, "label", {}, `${what.choice.label} `), "select", {});
+    for (const name of ["", ...what.choice.others]) add(select, "option", { value: name }, name || "–");
+    select.addEventListener("change", () => finish(parent, [what.choice.make(select.value)]));
+  }
   add(form, "button", { type: "submit" }, "Set");
   form.addEventListener("submit", (event) => {
     event.preventDefault();

@@ -391,3 +391,35 @@ def test_what_cannot_be_drawn_is_refused(operation: dict[str, Any], sentence: st
         document.apply([operation], read_case("four-bar").solve_pose())
     assert "\n" not in str(refused.value)
     assert (document.text, document.can_undo) == (opened("four-bar").text, False)
+
+
+def test_a_point_is_given_to_another_link_with_its_load() -> None:
+    document = opened("four-bar")
+    pose = stated(document, "four-bar").solve_pose()
+    before = pose.position("rocker", "P")
+    document.apply([{"op": "hand", "link": "rocker", "point": "P", "to": "coupler"}], pose)
+    tables = document.tables()
+    assert "P" not in tables["links"]["rocker"]["points"]
+    assert tables["load_cases"]["lift"]["forces"] == [{"link": "coupler", "at": "P", "force": ["0 N", "-5 N"]}]
+    after = stated(document, "four-bar").solve_pose()
+    axis = after.rotation("coupler")[:, 0]
+    assert axis @ (after.position("coupler", "P") - before) == pytest.approx(0.0, abs=1e-6)  # the nearest of its axis
+    document.undo()
+    assert document.text == opened("four-bar").text
+
+
+def test_a_joint_is_given_to_a_third_link_and_not_to_its_own() -> None:
+    document = opened("six-bar")
+    pose = stated(document, "six-bar").solve_pose()
+    joint, [first, second] = next((name, one["links"]) for name, one in document.tables()["joints"].items())
+    third = next(name for name in document.tables()["links"] if name not in (first, second))
+    with pytest.raises(CaseError, match="to itself"):
+        document.apply([{"op": "hand", "link": second, "point": joint, "to": first}], pose)
+    document.apply([{"op": "hand", "link": second, "point": joint, "to": third}], pose)
+    made = document.tables()["joints"][joint]
+    assert made["links"] == [first, third]
+    for link, point in zip(made["links"], made.get("points", [joint, joint]), strict=True):
+        assert point in document.tables()["links"][link]["points"]
+    for wrong in ("nobody", third):
+        with pytest.raises(CaseError, match="no other link"):
+            document.apply([{"op": "hand", "link": third, "point": joint, "to": wrong}], None)
