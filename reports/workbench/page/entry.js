@@ -29,7 +29,7 @@ export function forceOperations(load, links, [x, y]) {
 
 const parsed = (text) => (text ? Number(text.replace(",", ".")) : NaN);
 
-/** The numbers of a thing, each with what a new value does: {at, title, fields: [{label, value, unit}], change(texts, changed)}. */
+/** The numbers of a thing, null where it is not drawn, each with what a new value does: {at, title, fields: [{label, value, unit}], change(texts, changed)}. */
 function asked(handle) {
   const now = scene();
   const place = (at) => [{ label: "x", value: at[0], unit: "mm" }, { label: "y", value: at[1], unit: "mm" }];
@@ -44,11 +44,13 @@ function asked(handle) {
   const made = (texts, changed) => fields.flatMap((field, k) => (field.make && changed[k] ? [field.make(texts[k])] : []));
   if (handle.kind === "joint") {
     const joint = now.joints.find((one) => one.name === handle.name);
+    if (!joint) return null;
     fields = [...place(joint.at), ...lengths(now.links.filter((link) => joint.links.includes(link.name)), joint.points)];
     return { at: joint.at, title: `Joint ${joint.name}`, fields, change: moves({ joint: joint.name }) };
   }
   if (handle.kind === "point") {
     const at = now.at.get(key(handle.link, handle.point));
+    if (!at) return null;
     fields = [...place(at), ...lengths(now.links.filter((link) => link.name === handle.link), [key(handle.link, handle.point)])];
     const others = now.links.filter((link) => link.name !== handle.link).map((link) => link.name);
     const hand = (to) => ({ op: "hand", link: handle.link, point: handle.point, to });
@@ -56,11 +58,13 @@ function asked(handle) {
   }
   if (handle.kind === "link") {
     const link = now.links.find((one) => one.name === handle.name);
+    if (!link) return null;
     fields = lengths([link]);
     return { at: link.pieces[0]?.[0] ?? link.origin, title: `Link ${link.name}`, fields, change: made };
   }
   if (handle.kind === "load") {
     const load = now.loads.find((one) => String(one.path) === String(handle.path));
+    if (!load) return null;
     const [x, y] = load.vector;
     fields = [{ label: "size", value: size(load.vector), unit: "N" }, { label: "direction", value: (Math.atan2(y, x) * 180) / Math.PI, unit: "°" }, { label: "Fx", value: x, unit: "N" }, { label: "Fy", value: y, unit: "N" }];
     const change = (texts, changed) => {

@@ -339,7 +339,7 @@ function addLoad({ end, at, operations, to }) {
 
 /** Select a load that was made once it is drawn, with its numbers ready to be typed. */
 function takeUp() {
-  if (!made || !store.state.drawn?.loads.some((load) => same(load.path, made.path))) return;
+  if (!made || !scene()?.loads.some((load) => same(load.path, made.path))) return;
   store.put("selected", made);
   entry.open(parent, made, false);
   made = null;
