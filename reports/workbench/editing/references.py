@@ -199,7 +199,7 @@ def hand_over(draft: TomlText, link: str, point: str, to: str, name: str) -> Non
     CaseError
         For a joint that would be of one link alone.
     """
-    found = [(one.path, None) for one in _of_point(draft.tables, link, point)]
+    found: list[tuple[Path, str | None]] = [(one.path, None) for one in _of_point(draft.tables, link, point)]
     if _of_own_name(draft.tables, link, point):
         found.append((("joints", point, "links", draft.tables["joints"][point]["links"].index(link)), point))
     for path, joint in found:
