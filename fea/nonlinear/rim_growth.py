@@ -33,7 +33,7 @@ SETTLED = 1e-3
 CLOSE = 1e-8
 """Residual at which forces are known to 1e-6."""
 MOST_STEPS = 50
-"""Of pins that settle; those of drawn linkages take three."""
+"""Of pins that settle; those of five drawn linkages and two built-in cases took 5 to 14."""
 
 
 @dataclass(frozen=True, kw_only=True)

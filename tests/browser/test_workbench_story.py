@@ -131,7 +131,7 @@ class Page:
         return self.browser.element("#panel-verdict .stamp").text.lower()
 
     def picture(self, name):
-        """Draw a picture of the tutorial, if it is asked for: 160 colours are enough."""
+        """Draw a picture of the tutorial, if it is asked for, in all its colours: its legend tells by them."""
         folder = os.environ.get("ALULA_PICTURES")
         if folder:
             from PIL import Image
@@ -142,8 +142,7 @@ class Page:
                 "return new Promise(requestAnimationFrame)"
             )  # commands name the folder of this run
             with Image.open(io.BytesIO(self.browser.driver.get_screenshot_as_png())) as image:
-                few = image.convert("RGB").quantize(160, dither=Image.Dither.NONE)
-                few.save(Path(folder) / f"{name}.png", optimize=True)
+                image.convert("RGB").save(Path(folder) / f"{name}.png", optimize=True)
 
 
 def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tmp_path):
