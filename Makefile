@@ -13,7 +13,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) PYTHONDONTWRITEBYTECODE= $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden planted texts viewer clean distclean
+.PHONY: help setup libraries demo docs test lint tests verify bench coverage fuzz golden planted texts viewer dist clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -73,6 +73,13 @@ viewer: ## build reports/turnable/viewer.js, which draws the models in a report,
 	@mkdir -p $(VIEWER) && cp reports/turnable/package.json reports/turnable/package-lock.json $(VIEWER)
 	@npm ci --prefix $(VIEWER) --ignore-scripts --no-audit --no-fund --silent
 	@node reports/turnable/build.js $(VIEWER)
+
+# The wheel is built from the archive of sources, so that what this leaves out is missed at once.
+dist: setup ## archive of sources and wheel, in dist
+	@rm -rf build dist && mkdir dist
+	@$(BIN)/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')" >/dev/null
+	@$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir dist dist/*.tar.gz
+	@rm -rf build alula.egg-info && ls -l dist
 
 clean: ## remove results and caches
 	rm -rf out build dist docs/generated alula.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

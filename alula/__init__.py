@@ -59,11 +59,12 @@ if TYPE_CHECKING:
     from alula.reports.notebook.size_report import SizeReport
     from alula.reports.notebook.study_report import StudyReport
     from alula.reports.notebook.synthesis_report import SynthesisReport
+    from alula.reports.notebook.told_report import ToldReport
     from alula.reports.notebook.tolerance_report import ToleranceReport
 
 __all__ = [
-    "Case", "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "size", "study",
-    "synthesise", "tolerance",
+    "Case", "cases", "check", "claims", "envelope", "frequencies", "inspect", "materials", "motion", "read_case",
+    "size", "statics", "study", "synthesise", "tolerance",
 ]  # fmt: skip
 __version__ = alula_version()
 
@@ -183,6 +184,69 @@ def check(
             progress=progress or _silent,
         )
     )
+
+
+def statics(case: "Case | str | PathLike[str]", *, matrix: bool = False) -> "ToldReport":
+    """Solve pose and joint forces of every load case, and nothing more.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        A case, the name of a built-in one, or the path of a case file.
+    matrix : bool
+        True for the equations [A][R] = [b] as well.
+
+    Returns
+    -------
+    ToldReport
+        Printed it is what ``alula statics`` tells.
+
+    Raises
+    ------
+    CaseError
+        For a wrong case.
+
+    Examples
+    --------
+    >>> [row["joint"] for row in statics("four-bar").table()]
+    ['O2', 'A', 'B', 'O4']
+    """
+    from alula.fea.standing.case_statics import solve_case_statics
+    from alula.reports.commands.statics import statics_sections
+    from alula.reports.notebook.told_report import ToldReport
+
+    found = _case(case)
+    sections = statics_sections(solve_case_statics(found, found.origin), matrix=matrix)
+    return ToldReport(f"statics of {found.title!r}", sections, first="joints")
+
+
+def materials(name: str | None = None) -> "ToldReport":
+    """Look into the library of materials: values, sources, what is assumed and what is missing.
+
+    Parameters
+    ----------
+    name : str, optional
+        A card to show whole; all of them in one table when left out.
+
+    Returns
+    -------
+    ToldReport
+        Printed it is what ``alula materials`` tells.
+
+    Raises
+    ------
+    CaseError
+        For a name that is not in the library.
+
+    Examples
+    --------
+    >>> len(materials().table()) > 10
+    True
+    """
+    from alula.reports.commands.materials import told_materials
+    from alula.reports.notebook.told_report import ToldReport
+
+    return ToldReport("materials" if name is None else f"material {name!r}", [told_materials(name)])
 
 
 def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionReport":

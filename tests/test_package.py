@@ -3,10 +3,12 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import sysconfig
 import tomllib
+import urllib.request
 import zipfile
 from importlib.metadata import distributions, packages_distributions, version
 from pathlib import Path
@@ -37,7 +39,7 @@ def run(*command: str | Path, cwd: Path) -> str:
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory) -> Path:
-    """Build the wheel from a copy, so that nothing is left in the checkout and nothing in it is left out."""
+    """Build the wheel as `make dist` does, by way of the archive of sources, from a copy of the checkout."""
     source = tmp_path_factory.mktemp("source")
     for folder in ("alula", *PACKAGES, "tests", "benchmarks"):
         if (ROOT / folder).is_dir():
@@ -46,8 +48,11 @@ def wheel(tmp_path_factory) -> Path:
         if file.is_file() and not file.name.startswith("."):
             shutil.copy(file, source)
     target = tmp_path_factory.mktemp("wheel")
+    build = "import sys; from setuptools.build_meta import build_sdist; build_sdist(sys.argv[1])"
+    run(sys.executable, "-c", build, target, cwd=source)
+    [archive] = target.glob("alula-*.tar.gz")
     options = ("--quiet", "--no-deps", "--no-index", "--no-build-isolation", "--wheel-dir", target)
-    run(sys.executable, "-m", "pip", "wheel", *options, source, cwd=target)
+    run(sys.executable, "-m", "pip", "wheel", *options, archive, cwd=target)
     [built] = target.glob("alula-*.whl")
     return built
 
@@ -76,7 +81,7 @@ def test_the_wheel_holds_the_rooms_with_their_data_and_no_tests(wheel):
         if file.is_file() and "__pycache__" not in file.parts
     }
     face = {file.name for file in (ROOT / "alula").iterdir() if file.is_file()}
-    assert face == {"__init__.py", "__main__.py", "py.typed"}
+    assert face == {"__init__.py", "__main__.py", "py.typed", "server.py"}
     assert shipped == {f"alula/{name}" for name in tracked | face}
     assert "alula/geometry/materials/materials.toml" in shipped
 
@@ -115,7 +120,7 @@ def test_what_is_installed_is_what_the_metadata_says(installed):
     for one in always:
         assert one.specifier.contains(version(one.name), prereleases=True), one
     declared = {canonical(one.name) for one in always}
-    extra = re.compile(r'extra == "(pardiso|cluster|pandas)"')
+    extra = re.compile(r'extra == "(pardiso|cluster|pandas|mcp)"')
     optional = {canonical(one.name) for one in stated if extra.search(str(one.marker))}
     owners = packages_distributions()
     modules = {
@@ -140,6 +145,29 @@ def test_the_command_runs_from_another_folder(installed, tmp_path):
     assert listed == {file.stem for file in (ROOT / "loads" / "cases").glob("*.toml")}
     assert "owl-wing-static" in listed
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_wheel_alone_checks_composes_draws_and_serves(installed, tmp_path):
+    """No checkout is near: a check with its page and viewer, the composed case of README, the page to work in."""
+    alula = installed / "bin" / "alula"
+    done = subprocess.run([alula, "check", "four-bar", "--fidelity", "beam", "-o", "out"], cwd=tmp_path, timeout=120)
+    assert done.returncode == 3
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "WebGLRenderer" in page
+    snippets = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    [composed] = (text for text in snippets if "alula.Case(" in text)
+    (tmp_path / "composed.py").write_text(composed, encoding="utf-8")
+    assert run(installed / "bin" / "python", "composed.py", cwd=tmp_path).split()[-2:] == ["2.12", "1.11"]
+    command = [alula, "open", "my-case.toml", "--no-browser"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as served:
+        try:
+            assert served.stdout is not None
+            address = served.stdout.readline().split()[-1]
+            with urllib.request.urlopen(address, timeout=30) as answer:
+                assert "<html" in answer.read().decode()
+        finally:
+            served.send_signal(signal.SIGINT)
+    assert served.returncode == 130
 
 
 SWEEP = """

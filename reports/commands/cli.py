@@ -330,6 +330,19 @@ def inspect(
 
 
 @app.command()
+def mcp(
+    folder: Annotated[Path, typer.Argument(help="Folder below which case files and parts are read.")] = Path(),
+    threads: options.ThreadsOption = 2,
+) -> None:
+    """Answer another program, such as an assistant, by the Model Context Protocol over standard input and output."""
+    from alula.reports.words.limits import limited
+    from alula.server import serve
+
+    with limited(threads):
+        serve(folder, threads)
+
+
+@app.command()
 def export(
     case: options.CaseArgument,
     step: Annotated[bool, typer.Option("--step", help="Write the parts as STEP files (mm).")] = False,

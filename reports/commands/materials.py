@@ -1,8 +1,11 @@
 """``alula materials``: the cards of the library, as a table, one by one, as TOML to paste, as JSON or Markdown."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from alula.reports.sections.section import Section
 
 app = typer.Typer()
 
@@ -18,17 +21,11 @@ def materials(
 ) -> None:
     """List the material library: values, sources, what is assumed and what is missing."""
     from alula.geometry.base.errors import CaseError
-    from alula.geometry.materials.directional import directional
-    from alula.geometry.materials.material import library
-    from alula.loads.text.explain import require
     from alula.reports.commands.telling import tell
     from alula.reports.renderers.markdown import table_lines
-    from alula.reports.tools.library import card_section, library_section, library_table
+    from alula.reports.tools.library import library_table
 
-    if name is not None:
-        if why := directional(name):
-            raise CaseError(f"materials: '{name}' {why}")
-        require("materials", name, library(), "is not in the library")
+    found = told_materials(name)
     if card:
         if name is None:
             raise CaseError("--card: it needs the name of a card; alula materials lists them")
@@ -36,7 +33,38 @@ def materials(
     elif markdown and not json:
         print("\n".join(table_lines(library_table())))
     else:
-        tell([library_section() if name is None else card_section(name)], json=json)
+        tell([found], json=json)
+
+
+def told_materials(name: str | None) -> "Section":
+    """Return what the library says of all materials, or of one.
+
+    Parameters
+    ----------
+    name : str or None
+        Of a card.
+
+    Returns
+    -------
+    Section
+
+    Raises
+    ------
+    CaseError
+        For a name that is not in the library.
+    """
+    from alula.geometry.base.errors import CaseError
+    from alula.geometry.materials.directional import directional
+    from alula.geometry.materials.material import library
+    from alula.loads.text.explain import require
+    from alula.reports.tools.library import card_section, library_section
+
+    if name is None:
+        return library_section()
+    if why := directional(name):
+        raise CaseError(f"materials: '{name}' {why}")
+    require("materials", name, library(), "is not in the library")
+    return card_section(name)
 
 
 def card_text(name: str) -> str:

@@ -12,6 +12,7 @@ from alula.fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from alula.fea.whole.size import size_limits
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.heights import layer_of
+from alula.reports.check.changes import first_change
 from alula.reports.check.whole_check import check_sections
 from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, summary, table_of
 from alula.reports.sections.checks import check_table
@@ -58,6 +59,11 @@ class CheckReport(Tabled):
     def headline(self) -> str:
         """The verdict and its reason in a few sentences."""
         return headline(self._judged)
+
+    @cached_property
+    def change(self) -> str:
+        """What would change the verdict, with the command that finds a size; empty where nothing is known to."""
+        return " ".join(filter(None, first_change(self.sections, said=self.headline)))
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -1,0 +1,199 @@
+"""``alula mcp``: functions of the Python face as tools of the Model Context Protocol (MCP).
+
+A program that speaks the protocol, such as an assistant, starts the command and asks it over standard input and output.
+Name, arguments and text of a tool are those of the function; its answer is what the report tells, with one table.
+"""
+
+import inspect
+import os
+import threading
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict
+
+import alula
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.loads.text.explain import printable
+
+if TYPE_CHECKING:
+    from mcp.server import MCPServer
+
+TOOLS = ("check", "statics", "motion", "inspect", "materials")
+_LEFT_OUT = ("progress", "threads")
+"""Arguments of functions that no program states: the command says how many threads there are."""
+_ABOUT = (
+    "alula checks planar linkages: pose, joint forces, stress with error bands, verdict. A case is the name of a "
+    "built-in one or the path of a case file below the folder of this server; values replaces entries of it, such as "
+    '{"parts.bar.thickness": "6 mm"}. Units are mm, N, N*mm and MPa unless a name says otherwise.'
+)
+
+
+class Answer(TypedDict):
+    """What a tool answers.
+
+    Attributes
+    ----------
+    told : str
+        What the report tells.
+    verdict : str or None
+        Of a check: pass, fail or undecided.
+    table : list of dict
+        The rows of its first table, with low and high ends of bands; numbers that are not finite are None.
+    """
+
+    told: str
+    verdict: str | None
+    table: list[dict[str, str | float | int | None]]
+
+
+def serve(folder: Path, threads: int) -> None:
+    """Answer a program until it closes standard input.
+
+    Parameters
+    ----------
+    folder : Path
+        Files outside of it are not read; nothing is written.
+    threads : int
+        Threads that each library may use, and child processes at a time.
+
+    Raises
+    ------
+    CaseError
+        For a folder that is not there.
+    CannotRunError
+        Where the package ``mcp`` is not installed.
+    """
+    if not folder.is_dir():
+        raise CaseError(f"'{printable(str(folder))}' is no folder; name the one that holds the case files")
+    made(folder, threads).run()
+
+
+def made(folder: Path, threads: int) -> "MCPServer":
+    """Return a server with its tools.
+
+    Parameters
+    ----------
+    folder : Path
+    threads : int
+        As for ``serve``.
+
+    Returns
+    -------
+    mcp.server.MCPServer
+
+    Raises
+    ------
+    CannotRunError
+        Where the package ``mcp`` is not installed.
+    """
+    try:
+        from mcp.server import MCPServer
+        from mcp_types import ToolAnnotations
+    except ImportError:
+        raise CannotRunError("mcp: the package mcp is not installed; run pip install 'alula[mcp]'") from None
+    server, one_at_a_time = (
+        MCPServer("alula", instructions=_ABOUT, version=alula.__version__, log_level="CRITICAL"),
+        threading.Lock(),
+    )
+    home = Path(os.path.realpath(folder))
+    for name in TOOLS:
+        function = getattr(alula, name)
+        server.add_tool(
+            _tool(function, home, threads, one_at_a_time),
+            description=str(inspect.getdoc(function)).partition("\nExamples\n")[0],
+            annotations=ToolAnnotations(read_only_hint=True, open_world_hint=False),
+        )
+    return server
+
+
+def _tool(
+    function: Callable[..., Any], home: Path, threads: int, one_at_a_time: threading.Lock
+) -> Callable[..., Answer]:
+    """Return a function of the face as a tool: with plain arguments, below a folder, one at a time."""
+    from mcp.server.mcpserver.exceptions import ToolError
+
+    stated = inspect.signature(function).parameters
+    asked = [_plain(one) for name, one in stated.items() if name not in _LEFT_OUT]
+    of_case = "case" in stated
+    if of_case:
+        values = inspect.Parameter("values", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=_VALUES)
+        asked.append(values)
+
+    @wraps(function)
+    def tool(**arguments: Any) -> Answer:
+        if "threads" in stated:
+            arguments["threads"] = threads
+        try:
+            with one_at_a_time:  # the mesher knows one model at a time
+                if of_case:
+                    arguments["case"] = _case(arguments["case"], arguments.pop("values", None), home)
+                elif "path" in stated:
+                    arguments["path"] = _below(arguments["path"], home)
+                return _answer(function(**arguments))
+        except AlulaError as error:
+            raise ToolError(str(error)) from None
+
+    tool.__signature__ = inspect.Signature(asked, return_annotation=Answer)  # type: ignore[attr-defined]
+    tool.__annotations__ = {one.name: one.annotation for one in asked} | {"return": Answer}
+    return tool
+
+
+_VALUES = dict[str, str | float | bool] | None
+
+
+def _plain(parameter: inspect.Parameter) -> inspect.Parameter:
+    """Return a parameter as a program can state it: a path or a case is a text."""
+    kind = {"case": str, "path": str}.get(parameter.name)
+    if kind is None:
+        kind = bool if isinstance(parameter.default, bool) else str if parameter.default else str | None  # type: ignore[assignment]
+    return parameter.replace(annotation=kind, kind=inspect.Parameter.KEYWORD_ONLY)
+
+
+def _case(name: str, values: Mapping[str, object] | None, home: Path) -> "alula.Case":
+    """Return a case of the folder or a built-in one; the files that it names lie beside it."""
+    stated = values or {}
+    named = [value for entry, value in stated.items() if entry.rpartition(".")[2] == "file"]
+    place: Path | str = name
+    if name not in alula.cases():
+        place = _below(name, home)
+        with suppress(ValueError, OSError):  # ``read_case`` says what is wrong
+            named += _files(tomllib.loads(place.read_text(encoding="utf-8")))
+    for file in named:
+        _below(str(file), home if place == name else Path(place).parent, home)
+    return alula.read_case(place, values)
+
+
+def _files(tables: object) -> Iterator[str]:
+    """Yield every file that a case names."""
+    if isinstance(tables, dict):
+        for key, value in tables.items():
+            if key == "file" and isinstance(value, str):
+                yield value
+            else:
+                yield from _files(value)
+    elif isinstance(tables, list):
+        for one in tables:
+            yield from _files(one)
+
+
+def _below(path: str, beside: Path, home: Path | None = None) -> Path:
+    """Return a path beside something; links are followed before it is looked whether it lies below the folder."""
+    found, home = Path(os.path.realpath(beside / path.replace("\0", ""))), home or beside
+    if not found.is_relative_to(home):
+        raise CaseError(f"'{printable(path)}' is not in the folder of this server, which reads no other; copy it there")
+    return found
+
+
+def _answer(report: Any) -> Answer:
+    verdict = getattr(report, "verdict", None)
+    rows = [{name: _finite(value) for name, value in row.items()} for row in report.table()]
+    change = getattr(report, "change", "")
+    told = "\n\n".join(filter(None, (str(report), change)))
+    return {"told": told, "verdict": None if verdict is None else str(verdict), "table": rows}
+
+
+def _finite(value: Any) -> Any:
+    return None if isinstance(value, float) and not abs(value) < float("inf") else value

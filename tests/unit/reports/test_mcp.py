@@ -1,0 +1,125 @@
+"""``alula mcp``: what a program sees that speaks the protocol, by the package's own client."""
+
+import asyncio
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from mcp import Client
+from mcp.client.stdio import StdioServerParameters
+
+import alula
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import folder_of
+from alula.server import TOOLS, made, serve
+
+CASE = "four-bar"
+
+
+@pytest.fixture
+def home(tmp_path):
+    """Two cases below a folder, one of them with a part; and one beside it."""
+    folder = tmp_path / "home"
+    folder.mkdir()
+    text = (Path(folder_of("step")) / "step.toml").read_text(encoding="utf-8")
+    (folder / "mine.toml").write_text(text, encoding="utf-8")
+    (folder / "bell-crank.step").write_bytes((Path(folder_of("step")) / "bell-crank.step").read_bytes())
+    (tmp_path / "secret.toml").write_text("title = 'secret'", encoding="utf-8")
+    (folder / "away.toml").symlink_to(tmp_path / "secret.toml")
+    (folder / "far.toml").write_text(text.replace("bell-crank.step", "../secret.toml"), encoding="utf-8")
+    assert "../secret.toml" in (folder / "far.toml").read_text(encoding="utf-8")
+    return folder
+
+
+def asked(server, *questions):
+    """Return what a server answers to questions, each a tool and its arguments, and the tools that it has."""
+
+    async def ask():
+        async with Client(server) as client:
+            return [await client.call_tool(*one) for one in questions], (await client.list_tools()).tools
+
+    return asyncio.run(ask())
+
+
+def test_a_tool_is_a_function_of_the_face(home):
+    _, tools = asked(made(home, 1))
+    assert tuple(tool.name for tool in tools) == TOOLS
+    for tool in tools:
+        assert tool.description.splitlines()[0] == getattr(alula, tool.name).__doc__.splitlines()[0]
+        assert ">>>" not in tool.description
+        assert tool.annotations.read_only_hint
+        assert not {"progress", "threads"} & tool.input_schema["properties"].keys()
+    assert tools[0].input_schema["required"] == ["case"]
+    assert {"fidelity", "accuracy", "values"} < tools[0].input_schema["properties"].keys()
+
+
+def test_answers_are_those_of_the_face(home):
+    values = {"parts.bar.thickness": "9 mm"}
+    (one, other, still, part, card), _ = asked(
+        made(home, 1),
+        ("check", {"case": CASE, "fidelity": "beam"}),
+        ("check", {"case": CASE, "fidelity": "beam", "values": values}),
+        ("statics", {"case": "mine.toml"}),
+        ("inspect", {"path": "bell-crank.step", "material": "steel-s235"}),
+        ("materials", {"name": "steel-s235"}),
+    )
+    for answer, case in ((one, CASE), (other, alula.read_case(CASE, values))):
+        report, found = alula.check(case, fidelity="beam"), answer.structured_content
+        assert found["verdict"] == str(report.verdict)
+        assert report.headline in found["told"]
+        assert report.change in found["told"]
+        assert [row["check value"] if "check value" in row else row["value"] for row in found["table"]] == [
+            None if not abs(row["value"]) < float("inf") else row["value"] for row in report.table()
+        ]
+    assert one.structured_content["table"] != other.structured_content["table"]
+    assert "bore" in part.structured_content["table"][0]
+    assert "Joint forces" in still.structured_content["told"]
+    assert "S235" in card.structured_content["told"]
+
+
+@pytest.mark.parametrize(
+    ("tool", "arguments"),
+    [
+        ("check", {"case": "../secret.toml"}),
+        ("check", {"case": "away.toml"}),
+        ("statics", {"case": "far.toml"}),
+        ("statics", {"case": "/etc/passwd"}),
+        ("motion", {"case": "mine.toml", "values": {"parts.bell-crank.file": "../secret.toml"}}),
+        ("check", {"case": "step", "values": {"parts.bell-crank.file": "/etc/passwd"}}),
+        ("inspect", {"path": "../secret.toml"}),
+    ],
+)
+def test_nothing_is_read_outside_of_the_folder(home, tool, arguments):
+    (answer,), _ = asked(made(home, 1), (tool, arguments))
+    assert answer.is_error
+    [text] = answer.content
+    assert "is not in the folder of this server" in text.text
+    assert "secret'" not in text.text
+    assert "\n" not in text.text.strip()
+
+
+def test_a_mistake_is_one_sentence(home):
+    (answer, other), _ = asked(
+        made(home, 1),
+        ("check", {"case": CASE, "fidelity": "plate"}),
+        ("check", {"case": "mine.toml", "values": {"x": 1}}),
+    )
+    assert answer.is_error
+    assert "fidelity: 'plate' is unknown" in answer.content[0].text
+    assert other.is_error
+    with pytest.raises(CaseError, match="is no folder"):
+        serve(home / "nowhere", 1)
+
+
+def test_the_command_speaks_it_over_standard_input_and_output(home):
+    started = StdioServerParameters(
+        command=sys.executable, args=["-m", "alula", "mcp", str(home), "--threads", "1"], env=dict(os.environ)
+    )
+    (answer, again), _ = asked(
+        started,
+        ("check", {"case": CASE, "fidelity": "beam"}),
+        ("inspect", {"path": "bell-crank.step"}),
+    )
+    assert answer.structured_content["verdict"] == "undecided"
+    assert not again.is_error
