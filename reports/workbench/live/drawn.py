@@ -21,6 +21,7 @@ from alula.geometry.clearance.shape import link_shape
 from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.linkage import Link
 from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
 from alula.loads.case.heights import thickness
 from alula.loads.records.aero import shares
@@ -229,6 +230,10 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
         else:
             at, point = pose.position(seen.link, seen.point), seen.point
             yield _load(path, name, kind, seen.link, at, seen.wrench, point) | {"axes": load.axes}
+    for i, line in enumerate(map(ForceOnLine, stated.load_lines)):
+        for load, at in zip(line.loads(pose.placement), line.ends(pose.placement), strict=False):
+            path = ["load_cases", own, "load_lines", i]
+            yield _load(path, name, "load line", load.link, at[:2], load.wrench[:3], load.point)
     for i, (air, forces) in enumerate(zip(stated.air, case.air_forces(own), strict=True)):
         for patch, share in zip(air.spread, shares(air, case.link_points), strict=True):
             ends = [pose.position(patch.link, p) for p in (patch.at, patch.start, patch.end) if p is not None]
