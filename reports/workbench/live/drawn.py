@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from alula.fea.standing.case_statics import CaseStatics
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.units import parse
+from alula.geometry.base.units import BODY_WEIGHT, parse, weight_of
 from alula.geometry.bodies.body import Body
 from alula.geometry.clearance.shape import link_shape
 from alula.geometry.joints.joint import Joint
@@ -106,6 +106,7 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
         kind, dimension = ("travel", "length") if "travel" in pose else ("angle", "angle")
         value = parse(pose.get(kind, "0 deg"), dimension) if pose.get("coordinate") else 0.0
         held = {"kind": kind, "value": math.degrees(value) if kind == "angle" else value, "least": None, "most": None}
+        weight = {BODY_WEIGHT: weight_of(tables.get("body_mass"))}
         load_cases, drive, whole = tables.get("load_cases", {}), tables.get("drive", {}), _size([*at.values()])
         return {
             "links": [_link(name, one, frames[name], whole, case) for name, one in links.items()],
@@ -114,7 +115,7 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
                 for name, joint in joints.items()
                 if ends[name] in at and joint.links[0] in frames
             ],
-            "loads": [load for name, one in load_cases.items() for load in _loose_loads(name, one, at, frames)],
+            "loads": [load for name, one in load_cases.items() for load in _loose_loads(name, one, at, frames, weight)],
             "springs": [],
             "coordinate": {"name": pose["coordinate"], **held} if pose.get("coordinate") else None,
             "drive": {"link": drive["link"], "joint": drive["joint"]} if drive.keys() >= {"link", "joint"} else None,
@@ -246,12 +247,16 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
 
 
 def _loose_loads(
-    name: str, tables: Mapping[str, Any], at: Mapping[tuple[str, str], complex], frames: Mapping[str, Frame]
+    name: str,
+    tables: Mapping[str, Any],
+    at: Mapping[tuple[str, str], complex],
+    frames: Mapping[str, Frame],
+    weight: Mapping[str, float | None],
 ) -> Iterator[Plain]:
     """Yield the forces of a load case that can be read."""
     for i, stated in enumerate(tables.get("forces", [])):
         try:
-            force = PointForce.model_validate(stated)
+            force = PointForce.model_validate(stated, context=dict(weight))
         except ValidationError:
             continue
         if (force.link, force.at) in at:
