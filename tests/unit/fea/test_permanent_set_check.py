@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from lever_on_tie import lever_on_tie
 from plastic_problems import FOUND
@@ -20,6 +21,7 @@ from alula.fea.judging import plastic_collapse
 from alula.fea.judging.link_result import by_hand_shares
 from alula.fea.judging.plastic_collapse import _of_plates
 from alula.fea.links.fidelity import by_hand
+from alula.fea.motion.envelope_outcomes import _sets
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.whole.permanent_set import judge_permanent_set, of_one_force
 from alula.geometry.base.errors import CaseError
@@ -197,6 +199,31 @@ def test_both_plates_of_a_pair_count():
     assert _of_plates([other, one], 2).stays == (8.0, 6.0, 10.0)
     assert _of_plates([other, one], 2).low == 1.8
     assert _of_plates([one, "lost"], 2) == _of_plates(["lost", one], 2) == "lost"
+
+
+@pytest.mark.parametrize("order", [("lever", "tie"), ("tie", "lever")])
+def test_over_a_motion_it_is_known_where_nothing_yields(order):
+    case = lever_on_tie()
+
+    def over(proof, aside, complete=True):
+        bands = {"proof": (ELASTIC, proof), "aside": (aside, ELASTIC)}
+        links = {
+            link: SimpleNamespace(
+                load_cases={
+                    name: SimpleNamespace(safety_factor=two[i], discretisation=None) for name, two in bands.items()
+                }
+            )
+            for i, link in enumerate(order)
+        }
+        return {one.load_case: one for one in _sets(case, links, np.array([True, complete]))}
+
+    known = over(ELASTIC, ELASTIC)
+    assert [(one.verdict, one.value.high) for one in known.values()] == [(Verdict.PASS, 0.0)] * 2
+    assert {one.verdict for one in over(ELASTIC, ELASTIC, complete=False).values()} == {Verdict.UNDECIDED}
+    for bands, lost in (((YIELDS, ELASTIC), "proof"), ((ELASTIC, YIELDS), "aside")):
+        found = over(*bands)
+        assert [name for name, one in found.items() if one.verdict is not Verdict.PASS] == [lost]
+        assert "in single poses" in told(found[lost].reason)
 
 
 def test_from_the_case_to_the_table(monkeypatch):
