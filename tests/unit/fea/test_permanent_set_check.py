@@ -10,6 +10,7 @@ from lever_on_tie import lever_on_tie
 from plastic_problems import FOUND
 
 from alula.fea.asked.asked import asked
+from alula.fea.asked.at_temperature import as_known
 from alula.fea.check import deciding
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
@@ -19,6 +20,7 @@ from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import plastic_collapse
 from alula.fea.judging.link_result import by_hand_shares
+from alula.fea.judging.linkage import unless_it_gives_way
 from alula.fea.judging.plastic_collapse import _of_plates
 from alula.fea.links.fidelity import by_hand
 from alula.fea.motion.envelope_outcomes import _sets
@@ -75,7 +77,6 @@ def test_works_of_all_links_that_yield_are_added_over_the_force(plain, load_case
     assert band.value == pytest.approx(value)
     assert found.outcome.verdict is {"proof": Verdict.PASS, "aside": Verdict.UNDECIDED}[load_case]
     assert found.outcome.subject == LINKAGE
-    assert not found.outcome.gives_way
     assert [(one.link, one.set.value) for one in found.numbers] == [("lever", 500.0 / force), ("tie", 100.0 / force)]
     assert "most of it stays in lever" in told(found.outcome.reason)
 
@@ -102,6 +103,7 @@ def test_a_load_that_is_not_borne_leaves_no_set_below_any_limit(plain, low, verd
     )
     assert found.outcome.verdict is verdict
     assert found.outcome.value.value == math.inf
+    assert not found.outcome.gives_way  # the linkage as a whole, which is judged by itself
     assert "∞" in told(found.outcome.reason) or "inf" in told(found.outcome.reason)
 
 
@@ -124,6 +126,7 @@ def test_what_leaves_it_open_is_told(plain):
     for more, says in (
         ({"collapses": {}}, "--fidelity solid"),
         ({"collapses": {"tie": "no equilibrium was found"}}, "no equilibrium was found"),
+        ({"collapses": {"tie": FOUND}}, "no state under its loads"),
         ({"beside_one_force": reason("set_of_others")}, "other loads act"),
     ):
         found = judged(plain, case, "proof", factors, paths, **more).outcome
@@ -131,6 +134,17 @@ def test_what_leaves_it_open_is_told(plain):
         assert says in told(found.reason)
     elastic = dict.fromkeys(factors, ELASTIC)
     assert judged(plain, case, "proof", elastic, {}, beside_one_force=reason("set_of_others")).outcome.value.high == 0
+
+
+def test_it_rests_on_equilibrium_and_on_strengths_that_are_known(plain):
+    def warm(tables):
+        tables["conditions"] = {"temperature": "90 degC"}
+
+    outcome = judged(plain, lever_on_tie(), "proof", {"lever": ELASTIC, "tie": ELASTIC}, {}).outcome
+    [held], [lost] = (unless_it_gives_way([outcome], lost) for lost in ({}, {"proof": reason("no_equilibrium")}))
+    assert (held.applies, lost.applies) == (True, False)
+    [known], [unknown] = (as_known(case, [outcome]) for case in (lever_on_tie(), lever_on_tie(warm)))
+    assert (known.verdict, unknown.verdict) == (Verdict.PASS, Verdict.UNDECIDED)
 
 
 def test_other_loads_and_stiffness_take_the_proportion_away():
