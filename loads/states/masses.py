@@ -1,6 +1,7 @@
 """What each link weighs: its part, from volume and density, and what it carries."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -15,9 +16,17 @@ from alula.loads.records.carried import Carried, mass_of
 
 
 @lru_cache(maxsize=256)
-def _measured(body: Body) -> MassProperties:
-    """Return volume and inertia of a body; equal bodies are measured once."""
+def _of_shape(body: Body) -> MassProperties:
     return mass_properties(body)
+
+
+def _measured(body: Body) -> MassProperties:
+    """Return volume and inertia of a body; bodies of one shape are measured once, whatever their pins are called."""
+    pins = tuple(replace(pin, name=str(number)) for number, pin in enumerate(body.pins))
+    try:
+        return _of_shape(replace(body, pins=pins))
+    except AlulaError:
+        return mass_properties(body)  # its sentence has the names
 
 
 def part_mass(case: Case, link: str) -> PartMass:

@@ -25,7 +25,7 @@ from alula.reports.workbench.keeping import (
     plain_name,
     refuse_elsewhere,
     stamp_of,
-    write_whole,
+    write_file,
 )
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
@@ -369,12 +369,11 @@ class Session:
 
     async def _save(self) -> None:
         text = self._open().text
-        data = text.encode()
-        if not text.strip() or len(data) > LARGEST_FILE:
+        if not text.strip() or len(text.encode()) > LARGEST_FILE:
             raise CaseError(
                 "the text is empty or larger than 1 MiB, and no case would be read from it; it was not saved"
             )
-        await asyncio.to_thread(write_whole, self.path, data)
+        await asyncio.to_thread(write_file, self.path, text)
         self._stand(text, stamp_of(self.path))
         self._tell_document()
 
