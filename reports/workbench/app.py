@@ -10,7 +10,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 from urllib.parse import quote
 
 import uvicorn
@@ -20,6 +20,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.imported.read import LARGEST_FILE
@@ -27,6 +28,7 @@ from alula.geometry.keeping.kept import keeping
 from alula.loads.case.case_file import built_in_cases, read_tables
 from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
+from alula.reports.words.limits import limited
 from alula.reports.workbench import out
 from alula.reports.workbench.keeping import is_plain
 from alula.reports.workbench.parts import dropped
@@ -43,6 +45,8 @@ REPORT = "sandbox allow-scripts allow-downloads; base-uri 'none'; form-action 'n
 Answer = Callable[[Request], Awaitable[Response]]
 Entries = Mapping[str, tuple[type, Any]]
 """Entries of what a page posts, with their types and what stands for a missing one; ``...`` where it must be there."""
+MOST_SILENT = 32
+"""Connections that have asked nothing yet: a browser opens some ahead of what it will ask."""
 _ON: Entries = {"revision": (int, ...), "gesture": (str, "")}
 ACTIONS: Mapping[str, tuple[Callable[..., Awaitable[None]], Entries]] = {
     "edit": (Session.edit, {"operations": (list, ...), **_ON}),
@@ -100,6 +104,7 @@ class Guard:
 
         refused = self._refused(scope, headers, host)
         if refused is not None:
+            refused.headers["connection"] = "close"  # who may not ask holds no connection
             await refused(scope, receive, sealed)
             return
         rest = "/" + scope["path"].removeprefix("/").partition("/")[2]
@@ -322,7 +327,15 @@ def _listening(port: int) -> socket.socket:
     return made
 
 
-def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], None]) -> None:
+def serve(
+    case: Path | None,
+    folder: Path,
+    port: int,
+    ready: Callable[[str], None],
+    *,
+    threads: int = 2,
+    memory: str | None = None,
+) -> None:
     """Serve a case, or what one can start from, until a signal ends it.
 
     Parameters
@@ -335,19 +348,44 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
         0 for one that is free.
     ready : callable
         Is told the address once it answers.
+    threads : int, optional
+    memory : str, optional
+        Limits of this process, and of that which solves links as solids.
 
     Raises
     ------
     CaseError
-        For a port that is in use or forbidden, and for a case that cannot be read, or whose path is no text.
+        For a port that is in use or forbidden, a memory that is none, and for a case that cannot be read, or whose path is
+        no text.
     """
     try:
         str(case or folder).encode()
     except UnicodeEncodeError:
         shown = printable((case or folder).name)
         raise CaseError(f"'{shown}' or a folder above it has a name that is no UTF-8 text; rename it") from None
-    with contextlib.closing(_listening(port)) as bound, keeping():
-        asyncio.run(_serve(case, folder, bound, ready))
+    with contextlib.closing(_listening(port)) as bound, limited(threads, memory), keeping():
+        asyncio.run(_serve(case, lambda: Session(folder, threads, memory), bound, ready))
+
+
+class _Connection(H11Protocol):
+    """A connection that has asked nothing yet is closed where more than some wait: whoever opens many blocks nobody."""
+
+    silent: ClassVar[dict["_Connection", None]] = {}
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        self.silent[self] = None
+        if len(self.silent) > MOST_SILENT:
+            next(iter(self.silent)).transport.close()  # the oldest, which then is lost
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self.silent.pop(self, None)
+        super().connection_lost(exc)
+
+    def handle_events(self) -> None:
+        super().handle_events()
+        if self.cycle is not None:  # a whole head of a request was there
+            self.silent.pop(self, None)
 
 
 class _Server(uvicorn.Server):
@@ -365,8 +403,10 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: Callable[[str], None]) -> None:
-    session = Session(folder)
+async def _serve(
+    case: Path | None, begun: Callable[[], Session], bound: socket.socket, ready: Callable[[str], None]
+) -> None:
+    session = begun()
     try:
         if case is not None and case.exists():
             session.load(case)
@@ -377,9 +417,9 @@ async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: C
         raise
     port, token = bound.getsockname()[1], secrets.token_urlsafe(24)
     config = uvicorn.Config(
-        Guard(application(session), token, port), http="h11", ws="none", loop="asyncio", lifespan="off",
+        Guard(application(session), token, port), http=_Connection, ws="none", loop="asyncio", lifespan="off",
         log_config=None, log_level="critical", access_log=False, server_header=False, proxy_headers=False,
-        limit_concurrency=64, timeout_graceful_shutdown=1,
+        timeout_graceful_shutdown=1,
     )  # fmt: skip
     server = _Server(config)
     server.session, server.ready = session, lambda: ready(f"http://127.0.0.1:{port}/{token}/")

@@ -91,6 +91,9 @@ class Session:
     ----------
     folder : Path
         In which cases are opened, and where files stand that they name.
+    threads : int, optional
+    memory : str, optional
+        As for ``Solids``.
 
     Attributes
     ----------
@@ -104,7 +107,7 @@ class Session:
     solids : Solids
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, threads: int = 2, memory: str | None = None) -> None:
         self.folder, self.path, self.new = folder, folder, "my-case.toml"
         self.document: Document | None = None
         self._stored = ""  # the text that the file held when it was last read or written
@@ -119,7 +122,7 @@ class Session:
         self._last: dict[str, str] = {}
         self._notice = ""
         self._files = asyncio.Lock()
-        self._workers, self.solids = Workers(self.tell, folder), Solids(self.tell, folder)
+        self._workers, self.solids = Workers(self.tell, folder), Solids(self.tell, folder, threads, memory)
         self._watch = asyncio.create_task(self._watched())
 
     # What pages are told.

@@ -96,7 +96,7 @@ class Document:
             made = None
         if made is None or made != draft.tables:
             raise CaseError("edit: it cannot be written into this text without changing more; write it in the text")
-        self._take(text, gesture)
+        self.replace(text, gesture)
         self._read = text, made
 
     def replace(self, text: str, gesture: str = "") -> None:
@@ -109,9 +109,6 @@ class Document:
         gesture : str
             As for ``apply``.
         """
-        self._take(text, gesture)
-
-    def _take(self, text: str, gesture: str) -> None:
         if text == self.text:
             return
         if not (gesture and gesture == self._gesture and self._done):

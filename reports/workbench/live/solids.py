@@ -41,8 +41,6 @@ Tell = Callable[[str, Plain], None]
 
 ROLE = __name__.rpartition(".")[2]
 """Under which a process of ``alula.reports.workbench.live.workers`` answers with ``STAGES``."""
-THREADS = 2
-"""As many as ``alula check`` takes unless it is told otherwise."""
 _LONGEST = 1 << 28
 """Longest line of the process [bytes]: a model with a million nodes on its surface."""
 
@@ -56,10 +54,13 @@ class Solids:
         Takes the name of an event, ``solids`` or ``verdict``, and its data.
     folder : Path
         That of the case.
+    threads : int, optional
+    memory : str, optional
+        Limits of the process, as ``alula check`` takes them.
     """
 
-    def __init__(self, tell: Tell, folder: Path) -> None:
-        self._tell, self._folder = tell, folder
+    def __init__(self, tell: Tell, folder: Path, threads: int = 2, memory: str | None = None) -> None:
+        self._tell, self._folder, self._limits = tell, folder, {"threads": threads, "memory": memory}
         self._run: _Run | None = None
         self._ending: set[asyncio.Task[None]] = set()
 
@@ -87,7 +88,8 @@ class Solids:
         if self._run is not None:
             self._run.stop()
         self._ending = {task for task in self._ending if not task.done()}
-        self._run = _Run(self._tell, self._folder, revision, {"stage": fidelity, "text": text, "name": name})
+        request = {"stage": fidelity, "text": text, "name": name, **self._limits}
+        self._run = _Run(self._tell, self._folder, revision, request)
         self._ending.add(self._run.task)
 
     def stop(self) -> None:
@@ -160,7 +162,9 @@ class _Run:
         for name, link in self._links.items():
             seconds = now - self._since[name] if link["state"] == "solving" else link["seconds"]
             links[name] = {**link, "seconds": round(seconds, 2)}
-        told = {"revision": self._revision, "state": self._state, "sentence": self._sentence, "links": links}
+        ended = sum(link["state"] in ("done", "kept") for link in links.values())
+        so_far = f"{ended} of {len(links)} links are done. " if links and self._state == "running" else ""
+        told = {"revision": self._revision, "state": self._state, "sentence": so_far + self._sentence, "links": links}
         self._told("solids", told)
 
     def _end(self, state: str, sentence: str) -> None:
@@ -216,6 +220,7 @@ class _Run:
         event, told = answer.get("event"), answer.get("data", {})
         if event == "links":
             self._links = {name: {"state": "waiting", "seconds": 0.0, "model": 0} for name in told["names"]}
+            self._sentence = "Joint forces are being solved ..."
         elif event == "link":
             link, now = self._links[name := told["name"]], time.monotonic()
             state = told.get("state", link["state"])
@@ -239,12 +244,13 @@ class _Run:
         self._tell()
 
 
-def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
+def _check(fidelity: str, text: str, name: str, tell: Tell, threads: int, memory: str | None) -> None:
     """Check a text, in the process: tell links, models and the verdict."""
     from alula.fea.check.run import WatchedLink, check_case, effort_of
     from alula.fea.outcomes.result import LinkResult, SolidResult
     from alula.geometry.keeping.kept import keeping
     from alula.reports.turnable.link import link_model
+    from alula.reports.words.limits import limited
     from alula.reports.workbench.live.answers import case_of
     from alula.reports.workbench.live.verdicts import verdict_of
 
@@ -278,12 +284,12 @@ def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
     try:
         case = case_of(text, name)
         told("links", {"names": list(case.checked_links)})
-        with keeping():
+        with limited(threads, memory), keeping():
             result = check_case(
                 case,
                 name=name,
                 fidelity=fidelity,
-                threads=THREADS,
+                threads=threads,
                 effort=effort_of(case),
                 watch=watch,
                 progress=progress,
@@ -297,5 +303,5 @@ def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
         told("failed", {"sentence": str(error)})
 
 
-STAGES: Mapping[str, Callable[[str, str, Tell], None]] = {name: partial(_check, name) for name in ("solid", "auto")}
+STAGES: Mapping[str, Callable[..., None]] = {name: partial(_check, name) for name in ("solid", "auto")}
 """What the process may be asked: to check a text with this fidelity."""

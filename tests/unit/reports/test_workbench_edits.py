@@ -15,7 +15,8 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, changed_tables, folder_of, read_case, validate
 from alula.reports.workbench.editing.document import Document
-from alula.reports.workbench.editing.edits import EMPTY, loose_positions
+from alula.reports.workbench.editing.edits import EMPTY
+from alula.reports.workbench.editing.plane import Plane
 from alula.reports.workbench.editing.references import BY_KEY, BY_VALUE, NAMED, references
 
 CASES = built_in_cases()
@@ -220,10 +221,9 @@ def test_a_four_bar_is_drawn_from_an_empty_case() -> None:
         document.apply([step], None)
         with pytest.raises(CaseError, match=r"\A[^\n]+\Z"):
             stated(document, "")
-        placed = loose_positions(document.tables())
-        if "crank" in placed:
-            assert placed["crank"]["points"]["B"] == pytest.approx([30, 25], abs=1e-5)
-    assert placed["coupler"]["points"]["C"] == pytest.approx([150, 70], abs=1e-5)
+        placed = Plane(document.tables()).at
+        assert placed.get(("crank", "B"), 30 + 25j) == pytest.approx(30 + 25j, abs=1e-5)
+    assert placed["coupler", "C"] == pytest.approx(150 + 70j, abs=1e-5)
     load = {"op": "load", "load_case": "lift", "link": "rocker", "point": "P", "force": ["0 N", "-5 N"]}
     document.apply([load], None)
     case = stated(document, "")

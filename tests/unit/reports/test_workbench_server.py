@@ -543,3 +543,18 @@ def test_a_case_is_left_only_when_it_is_saved(bench, case: Path):
     assert solids.asked == []
     assert bench.post("open", starter="four-bar", **{"as": "new.toml"}) == (200, {"revision": 2})
     assert solids.asked == ["stop"]
+
+
+def test_connections_that_ask_nothing_block_nobody(bench):
+    lines = [socket.create_connection(("127.0.0.1", bench.port), timeout=5) for _ in range(100)]
+    try:
+        for line in lines[::2]:
+            line.sendall(b"GET / HTTP/1.1\r\n")  # half a head
+        assert bench.ask("GET", "")[0] == 200
+        assert lines[1].recv(1) == b"", "the oldest are closed"
+        lines[-1].sendall(b"GET /wrong/ HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % bench.port)
+        told = b"".join(iter(lambda: lines[-1].recv(4096), b""))
+        assert told.startswith(b"HTTP/1.1 404"), "and who may not ask is told so, and holds no connection"
+    finally:
+        for line in lines:
+            line.close()
