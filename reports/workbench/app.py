@@ -370,22 +370,24 @@ def serve(
 class _Connection(H11Protocol):
     """A connection that has asked nothing yet is closed where more than some wait: whoever opens many blocks nobody."""
 
-    silent: ClassVar[dict["_Connection", None]] = {}
+    _silent: ClassVar[dict["_Connection", None]] = {}
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        self.silent[self] = None
-        if len(self.silent) > MOST_SILENT:
-            next(iter(self.silent)).transport.close()  # the oldest, which then is lost
+        self._silent[self] = None
+        if len(self._silent) > MOST_SILENT:
+            oldest = next(iter(self._silent))
+            del self._silent[oldest]
+            oldest.transport.close()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self.silent.pop(self, None)
+        self._silent.pop(self, None)
         super().connection_lost(exc)
 
     def handle_events(self) -> None:
         super().handle_events()
         if self.cycle is not None:  # a whole head of a request was there
-            self.silent.pop(self, None)
+            self._silent.pop(self, None)
 
 
 class _Server(uvicorn.Server):
