@@ -187,6 +187,10 @@ def application(session: Session) -> Starlette:
     async def model(request: Request) -> Response:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
+    async def line(request: Request) -> Response:
+        path = [json.loads(key) for key in request.query_params.getlist("key")]
+        return JSONResponse({"line": session.document and session.document.line(path)})
+
     async def report(request: Request) -> Response:
         fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
         data = await asyncio.to_thread(out.report, session.whole, str(session.path), fidelity)
@@ -217,6 +221,7 @@ def application(session: Session) -> Starlette:
         "/starters": starters,
         "/schema": schema,
         "/model/{link}": model,
+        "/line": line,
         "/out/report": report,
         "/out/case": case,
         "/out/step/{link}": step,

@@ -195,19 +195,24 @@ class Drafts:
                 self.alone = self._lock is not None or importlib.util.find_spec("fcntl") is None
                 self._folder = folder if self.alone else None
 
-    def kept(self) -> tuple[str | None, str]:
+    def kept(self) -> tuple[str | None, str, float]:
         """Return what an earlier server kept.
 
         Returns
         -------
-        tuple of str
-            The text, None where there is none, and the digest of the text on the disk that it was made from.
+        text : str or None
+            None where there is none.
+        base : str
+            The digest of the text on the disk that it was made from.
+        since : float
+            When it was kept, in seconds since 1970.
         """
         try:
-            text, base = json.loads((self._folder / _DRAFT).read_text(encoding="utf-8")) if self._folder else (None, "")
+            file = (self._folder or Path(os.devnull)) / _DRAFT
+            text, base = json.loads(file.read_text(encoding="utf-8"))
+            return text, base, file.stat().st_mtime
         except (OSError, ValueError):
-            return None, ""
-        return text, base
+            return None, "", 0.0
 
     def keep(self, text: str, base: str) -> None:
         """Keep a text.

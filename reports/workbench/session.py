@@ -117,6 +117,7 @@ class Session:
         self._problem: dict[str, Any] | None = None
         self._drafts: Drafts | None = None
         self._draft: str | None = None  # what an earlier server kept, until it is taken or not
+        self._since = 0.0  # when it kept that, in seconds since 1970
         self._drafted = ""
         self._pages: set[Listener] = set()
         self._last: dict[str, str] = {}
@@ -201,7 +202,7 @@ class Session:
             "tables": _plain(document),
             "problem": self._problem,
             "disk": self._disk,
-            "draft": self._draft is not None,
+            "draft": None if self._draft is None else self._since,
         }
         self.tell("document", state)
 
@@ -317,16 +318,18 @@ class Session:
             file = self.folder / plain_name(as_ if starter else path, ".toml")
             if starter:
                 write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
-            self.load(file)
+            self.load(file, new=bool(starter))
             self.solids.stop()  # nobody waits for those of the case before
 
-    def load(self, file: Path) -> None:
+    def load(self, file: Path, *, new: bool = False) -> None:
         """Open a case, and offer what was not saved of it.
 
         Parameters
         ----------
         file : Path
             In the session's folder.
+        new : bool, optional
+            Whether it was made just now: what was not saved is of another one of its name.
         """
         stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
         if self._drafts is not None:
@@ -338,8 +341,8 @@ class Session:
         self._drafts = Drafts(file)
         if not self._drafts.alone:
             self._say("this case is open in another alula as well; what is not saved here is not kept")
-        kept, base = self._drafts.kept()
-        other = kept is not None and kept != text and base != digest(text)
+        kept, base, self._since = self._drafts.kept()
+        other = kept is not None and kept != text and (new or base != digest(text))
         if other and self._set_aside(kept or "", "was made from another text than the file has now"):
             kept = None
         self._changed()

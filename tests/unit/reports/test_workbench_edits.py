@@ -409,6 +409,19 @@ def test_a_point_is_given_to_another_link_with_its_load() -> None:
     assert document.text == opened("four-bar").text
 
 
+def test_points_of_a_part_from_a_file_are_handed_neither_way() -> None:
+    document = opened("step")
+    links = document.tables()["links"]
+    parts = document.tables()["parts"]
+    [imported] = [name for name, one in links.items() if "file" in parts.get(one.get("part"), {})]
+    other = next(name for name in links if name != imported)
+    point = next(iter(links[imported]["points"])) if isinstance(links[imported]["points"], dict) else "A"
+    for link, place, to in ((imported, point, other), (other, next(iter(links[other]["points"])), imported)):
+        with pytest.raises(CaseError, match="come from its bores"):
+            document.apply([{"op": "hand", "link": link, "point": place, "to": to}], None)
+    assert document.text == opened("step").text
+
+
 def test_a_joint_is_given_to_a_third_link_and_not_to_its_own() -> None:
     document = opened("six-bar")
     pose = stated(document, "six-bar").solve_pose()

@@ -5,6 +5,7 @@ import os
 import socket
 import time
 from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 import served
@@ -411,6 +412,12 @@ def test_a_full_disk_loses_nothing(bench, case, monkeypatch):
     assert not bench.document()["saved"]
 
 
+def test_the_line_of_an_entry_is_told(bench, case):
+    path = "&".join(f"key={quote(json.dumps(key))}" for key in ("load_cases", "lift", "forces", 0, "force"))
+    line = json.loads(bench.ask("GET", f"line?{path}")[2])["line"]
+    assert case.read_text().split("\n")[line - 1].startswith("force = ")
+
+
 def test_what_no_case_could_be_is_not_saved(bench, case):
     before = case.read_bytes()
     for revision, text in enumerate((" ", "x" * (1 << 20) + "y")):
@@ -436,7 +443,7 @@ def test_what_was_not_saved_is_offered_again(case, cache):
     for take in (True, False):
         with served.serving_of(case, case.parent) as bench:
             told = bench.document()
-            assert told["draft"]
+            assert abs(told["draft"] - time.time()) < 60.0, "it says from when it is"
             assert bench.post("save")[0] == 200  # of what is shown, which is no answer
             assert kept(cache)
             assert bench.document()["saved"]
@@ -465,7 +472,7 @@ def test_a_draft_that_is_not_taken_is_set_aside(case, cache, change):
         case.write_bytes(case.read_bytes() + b"# later\r\n")
     with served.serving_of(case, case.parent) as bench:
         with bench.events() as events:
-            assert events.next("document")["draft"] is (change == "on the page")
+            assert (events.next("document")["draft"] is not None) is (change == "on the page")
             retitled(bench, "newer")
             assert "stands in" in events.next("notice")["sentence"]
         [aside] = cache.rglob("*.toml")
@@ -493,6 +500,20 @@ def test_an_offered_draft_outlives_what_happens_before_the_answer(case, cache, m
     case.write_bytes(before)
     with served.serving_of(case, case.parent) as bench:
         assert bench.document()["draft"]
+
+
+def test_a_new_file_is_not_offered_what_was_not_saved_of_another_one(tmp_path, cache):
+    """The deleted one began with the same text and had the same name; what was not saved of it stands aside."""
+    mine = tmp_path / "mine.toml"
+    for _ in range(2):
+        with served.serving_of(mine, tmp_path) as bench:
+            assert bench.post("open", starter="empty", **{"as": "mine.toml"})[0] == 200
+            told = bench.document()
+            assert told["draft"] is None
+            bench.post("text", revision=told["revision"], text='title = "unsaved"', gesture="")
+        mine.unlink()
+        assert kept(cache) == ['title = "unsaved"']
+    assert [file.read_text() for file in cache.rglob("*.toml")] == ['title = "unsaved"']
 
 
 def test_a_second_server_is_told_and_keeps_off(case, cache):
