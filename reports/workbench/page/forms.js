@@ -1,6 +1,6 @@
 /** The entries of the case as forms, made from the JSON Schema: one table, and one of its entries, at a time. */
 
-import { keepingFocus, make, unused, worded } from "./elements.js";
+import { free, keepingFocus, make, unused, worded } from "./elements.js";
 import { beginning, isList, isMap, isPlain, isTable, itemOf, optionOf, options, schema, titleOf } from "./schema.js";
 import { edit } from "./server.js";
 import { same } from "./store.js";
@@ -197,11 +197,7 @@ class Forms {
 
   free(wish) {
     const taken = Object.keys(this.tables[this.table] ?? {});
-    const base = wish.replace(/[^\w+ -]/g, " ").replace(/-\d+$/, "");
-    for (let place = 1; ; place += 1) {
-      const name = place === 1 ? base : `${base}-${place}`;
-      if (!taken.includes(name)) return name;
-    }
+    return free(wish.replace(/[^\w+ -]/g, " ").replace(/-\d+$/, ""), taken);
   }
 
   shown() {

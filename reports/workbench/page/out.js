@@ -2,7 +2,7 @@
 
 import { command, handOut, make, unused } from "./elements.js";
 import { mountDrop } from "./drop.js";
-import { tell } from "./server.js";
+import { ask, tell } from "./server.js";
 import { shownVerdict } from "./verdict.js";
 
 const SHAPES = "fill fill-opacity stroke stroke-width stroke-dasharray stroke-linecap stroke-linejoin stroke-opacity opacity font-family font-size font-weight text-anchor dominant-baseline display visibility paint-order vector-effect marker-start marker-end".split(" ");
@@ -62,9 +62,7 @@ export function mount(holder, store) {
   async function fetched(route, name, doing) {
     said.textContent = doing;
     try {
-      const answer = await fetch(route);
-      if (!answer.ok) throw new Error((await answer.json().catch(() => ({}))).sentence ?? `The server refused (${answer.status}).`);
-      handOut(name, await answer.blob());
+      handOut(name, await (await ask(route)).blob());
       said.textContent = `${name} was handed out.`;
     } catch (problem) {
       said.textContent = problem.message;

@@ -2,7 +2,7 @@
 
 import { store } from "./store.js";
 import { change, send, tell } from "./server.js";
-import { add } from "./svg.js";
+import { add } from "./elements.js";
 
 export function mount(element) {
   let shown = false;

@@ -2,7 +2,7 @@
 
 import { store } from "./store.js";
 import { change, edit } from "./server.js";
-import { add } from "./svg.js";
+import { add } from "./elements.js";
 import { toPlane } from "./view.js";
 import { fitAll } from "./plane.js";
 
