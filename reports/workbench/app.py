@@ -58,7 +58,7 @@ ACTIONS: Mapping[str, tuple[Callable[..., Awaitable[None]], Entries]] = {
     "overwrite": (Session.overwrite, {}),
     "draft": (Session.take_draft, {"take": (bool, ...)}),
     "open": (Session.open, {"path": (str, ""), "starter": (str, ""), "as_": (str, "")}),
-    "solids": (Session.check_solids, {"do": (str, ...), "fidelity": (str, "solid")}),
+    "solids": (Session.check_solids, {"do": (str, ...)}),
 }
 """What a page may post, by the last part of its address."""
 
@@ -124,18 +124,12 @@ class Guard:
 
     def _seals(self, host: str, headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
         own = f"http://{host}/{self._token}/page/" if host in self._hosts else "'none'"
-        rules = {
-            "default-src": "'none'",
-            "script-src": own,
-            "style-src": own,
-            "img-src": "'self' data: blob:",
-            "connect-src": "'self'",
-            "base-uri": "'none'",
-            "form-action": "'none'",
-            "frame-ancestors": "'none'",
-        }
+        rules = (
+            f"default-src 'none'; script-src {own}; style-src {own}; img-src 'self' data: blob:; connect-src 'self'; "
+            "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        )
         seals = {
-            b"content-security-policy": "; ".join(f"{name} {value}" for name, value in rules.items()),
+            b"content-security-policy": rules,
             b"x-content-type-options": "nosniff",
             b"referrer-policy": "no-referrer",
             b"cache-control": "no-store",
@@ -158,11 +152,8 @@ def application(session: Session) -> Starlette:
     ASGI application
     """
 
-    async def index(request: Request) -> Response:
-        return _page("index.html")
-
     async def page(request: Request) -> Response:
-        return _page(request.path_params["file"])
+        return _page(request.path_params.get("file", "index.html"))
 
     async def events(request: Request) -> Response:
         hearing = session.listen()
@@ -215,7 +206,7 @@ def application(session: Session) -> Starlette:
         return JSONResponse({"revision": session.document.revision if session.document else 0})
 
     get: Mapping[str, Answer] = {
-        "/": index,
+        "/": page,
         "/page/{file}": page,
         "/events": events,
         "/starters": starters,
@@ -360,8 +351,8 @@ def serve(
     Raises
     ------
     CaseError
-        For a port that is in use or forbidden, a memory that is none, and for a case that cannot be read, or whose path is
-        no text.
+        For a port that is in use or forbidden, a memory that is none, and for a case that cannot be read, or whose
+        path is no text.
     """
     try:
         str(case or folder).encode()

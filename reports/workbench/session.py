@@ -189,16 +189,16 @@ class Session:
         self._tell_document()
 
     def _tell_document(self) -> None:
-        document, open_ = self.document, self.document is not None
+        document, path = self.document or Document(""), self.path if self.document else None
         state = {
-            "revision": document.revision if document else 0,
-            "text": document.text if document else "",
-            "name": self.path.name if open_ else None,
-            "path": str(self.path) if open_ else None,
+            "revision": document.revision,
+            "text": document.text,
+            "name": path and path.name,
+            "path": path and str(path),
             "saved": self.saved,
             "always": self._always,
-            "undo": bool(document and document.can_undo),
-            "redo": bool(document and document.can_redo),
+            "undo": document.can_undo,
+            "redo": document.can_redo,
             "tables": _plain(document),
             "problem": self._problem,
             "disk": self._disk,
@@ -244,12 +244,12 @@ class Session:
             self._drafts.drop()
         self._changed()
 
-    async def check_solids(self, do: str, fidelity: str) -> None:
+    async def check_solids(self, do: str) -> None:
         """Start or stop the check by solids."""
         document = self._open()
         if do == "start":
             refuse_elsewhere(document.tables(), self.folder)
-            self.solids.start(document.revision, document.text, str(self.path), fidelity)
+            self.solids.start(document.revision, document.text, str(self.path))
         else:
             self.solids.stop()
 
@@ -459,10 +459,8 @@ class Session:
         await asyncio.gather(self._workers.close(), self.solids.close())
 
 
-def _plain(document: Document | None) -> Any:
+def _plain(document: Document) -> Any:
     """Return the tables of a document as JSON has them, with times and what is no number as text, or None."""
-    if document is None:
-        return None
     try:
         return json.loads(json.dumps(document.tables(), default=str), parse_constant=str)
     except CaseError:

@@ -63,19 +63,15 @@ def drawn(case: Case, pose: Pose, statics: CaseStatics | None = None) -> Plain:
     whole = _size([complex(*pose.position(link, point)) for link, one in case.links.items() for point in one.points])
     frames = {link: (complex(*pose.origins[link]), pose.angles[link]) for link in case.links}
     ends = {name: (joint.links[1], linkage.joint_points(name)[1]) for name, joint in linkage.joints.items()}
-    return {
-        "links": [_link(name, one, frames[name], whole, case) for name, one in case.links.items()],
-        "joints": [
-            _joint(name, linkage.joints[name], complex(*pose.position(*end)), complex(pose.placement.along(name)))
-            for name, end in ends.items()
-        ],
-        "loads": [load for name, one in load_cases.items() for load in _loads(case, pose, name, one, statics)],
-        "springs": _springs(case, pose, whole, statics),
-        "coordinate": _coordinate(case, pose),
-        "drive": None if case.drive is None else {"link": case.drive.link, "joint": case.drive.joint},
-        "size": whole,
-        "load_cases": list(load_cases),
-    }
+    links = [_link(name, one, frames[name], whole, case) for name, one in case.links.items()]
+    joints = [
+        _joint(name, linkage.joints[name], complex(*pose.position(*end)), complex(pose.placement.along(name)))
+        for name, end in ends.items()
+    ]
+    loads = [load for name, one in load_cases.items() for load in _loads(case, pose, name, one, statics)]
+    drive = None if case.drive is None else {"link": case.drive.link, "joint": case.drive.joint}
+    standing = {"springs": _springs(case, pose, whole, statics), "coordinate": _coordinate(case, pose), "drive": drive}
+    return {"links": links, "joints": joints, "loads": loads, **standing, "size": whole, "load_cases": [*load_cases]}
 
 
 def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain | None:

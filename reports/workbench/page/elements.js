@@ -4,6 +4,12 @@ import { number as short } from "./view.js";
 
 let count = 0;
 
+/** Let a choice have these names, anew only where they differ. */
+export function offer(select, names) {
+  if (names.join("\n") === [...select.options].map((one) => one.value).join("\n")) return;
+  select.replaceChildren(...names.map((name) => make("option", { value: name }, name)));
+}
+
 /** A name that no other element of the page has. */
 export const unused = () => `e${(count += 1)}`;
 

@@ -2,7 +2,7 @@
 
 import { edit, tell } from "./server.js";
 import { scene, key } from "./scene.js";
-import { add } from "./elements.js";
+import { add, make } from "./elements.js";
 import { minus, number, size, toScreen } from "./view.js";
 
 let form = null;
@@ -84,21 +84,13 @@ export function open(parent, handle, focus) {
   const what = asked(handle);
   if (!what?.fields.length) return;
   form = add(parent, "form", { class: "entry", "aria-label": what.title, autocomplete: "off", novalidate: "" });
-  add(form, "strong", {}, what.title);
   const shown = what.fields.map(({ value }) => number(value, 6));
-  const inputs = what.fields.map(({ label, unit }, k) => {
-    const row = add(form, "label", {}, `${label} `);
-    const input = add(row, "input", { inputmode: "decimal", size: 9, "aria-label": `${label} in ${unit}` });
-    input.value = shown[k];
-    row.append(` ${unit}`);
-    return input;
-  });
-  if (what.choice?.others.length) {
-    const select = add(add(form, "label", {}, `${what.choice.label} `), "select", {});
-    for (const name of ["", ...what.choice.others]) add(select, "option", { value: name }, name || "–");
-    select.addEventListener("change", () => finish(parent, [what.choice.make(select.value)]));
-  }
-  add(form, "button", { type: "submit" }, "Set");
+  const inputs = what.fields.map(({ label, unit }, k) => make("input", { inputmode: "decimal", size: 9, "aria-label": `${label} in ${unit}`, value: shown[k] }));
+  const { label, others = [], make: chosen } = what.choice ?? {};
+  const choices = ["", ...others].map((name) => make("option", { value: name }, name || "–"));
+  const choice = make("select", { onchange: () => finish(parent, [chosen(choice.value)]) }, choices);
+  form.append(make("strong", {}, what.title), ...what.fields.map((field, k) => make("label", {}, `${field.label} `, inputs[k], ` ${field.unit}`)),
+    ...(others.length ? [make("label", {}, `${label} `, choice)] : []), make("button", { type: "submit" }, "Set"));
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const texts = inputs.map((input) => input.value.trim());

@@ -158,12 +158,17 @@ function dragOf(handle, start) {
   return null;
 }
 
+/** What names a joint or a point, the points that it is, and where. */
+function spotOf({ kind, name, link, point }, now = scene()) {
+  const joint = kind === "joint" && now.joints.find((one) => one.name === name);
+  return joint ? { end: { joint: name }, points: joint.points, at: joint.at } : { end: { link, point }, points: [key(link, point)], at: now.at.get(key(link, point)) };
+}
+
 function movingTo(handle) {
-  const points = handle.kind === "joint" ? scene().joints.find((one) => one.name === handle.name).points : [key(handle.link, handle.point)];
-  const what = handle.kind === "joint" ? { joint: handle.name } : { link: handle.link, point: handle.point };
+  const { end, points } = spotOf(handle);
   return (place, free, exact = false) => {
     const to = exact ? place : snap(place, free);
-    return { operations: [{ op: "move", ...what, to }], held: { points, at: to, text: `${number(to[0], 5)}, ${number(to[1], 5)} mm` } };
+    return { operations: [{ op: "move", ...end, to }], held: { points, at: to, text: `${number(to[0], 5)}, ${number(to[1], 5)} mm` } };
   };
 }
 
@@ -280,8 +285,7 @@ function newPoint(link) {
 function endAt(handle, place, free) {
   const now = scene();
   const to = snap(place, free);
-  if (handle?.kind === "joint") return { end: { joint: handle.name }, at: now.joints.find((one) => one.name === handle.name).at, operations: [], handle };
-  if (handle?.kind === "point") return { end: { link: handle.link, point: handle.point }, at: now.at.get(key(handle.link, handle.point)), operations: [], handle };
+  if (handle?.kind === "joint" || handle?.kind === "point") return { ...spotOf(handle, now), operations: [], handle };
   if (handle?.kind === "link") {
     const link = now.links.find((one) => one.name === handle.name);
     const point = newPoint(link);
@@ -386,8 +390,7 @@ function nudge(handle, way, free) {
   const step = snapStep() / (free ? 100 : 1);
   let pulled = null;
   if (handle.kind === "joint" || handle.kind === "point") {
-    const from = handle.kind === "joint" ? now.joints.find((one) => one.name === handle.name).at : now.at.get(key(handle.link, handle.point));
-    pulled = movingTo(handle)(from.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), free, true);
+    pulled = movingTo(handle)(spotOf(handle, now).at.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), free, true);
   } else if (handle.kind === "load") {
     const load = now.loads.find((one) => same(one.path, handle.path));
     pulled = force(load, load.vector.map((one, k) => rounded(one + way[k] * forceStep() / (free ? 100 : 1), forceStep() / 100)));

@@ -1,6 +1,6 @@
 /** What leaves the page: report, picture, case, STEP; commands for a study and a least size; and what comes in. */
 
-import { command, handOut, make, unused } from "./elements.js";
+import { command, handOut, make, offer, unused } from "./elements.js";
 import { mountDrop } from "./drop.js";
 import { ask, tell } from "./server.js";
 import { shownVerdict } from "./verdict.js";
@@ -95,7 +95,7 @@ export function mount(holder, store) {
     report.href = `out/report?fidelity=${found?.stage === "solids" ? "solid" : "beam"}`;
     report.textContent = found?.stage === "solids" ? "Report, with solids" : "Report, by hand";
     const links = (store.state.drawn?.links ?? []).filter((link) => link.part).map((link) => link.name);
-    if (links.join("\n") !== [...steps.options].map((one) => one.value).join("\n")) steps.replaceChildren(...links.map((name) => make("option", { value: name }, name)));
+    offer(steps, links);
     commands();
   }
 

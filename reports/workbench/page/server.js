@@ -57,7 +57,6 @@ async function next() {
 
 /** Edit the case by a list of operations; those of one gesture are one step of undo. */
 export const edit = (operations, gesture = "") => change("edit", { operations }, gesture);
-export const replaceText = (text, gesture = "") => change("text", { text }, gesture);
 export const newGesture = () => crypto.randomUUID();
 
 /** Show a sentence to the reader. */

@@ -1,7 +1,7 @@
 /** The text of the case: with line numbers, and what is wrong at its line. */
 
 import { make } from "./elements.js";
-import { newGesture, replaceText, send } from "./server.js";
+import { change, newGesture, send } from "./server.js";
 
 const PAUSE = 300; // ms after the last key until the text is sent
 export function mount(holder, store) {
@@ -103,7 +103,7 @@ export function mount(holder, store) {
     clearTimeout(typed);
     if (typed === null) return;
     typed = null;
-    replaceText(area.value, gesture).catch(() => {}); // the sentence stands above the page
+    change("text", { text: area.value }, gesture).catch(() => {}); // the sentence stands above the page
   }
 
   area.addEventListener("input", () => {

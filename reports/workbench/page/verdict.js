@@ -67,7 +67,7 @@ export function mount(holder, store) {
 
   function solve() {
     store.put("panel", "solids");
-    send("solids", { do: "start", fidelity: "solid" }).catch(({ message }) => tell(message));
+    send("solids", { do: "start" }).catch(({ message }) => tell(message));
   }
 
   function badge(found, now) {
