@@ -7,7 +7,7 @@ import os
 import secrets
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -42,7 +42,6 @@ ELSEWHERE = {"viewer.js": "alula.reports.turnable", "turnable.css": "alula.repor
 """Files of the page that stand in other packages."""
 REPORT = "sandbox allow-scripts allow-downloads; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 """Policy of a report beside its own by hashes: it is of no origin, so that nothing in it can ask this server."""
-Answer = Callable[[Request], Awaitable[Response]]
 Entries = Mapping[str, tuple[type, Any]]
 """Entries of what a page posts, with their types and what stands for a missing one; ``...`` where it must be there."""
 MOST_SILENT = 32
@@ -52,7 +51,7 @@ ACTIONS: Mapping[str, tuple[Callable[..., Awaitable[None]], Entries]] = {
     "edit": (Session.edit, {"operations": (list, ...), **_ON}),
     "text": (Session.write, {"text": (str, ...), **_ON}),
     "undo": (Session.undo, {"revision": (int, None)}),
-    "redo": (Session.redo, {"revision": (int, None)}),
+    "redo": (partial(Session.undo, redo=True), {"revision": (int, None)}),
     "save": (Session.save, {"always": (bool, None)}),
     "reload": (Session.reload, {}),
     "overwrite": (Session.overwrite, {}),
@@ -205,26 +204,22 @@ def application(session: Session) -> Starlette:
         await action(session, **await _asked(request, entries))
         return JSONResponse({"revision": session.document.revision if session.document else 0})
 
-    get: Mapping[str, Answer] = {
-        "/": page,
-        "/page/{file}": page,
-        "/events": events,
-        "/starters": starters,
-        "/schema": schema,
-        "/model/{link}": model,
-        "/line": line,
-        "/out/report": report,
-        "/out/case": case,
-        "/out/step/{link}": step,
-    }
-    post: Mapping[str, Answer] = {"/drop/{name}": drop, "/{action}": act}
-    app = Starlette(
-        routes=[
-            *(Route(path, answer, methods=["GET"]) for path, answer in get.items()),
-            *(Route(path, answer, methods=["POST"]) for path, answer in post.items()),
-        ],
-        exception_handlers={AlulaError: _explained, HTTPException: _unknown, Exception: _broken},
-    )
+    routes = [
+        Route("/", page),
+        Route("/page/{file}", page),
+        Route("/events", events),
+        Route("/starters", starters),
+        Route("/schema", schema),
+        Route("/model/{link}", model),
+        Route("/line", line),
+        Route("/out/report", report),
+        Route("/out/case", case),
+        Route("/out/step/{link}", step),
+        Route("/drop/{name}", drop, methods=["POST"]),
+        Route("/{action}", act, methods=["POST"]),
+    ]
+    told = {AlulaError: _explained, HTTPException: _unknown, Exception: _broken}
+    app = Starlette(routes=routes, exception_handlers=told)
     app.router.redirect_slashes = False  # it knows no token
     return app
 

@@ -222,14 +222,9 @@ class Session:
         self._open(revision).replace(text, gesture)
         self._changed()
 
-    async def undo(self, revision: int | None) -> None:
-        """Take back the last change."""
-        self._open(revision).undo()
-        self._changed()
-
-    async def redo(self, revision: int | None) -> None:
-        """Make the change anew that was taken back last."""
-        self._open(revision).redo()
+    async def undo(self, revision: int | None, *, redo: bool = False) -> None:
+        """Take back the last change, or make the one anew that was taken back last."""
+        (Document.redo if redo else Document.undo)(self._open(revision))
         self._changed()
 
     async def take_draft(self, take: bool) -> None:

@@ -18,7 +18,6 @@ export function mountDrop(holder, store) {
   async function take(file) {
     store.put("panel", "out");
     found.replaceChildren();
-    if (!/\.(step|stp)$/i.test(file.name)) return (said.textContent = `'${file.name}' is no STEP file by its name; drop one that ends with .step or .stp.`);
     if (file.size > LARGEST * 2 ** 20) return (said.textContent = `'${file.name}' is larger than ${LARGEST} MiB; export the part alone.`);
     said.textContent = `Looking into '${file.name}' ...`;
     const post = { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file };

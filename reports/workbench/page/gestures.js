@@ -6,7 +6,7 @@ import { fromLocal, key, poseHandle, scene, toLocal } from "./scene.js";
 import { arrowLength } from "./plane.js";
 import * as entry from "./entry.js";
 import { removeOf } from "./tools.js";
-import { angle, minus, number, pan, plus, round125, rounded, size, snap, snapStep, toPlane, toScreen, zoom } from "./view.js";
+import { angle, leastOf, minus, number, pan, plus, round125, rounded, size, snap, snapStep, toPlane, toScreen, zoom } from "./view.js";
 
 /** Pixels that a pointer may shake without being a drag. */
 const STILL = 4;
@@ -228,16 +228,14 @@ function following(handle, now, start) {
     return fromLocal({ origin: minus(at, fromLocal({ origin: [0, 0], direction }, first.local)), direction }, held);
   });
   const { value } = drawn.coordinate;
-  let here = nearest(path.map((_, k) => Math.abs(motion.values[k] - value)));
+  let here = leastOf(path.map((_, k) => Math.abs(motion.values[k] - value)));
   return (place, free) => {
     const reach = Math.max(2, Math.round(path.length / 8)); // where paths cross, the hand stays on its own branch
     const away = path.map((at, k) => (Math.abs(k - here) <= reach || (motion.turns && Math.abs(k - here) >= path.length - reach) ? size(minus(at, place)) : Infinity));
-    here = nearest(away);
+    here = leastOf(away);
     return turn(motion.values[here] + between(path, motion.values, here, place), poseStep(free), place);
   };
 }
-
-const nearest = (list) => list.reduce((best, one, k) => (one < list[best] ? k : best), 0);
 
 /** How far beyond the nearest instant the pointer is, along the path. */
 function between(path, values, k, place) {
@@ -324,14 +322,11 @@ function use(handle, place, free) {
 
 function addLoad({ end, at, operations, to }) {
   const now = scene();
-  let target = end;
   if (!now) return;
-  if (end.joint) {
-    const points = now.joints.find((one) => one.name === end.joint).points.map((one) => now.links.flatMap((link) => (link.ground ? [] : link.points.map((point) => ({ link: link.name, point: point.name }))))
-      .find(({ link, point }) => key(link, point) === one));
-    target = points.findLast(Boolean);
-  }
-  if (!now.links.some((link) => link.name === target?.link && !link.ground)) return tell("A load acts on a link that moves: press on a point of one, or on the link itself.");
+  const moves = ({ link }) => now.links.some((one) => one.name === link && !one.ground);
+  const named = (joint) => spotOf({ kind: "joint", name: joint }, now).points.map((one) => one.split(".")).map(([link, point]) => ({ link, point }));
+  const target = (end.joint ? named(end.joint) : [end]).findLast(moves);
+  if (!target) return tell("A load acts on a link that moves: press on a point of one, or on the link itself.");
   const { loadCase, drawn } = store.state;
   const name = drawn.loads.find((load) => load.load_case === loadCase)?.path[1] ?? loadCase ?? "load";
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));

@@ -81,16 +81,8 @@ function asked(now) {
   for (const [label, route, body] of answers) add(bar, "button", { type: "button" }, label).addEventListener("click", () => change(route, body));
 }
 
-/** The load case that is shown: the first one until another is chosen. */
-function loadCases() {
-  store.on("drawn", (drawn) => {
-    if (drawn && !drawn.load_cases.includes(store.state.loadCase)) store.put("loadCase", drawn.load_cases[0] ?? null);
-  });
-}
-
 tabs();
 said();
-loadCases();
 gestures.mount(plane.mount(find("plane")));
 tools.mount(find("tools"));
 side.mount(find("side"));

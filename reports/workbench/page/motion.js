@@ -4,7 +4,7 @@ import { store } from "./store.js";
 import { beyond } from "./scene.js";
 import { edit } from "./server.js";
 import { make } from "./elements.js";
-import { number } from "./view.js";
+import { leastOf, number } from "./view.js";
 
 /** Seconds that the whole motion takes on the page. */
 const SECONDS = 5;
@@ -75,7 +75,7 @@ function nearest() {
   const { motion, drawn } = store.state;
   const value = drawn?.coordinate?.value ?? motion.values[0];
   const far = (one) => (motion.turns ? Math.abs(((((one - value) % 360) + 540) % 360) - 180) : Math.abs(one - value));
-  return motion.values.reduce((best, one, k) => (far(one) < far(motion.values[best]) ? k : best), 0);
+  return leastOf(motion.values.map(far));
 }
 
 function show() {

@@ -3,9 +3,9 @@
 import { same, store } from "./store.js";
 import { shownVerdict } from "./verdict.js";
 import { beyond, freePoints, poseHandle, scene } from "./scene.js";
-import { add, Group } from "./elements.js";
+import { add, Group, make } from "./elements.js";
 import { ahead, along, place } from "./labels.js";
-import { angle, fit, gridStep, minus, number, plus, round125, size, toScreen, turned } from "./view.js";
+import { angle, fit, gridStep, leastOf, minus, number, plus, round125, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
 const ARROW = 0.2;
@@ -16,8 +16,9 @@ export const USES = [
 let svg, groups, perNewton = 0, waiting = false, hovered = null;
 
 export function mount(element) {
-  svg = add(element, "svg", { role: "application", "aria-label": "The linkage, to scale", id: "sheet" });
-  marks(add(svg, "defs"));
+  const hatch = make("pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+    make("rect", { width: 6, height: 6, fill: USES.at(-1)[2] }), make("line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#b3261e", "stroke-width": 2 }));
+  svg = add(element, "svg", { role: "application", "aria-label": "The linkage, to scale", id: "sheet" }, make("defs", {}, hatch));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
   for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "cursor", "paths"]) {
@@ -28,12 +29,6 @@ export function mount(element) {
   new ResizeObserver(() => (store.state.fitted ? later() : fitAll())).observe(element);
   store.on("drawn", (drawn) => drawn && (store.state.fitted || fitAll()));
   return svg;
-}
-
-function marks(defs) {
-  const pattern = add(defs, "pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" });
-  add(pattern, "rect", { width: 6, height: 6, fill: USES.at(-1)[2] });
-  add(pattern, "line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#b3261e", "stroke-width": 2 });
 }
 
 function hover(handle) {
@@ -134,8 +129,7 @@ const trace = (points, closed) => points.map((one, k) => `${k ? "L" : "M"}${toSc
 function paths({ now }) {
   const { motion } = store.state;
   if (!store.state.paths || !motion?.points) return;
-  const nearest = (value) => motion.values.reduce((best, one, k) => (Math.abs(one - value) < Math.abs(motion.values[best] - value) ? k : best), 0);
-  const dead = (motion.dead ?? []).map(nearest);
+  const dead = (motion.dead ?? []).map((value) => leastOf(motion.values.map((one) => Math.abs(one - value))));
   for (const [name, points] of Object.entries(motion.points)) {
     if (now.links.some((link) => link.ground && link.points.some((point) => name === `${link.name}.${point.name}`))) continue;
     groups.paths.put(name, "path", { d: trace(points, false) });

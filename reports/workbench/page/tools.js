@@ -73,12 +73,14 @@ export function removeOf(handle) {
   edit([{ op: "remove", path }]);
 }
 
+/** The load case that is shown: the first one until another is chosen. */
 function loadCases(element) {
   const list = make("select", { onchange: () => store.put("loadCase", list.value) });
   add(element, "label", { class: "choice" }, "Load case ", list);
   const show = () => {
     const names = store.state.drawn?.load_cases ?? [];
     offer(list, names);
+    if (store.state.drawn && !names.includes(store.state.loadCase)) store.put("loadCase", names[0] ?? null);
     list.value = store.state.loadCase ?? "";
     element.hidden = names.length < 2;
   };
