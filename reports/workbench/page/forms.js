@@ -37,6 +37,7 @@ class Forms {
     store.on("selected", (selected) => this.follow(selected));
     store.on("panel", () => this.later());
     this.tables = store.state.document?.tables ?? null;
+    this.follow(store.state.selected); // it may have been chosen before the schema was there
     this.later();
   }
 

@@ -82,11 +82,11 @@ export function mount(holder, store) {
     const value = path?.reduce((inside, step) => inside?.[step], store.state.document?.tables);
     const range = rangeOf(value);
     const file = quoted(store.state.document?.name ?? "case.toml");
-    const vary = range && quoted(`${path.join(".")}=${range}`);
+    const vary = (count) => quoted(`${path.join(".")}=${range}${count}`);
     asked.replaceChildren(...(range
       ? [make("p", {}, `Of ${path.join(".")}, which is ${value}, from half to double:`),
-        make("p", {}, "Study this ", command(`alula study ${file} --vary ${vary} -o ${quoted(`${stem()}-study`)}`)),
-        make("p", {}, "Least size ", command(`alula size ${file} --vary ${vary}`))]
+        make("p", {}, "Study this ", command(`alula study ${file} --vary ${vary("/7")} -o ${quoted(`${stem()}-study`)}`)),
+        make("p", {}, "Least size ", command(`alula size ${file} --vary ${vary("")}`))]
       : [make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the commands for a study of it, and for its least size that passes, stand here then.")]));
   }
 
