@@ -201,7 +201,7 @@ def test_pictures_and_the_report_leave_the_page(
 
 def copied_commands_run(browser: chromium.Browser, case: Path) -> None:
     """What the page gives to be copied runs as a shell takes it, beside the case; by hand alone, which takes less."""
-    entry = "import(document.baseURI + 'page/store.js').then(({ store }) => store.put('entry', arguments[0]))"
+    entry = "return import(document.baseURI + 'page/store.js').then(({ store }) => store.put('entry', arguments[0]))"
     browser.run(entry, ["parts", "bar", "width"])
     study, size = [one.text for one in browser.elements("#panel-out .command code")]
     for command, more in ((study, ()), (size, ("--step", "4.5 mm"))):
@@ -220,6 +220,7 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     bare = [{"op": "set", "path": ["links", link, "part"], "value": None} for link in ("rocker", "coupler")]
     bare.append({"op": "set", "path": ["load_cases", "lift", "own_weight"], "value": False})
     bare.append({"op": "set", "path": ["solid", "accuracy"], "value": "30 %"})
+    bare.append({"op": "set", "path": ["parts", "bar", "width"], "value": "9 mm"})
     browser.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", bare)
     browser.wait(f"{TEXT}.includes('own_weight = false')")
     open_panel(browser, "solids")
