@@ -16,7 +16,7 @@ from alula.reports.workbench import app, session
 class Quiet:
     """Stands for workers and solids: remembers what is asked, and answers nothing."""
 
-    def __init__(self, tell: Any, folder: Path) -> None:
+    def __init__(self, tell: Any, folder: Path, *limits: object) -> None:
         self.tell, self.asked = tell, []
 
     def ask(self, *asked: Any) -> None:

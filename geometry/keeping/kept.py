@@ -19,7 +19,6 @@ import os
 import pickle
 import platform
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -33,6 +32,7 @@ from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
+from alula.geometry.base.whole_file import write_whole
 from alula.geometry.keeping.cache_folder import cache_folder
 from alula.geometry.keeping.content import digest
 
@@ -123,22 +123,13 @@ class KeptResults:
         key : str
         result : object
         """
-        draft = None
-        try:
+        with suppress(Exception):  # a full disk, a folder that went, a result that cannot be pickled
             body = pickle.dumps(result, protocol=pickle.HIGHEST_PROTOCOL)
             if len(body) > self.limit / 4.0:  # it would drive out all else
                 return
-            handle, draft = tempfile.mkstemp(prefix=".", dir=self.folder)
-            with os.fdopen(handle, "wb") as file:
-                file.write(HEAD + hashlib.sha256(body).digest())
-                file.write(body)
-            Path(draft).replace(self.folder / key)
+            write_whole(self.folder / key, HEAD, hashlib.sha256(body).digest(), body, lasting=False)
             self._own.add(key)
             self._tidy()
-        except Exception:  # a full disk, a folder that went, a result that cannot be pickled
-            if draft is not None:
-                with suppress(OSError):
-                    Path(draft).unlink(missing_ok=True)
 
     def counted(self, key: str, *, found: bool) -> None:
         """Count a result that was asked for; one of this run's own is none of an earlier one.

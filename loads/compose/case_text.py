@@ -1,13 +1,12 @@
 """The text of the file that states a case."""
 
-import os
-import secrets
 from pathlib import Path
 from typing import Any
 
 import tomlkit
 
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.whole_file import write_whole
 from alula.loads.case.part_points import KINDS
 from alula.loads.text.explain import printable
 
@@ -80,16 +79,16 @@ def write_case(path: Path, text: str, *, replace: bool) -> None:
     """
     shown = printable(str(path))
     try:
-        path = Path(os.path.realpath(path)) if replace else path  # a link stays one
-        begun = path.parent / f".alula-{secrets.token_hex(8)}" if replace else path
-        with begun.open("x", encoding="utf-8", newline="\n") as file:
-            try:
-                file.write(text)
-                file.flush()
-                begun.replace(path)
-            except BaseException:
-                begun.unlink()
-                raise
+        if replace:
+            write_whole(path, text.encode())
+        else:
+            with path.open("x", encoding="utf-8", newline="\n") as file:
+                try:
+                    file.write(text)
+                    file.flush()
+                except BaseException:
+                    path.unlink()
+                    raise
     except FileExistsError:
         raise CaseError(f"'{shown}' is there already; choose another name, or say replace=True") from None
     except OSError as error:

@@ -43,15 +43,26 @@ def case_files(name: str, path: Path) -> dict[Path, bytes]:
     case, companions = shipped("alula.loads.cases", f"{name}.toml"), dict[Path, bytes]()
     for file in beside:
         content = shipped("alula.loads.cases", file)
-        place = _place_for(path.parent / file, content)
+        place = place_for(path.parent / file, content)
         case = case.replace(f'"{file}"'.encode(), f'"{place.name}"'.encode())
         if not place.exists():
             companions[place] = content
     return {path: case, **companions}
 
 
-def _place_for(file: Path, content: bytes) -> Path:
-    """Return where a file with this content may stand: its own place, unless something else stands there."""
+def place_for(file: Path, content: bytes) -> Path:
+    """Return where a file with this content may stand: its own place, unless something else stands there.
+
+    Parameters
+    ----------
+    file : Path
+    content : bytes
+
+    Returns
+    -------
+    Path
+        Where nothing stands, or a file of this content.
+    """
     places = itertools.chain([file], (file.with_stem(f"{file.stem}-{k}") for k in itertools.count(2)))
     return next(p for p in places if not os.path.lexists(p) or (p.is_file() and p.read_bytes() == content))
 

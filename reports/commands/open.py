@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from alula.reports.commands import options
 from alula.reports.commands.ending import progress
 
 app = typer.Typer()
@@ -19,6 +20,8 @@ def open_case(
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of 127.0.0.1; 0: one that is free.")] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
+    threads: options.ThreadsOption = 2,
+    memory: options.MemoryOption = None,
 ) -> None:
     """Open a page to work in: draw, drag, and see the verdict change."""
     from alula.geometry.base.errors import CaseError
@@ -41,9 +44,8 @@ def open_case(
         if browser:  # which may come back only when it is closed
             threading.Thread(target=show, args=(address,), daemon=True).start()
 
-    serve(
-        None if case is None else case.absolute(), Path.cwd() if case is None else case.absolute().parent, port, ready
-    )
+    case, folder = (None, Path.cwd()) if case is None else (case.absolute(), case.absolute().parent)
+    serve(case, folder, port, ready, threads=threads, memory=memory)
 
 
 def show(address: str) -> None:

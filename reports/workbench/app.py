@@ -7,10 +7,10 @@ import os
 import secrets
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 from urllib.parse import quote
 
 import uvicorn
@@ -20,6 +20,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.imported.read import LARGEST_FILE
@@ -27,6 +28,7 @@ from alula.geometry.keeping.kept import keeping
 from alula.loads.case.case_file import built_in_cases, read_tables
 from alula.loads.compose.entry_examples import schema_with_examples
 from alula.loads.text.explain import printable
+from alula.reports.words.limits import limited
 from alula.reports.workbench import out
 from alula.reports.workbench.keeping import is_plain
 from alula.reports.workbench.parts import dropped
@@ -40,21 +42,22 @@ ELSEWHERE = {"viewer.js": "alula.reports.turnable", "turnable.css": "alula.repor
 """Files of the page that stand in other packages."""
 REPORT = "sandbox allow-scripts allow-downloads; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 """Policy of a report beside its own by hashes: it is of no origin, so that nothing in it can ask this server."""
-Answer = Callable[[Request], Awaitable[Response]]
 Entries = Mapping[str, tuple[type, Any]]
 """Entries of what a page posts, with their types and what stands for a missing one; ``...`` where it must be there."""
+MOST_SILENT = 32
+"""Connections that have asked nothing yet: a browser opens some ahead of what it will ask."""
 _ON: Entries = {"revision": (int, ...), "gesture": (str, "")}
 ACTIONS: Mapping[str, tuple[Callable[..., Awaitable[None]], Entries]] = {
     "edit": (Session.edit, {"operations": (list, ...), **_ON}),
     "text": (Session.write, {"text": (str, ...), **_ON}),
     "undo": (Session.undo, {"revision": (int, None)}),
-    "redo": (Session.redo, {"revision": (int, None)}),
+    "redo": (partial(Session.undo, redo=True), {"revision": (int, None)}),
     "save": (Session.save, {"always": (bool, None)}),
     "reload": (Session.reload, {}),
     "overwrite": (Session.overwrite, {}),
     "draft": (Session.take_draft, {"take": (bool, ...)}),
     "open": (Session.open, {"path": (str, ""), "starter": (str, ""), "as_": (str, "")}),
-    "solids": (Session.check_solids, {"do": (str, ...), "fidelity": (str, "solid")}),
+    "solids": (Session.check_solids, {"do": (str, ...)}),
 }
 """What a page may post, by the last part of its address."""
 
@@ -100,6 +103,7 @@ class Guard:
 
         refused = self._refused(scope, headers, host)
         if refused is not None:
+            refused.headers["connection"] = "close"  # who may not ask holds no connection
             await refused(scope, receive, sealed)
             return
         rest = "/" + scope["path"].removeprefix("/").partition("/")[2]
@@ -119,18 +123,12 @@ class Guard:
 
     def _seals(self, host: str, headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
         own = f"http://{host}/{self._token}/page/" if host in self._hosts else "'none'"
-        rules = {
-            "default-src": "'none'",
-            "script-src": own,
-            "style-src": own,
-            "img-src": "'self' data: blob:",
-            "connect-src": "'self'",
-            "base-uri": "'none'",
-            "form-action": "'none'",
-            "frame-ancestors": "'none'",
-        }
+        rules = (
+            f"default-src 'none'; script-src {own}; style-src {own}; img-src 'self' data: blob:; connect-src 'self'; "
+            "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        )
         seals = {
-            b"content-security-policy": "; ".join(f"{name} {value}" for name, value in rules.items()),
+            b"content-security-policy": rules,
             b"x-content-type-options": "nosniff",
             b"referrer-policy": "no-referrer",
             b"cache-control": "no-store",
@@ -153,11 +151,8 @@ def application(session: Session) -> Starlette:
     ASGI application
     """
 
-    async def index(request: Request) -> Response:
-        return _page("index.html")
-
     async def page(request: Request) -> Response:
-        return _page(request.path_params["file"])
+        return _page(request.path_params.get("file", "index.html"))
 
     async def events(request: Request) -> Response:
         hearing = session.listen()
@@ -182,6 +177,10 @@ def application(session: Session) -> Starlette:
     async def model(request: Request) -> Response:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
+    async def line(request: Request) -> Response:
+        path = [json.loads(key) for key in request.query_params.getlist("key")]
+        return JSONResponse({"line": session.document and session.document.line(path)})
+
     async def report(request: Request) -> Response:
         fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
         data = await asyncio.to_thread(out.report, session.whole, str(session.path), fidelity)
@@ -205,25 +204,22 @@ def application(session: Session) -> Starlette:
         await action(session, **await _asked(request, entries))
         return JSONResponse({"revision": session.document.revision if session.document else 0})
 
-    get: Mapping[str, Answer] = {
-        "/": index,
-        "/page/{file}": page,
-        "/events": events,
-        "/starters": starters,
-        "/schema": schema,
-        "/model/{link}": model,
-        "/out/report": report,
-        "/out/case": case,
-        "/out/step/{link}": step,
-    }
-    post: Mapping[str, Answer] = {"/drop/{name}": drop, "/{action}": act}
-    app = Starlette(
-        routes=[
-            *(Route(path, answer, methods=["GET"]) for path, answer in get.items()),
-            *(Route(path, answer, methods=["POST"]) for path, answer in post.items()),
-        ],
-        exception_handlers={AlulaError: _explained, HTTPException: _unknown, Exception: _broken},
-    )
+    routes = [
+        Route("/", page),
+        Route("/page/{file}", page),
+        Route("/events", events),
+        Route("/starters", starters),
+        Route("/schema", schema),
+        Route("/model/{link}", model),
+        Route("/line", line),
+        Route("/out/report", report),
+        Route("/out/case", case),
+        Route("/out/step/{link}", step),
+        Route("/drop/{name}", drop, methods=["POST"]),
+        Route("/{action}", act, methods=["POST"]),
+    ]
+    told = {AlulaError: _explained, HTTPException: _unknown, Exception: _broken}
+    app = Starlette(routes=routes, exception_handlers=told)
     app.router.redirect_slashes = False  # it knows no token
     return app
 
@@ -322,7 +318,15 @@ def _listening(port: int) -> socket.socket:
     return made
 
 
-def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], None]) -> None:
+def serve(
+    case: Path | None,
+    folder: Path,
+    port: int,
+    ready: Callable[[str], None],
+    *,
+    threads: int = 2,
+    memory: str | None = None,
+) -> None:
     """Serve a case, or what one can start from, until a signal ends it.
 
     Parameters
@@ -335,19 +339,46 @@ def serve(case: Path | None, folder: Path, port: int, ready: Callable[[str], Non
         0 for one that is free.
     ready : callable
         Is told the address once it answers.
+    threads : int, optional
+    memory : str, optional
+        Limits of this process, and of that which solves links as solids.
 
     Raises
     ------
     CaseError
-        For a port that is in use or forbidden, and for a case that cannot be read, or whose path is no text.
+        For a port that is in use or forbidden, a memory that is none, and for a case that cannot be read, or whose
+        path is no text.
     """
     try:
         str(case or folder).encode()
     except UnicodeEncodeError:
         shown = printable((case or folder).name)
         raise CaseError(f"'{shown}' or a folder above it has a name that is no UTF-8 text; rename it") from None
-    with contextlib.closing(_listening(port)) as bound, keeping():
-        asyncio.run(_serve(case, folder, bound, ready))
+    with contextlib.closing(_listening(port)) as bound, limited(threads, memory), keeping():
+        asyncio.run(_serve(case, lambda: Session(folder, threads, memory), bound, ready))
+
+
+class _Connection(H11Protocol):
+    """A connection that has asked nothing yet is closed where more than some wait: whoever opens many blocks nobody."""
+
+    _silent: ClassVar[dict["_Connection", None]] = {}
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        self._silent[self] = None
+        if len(self._silent) > MOST_SILENT:
+            oldest = next(iter(self._silent))
+            del self._silent[oldest]
+            oldest.transport.close()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._silent.pop(self, None)
+        super().connection_lost(exc)
+
+    def handle_events(self) -> None:
+        super().handle_events()
+        if self.cycle is not None:  # a whole head of a request was there
+            self._silent.pop(self, None)
 
 
 class _Server(uvicorn.Server):
@@ -365,8 +396,10 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: Callable[[str], None]) -> None:
-    session = Session(folder)
+async def _serve(
+    case: Path | None, begun: Callable[[], Session], bound: socket.socket, ready: Callable[[str], None]
+) -> None:
+    session = begun()
     try:
         if case is not None and case.exists():
             session.load(case)
@@ -377,9 +410,9 @@ async def _serve(case: Path | None, folder: Path, bound: socket.socket, ready: C
         raise
     port, token = bound.getsockname()[1], secrets.token_urlsafe(24)
     config = uvicorn.Config(
-        Guard(application(session), token, port), http="h11", ws="none", loop="asyncio", lifespan="off",
+        Guard(application(session), token, port), http=_Connection, ws="none", loop="asyncio", lifespan="off",
         log_config=None, log_level="critical", access_log=False, server_header=False, proxy_headers=False,
-        limit_concurrency=64, timeout_graceful_shutdown=1,
+        timeout_graceful_shutdown=1,
     )  # fmt: skip
     server = _Server(config)
     server.session, server.ready = session, lambda: ready(f"http://127.0.0.1:{port}/{token}/")

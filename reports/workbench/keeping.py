@@ -5,14 +5,13 @@ import hashlib
 import importlib.util
 import json
 import os
-import secrets
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
+from alula.geometry.base.whole_file import write_whole
 from alula.geometry.keeping.cache_folder import cache_folder
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import file_text
@@ -133,54 +132,26 @@ def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
             )
 
 
-def write_whole(path: Path, data: bytes) -> None:
-    """Write a file, all of it or nothing; a link is followed, and owner and permissions stay.
+def write_file(path: Path, text: str) -> None:
+    """Write a file, all of it or nothing.
 
     Parameters
     ----------
     path : Path
-        Missing, or a file.
-    data : bytes
+    text : str
 
     Raises
     ------
     CannotRunError
-        Where the disk refuses; the file is as it was then.
+        Where the disk refuses, as ``alula.geometry.base.whole_file.write_whole`` does; the file is as it was then.
     """
-    shown, target = printable(path.name), Path(os.path.realpath(path))
-    made = target.with_name(f".{target.name[:80]}.{secrets.token_hex(4)}")
     try:
-        before = stamp_of(target)
-        if before is not None and not before.writable:
-            raise CannotRunError(f"'{shown}' is read-only; allow writing to it, and save again")
-        try:
-            with open(os.open(made, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "wb") as stream:
-                stream.write(data)
-                stream.flush()
-                os.fsync(stream.fileno())
-            if before is not None:
-                with contextlib.suppress(OSError):  # the file of another user, who lets this one write
-                    shutil.chown(made, target.stat().st_uid, target.stat().st_gid)
-                shutil.copymode(target, made)
-            os.replace(made, target)
-        except BaseException:
-            made.unlink(missing_ok=True)
-            raise
-        _flush(target.parent)
+        write_whole(path, text.encode())
     except OSError as error:
         raise CannotRunError(
-            f"'{shown}' cannot be written ({error.strerror or error}); the file is as it was, your changes stay here"
+            f"'{printable(path.name)}' cannot be written ({error.strerror or error}); the file is as it was, your "
+            "changes stay here"
         ) from None
-
-
-def _flush(folder: Path) -> None:
-    """Have the disk hold the entries of a folder, where a system can be asked to."""
-    with contextlib.suppress(OSError):
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
 
 
 def digest(text: str) -> str:
@@ -224,19 +195,24 @@ class Drafts:
                 self.alone = self._lock is not None or importlib.util.find_spec("fcntl") is None
                 self._folder = folder if self.alone else None
 
-    def kept(self) -> tuple[str | None, str]:
+    def kept(self) -> tuple[str | None, str, float]:
         """Return what an earlier server kept.
 
         Returns
         -------
-        tuple of str
-            The text, None where there is none, and the digest of the text on the disk that it was made from.
+        text : str or None
+            None where there is none.
+        base : str
+            The digest of the text on the disk that it was made from.
+        since : float
+            When it was kept, in seconds since 1970.
         """
         try:
-            text, base = json.loads((self._folder / _DRAFT).read_text(encoding="utf-8")) if self._folder else (None, "")
+            file = (self._folder or Path(os.devnull)) / _DRAFT
+            text, base = json.loads(file.read_text(encoding="utf-8"))
+            return text, base, file.stat().st_mtime
         except (OSError, ValueError):
-            return None, ""
-        return text, base
+            return None, "", 0.0
 
     def keep(self, text: str, base: str) -> None:
         """Keep a text.
@@ -248,7 +224,7 @@ class Drafts:
             The text on the disk that it was made from.
         """
         if self._folder is not None:
-            write_whole(self._folder / _DRAFT, json.dumps((text, digest(base))).encode())
+            write_file(self._folder / _DRAFT, json.dumps((text, digest(base))))
 
     def drop(self) -> None:
         """Keep nothing any more."""
@@ -272,7 +248,7 @@ class Drafts:
             return None
         aside = self._folder / f"{digest(text)[:8]}.toml"
         with contextlib.suppress(AlulaError):
-            write_whole(aside, text.encode())
+            write_file(aside, text)
             self.drop()
             return aside
         return None

@@ -6,10 +6,11 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.base.tidying import scratch_folder
 from alula.geometry.imported.arrangement import single_frame
 from alula.geometry.imported.read import LARGEST_FILE
+from alula.loads.compose.starting import place_for, write_new
 from alula.loads.exchange.part import FoundPart, part_entries
 from alula.loads.text.explain import printable
 from alula.reports.tools.part import inspect_file
@@ -60,14 +61,16 @@ def dropped(name: str, data: bytes, folder: Path) -> dict[str, Any]:
         entries = part_entries(found)
     if not entries:
         raise CaseError(f"'{kept}': no bore was found that may be a pin's, so that nothing can hold the part")
-    kept = _beside(folder, kept, data)
+    place = place_for(folder / kept, data)
+    if not place.exists():
+        write_new({place: data})
     tables = tomllib.loads(entries)
     [(part, table)], [link] = tables["parts"].items(), tables["links"].values()
     return {
-        "file": kept,
+        "file": place.name,
         "part": part,
         "size": [high - low for low, high in zip(found.facts.low, found.facts.high, strict=True)],
-        "table": table | {"file": kept},
+        "table": table | {"file": place.name},
         "link": link,
         "bores": _bores(found),
     }
@@ -93,29 +96,6 @@ def plain_file_name(name: str) -> str:
     if end.lower() not in ENDINGS:
         raise CaseError(f"'{printable(name[:_LONGEST])}' is no STEP file by its name; drop one that ends with .step")
     return (re.sub(r"[^\w+ -]+", "-", stem).strip("-_+ ")[:_LONGEST] or "part") + end.lower()
-
-
-def _beside(folder: Path, name: str, data: bytes) -> str:
-    """Write a file under the first name that is free, or take the one of the same content; return its name."""
-    stem, end = os.path.splitext(name)
-    count = 1
-    while True:
-        target = folder / name
-        try:
-            with target.open("xb") as stream:
-                try:
-                    stream.write(data)
-                except OSError:
-                    target.unlink()
-                    raise
-            return name
-        except FileExistsError:
-            if target.is_file() and target.stat().st_size == len(data) and target.read_bytes() == data:
-                return name
-        except OSError as error:
-            raise CannotRunError(f"'{name}' cannot be written beside the case ({error.strerror})") from None
-        count += 1
-        name = f"{stem}-{count}{end}"
 
 
 def _bores(found: FoundPart) -> list[dict[str, Any]]:

@@ -25,7 +25,7 @@ from alula.reports.workbench.keeping import (
     plain_name,
     refuse_elsewhere,
     stamp_of,
-    write_whole,
+    write_file,
 )
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
@@ -91,6 +91,9 @@ class Session:
     ----------
     folder : Path
         In which cases are opened, and where files stand that they name.
+    threads : int, optional
+    memory : str, optional
+        As for ``Solids``.
 
     Attributes
     ----------
@@ -104,7 +107,7 @@ class Session:
     solids : Solids
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, threads: int = 2, memory: str | None = None) -> None:
         self.folder, self.path, self.new = folder, folder, "my-case.toml"
         self.document: Document | None = None
         self._stored = ""  # the text that the file held when it was last read or written
@@ -114,12 +117,13 @@ class Session:
         self._problem: dict[str, Any] | None = None
         self._drafts: Drafts | None = None
         self._draft: str | None = None  # what an earlier server kept, until it is taken or not
+        self._since = 0.0  # when it kept that, in seconds since 1970
         self._drafted = ""
         self._pages: set[Listener] = set()
         self._last: dict[str, str] = {}
         self._notice = ""
         self._files = asyncio.Lock()
-        self._workers, self.solids = Workers(self.tell, folder), Solids(self.tell, folder)
+        self._workers, self.solids = Workers(self.tell, folder), Solids(self.tell, folder, threads, memory)
         self._watch = asyncio.create_task(self._watched())
 
     # What pages are told.
@@ -185,20 +189,20 @@ class Session:
         self._tell_document()
 
     def _tell_document(self) -> None:
-        document, open_ = self.document, self.document is not None
+        document, path = self.document or Document(""), self.path if self.document else None
         state = {
-            "revision": document.revision if document else 0,
-            "text": document.text if document else "",
-            "name": self.path.name if open_ else None,
-            "path": str(self.path) if open_ else None,
+            "revision": document.revision,
+            "text": document.text,
+            "name": path and path.name,
+            "path": path and str(path),
             "saved": self.saved,
             "always": self._always,
-            "undo": bool(document and document.can_undo),
-            "redo": bool(document and document.can_redo),
+            "undo": document.can_undo,
+            "redo": document.can_redo,
             "tables": _plain(document),
             "problem": self._problem,
             "disk": self._disk,
-            "draft": self._draft is not None,
+            "draft": None if self._draft is None else self._since,
         }
         self.tell("document", state)
 
@@ -218,14 +222,9 @@ class Session:
         self._open(revision).replace(text, gesture)
         self._changed()
 
-    async def undo(self, revision: int | None) -> None:
-        """Take back the last change."""
-        self._open(revision).undo()
-        self._changed()
-
-    async def redo(self, revision: int | None) -> None:
-        """Make the change anew that was taken back last."""
-        self._open(revision).redo()
+    async def undo(self, revision: int | None, *, redo: bool = False) -> None:
+        """Take back the last change, or make the one anew that was taken back last."""
+        (Document.redo if redo else Document.undo)(self._open(revision))
         self._changed()
 
     async def take_draft(self, take: bool) -> None:
@@ -240,12 +239,12 @@ class Session:
             self._drafts.drop()
         self._changed()
 
-    async def check_solids(self, do: str, fidelity: str) -> None:
+    async def check_solids(self, do: str) -> None:
         """Start or stop the check by solids."""
         document = self._open()
         if do == "start":
             refuse_elsewhere(document.tables(), self.folder)
-            self.solids.start(document.revision, document.text, str(self.path), fidelity)
+            self.solids.start(document.revision, document.text, str(self.path))
         else:
             self.solids.stop()
 
@@ -314,16 +313,18 @@ class Session:
             file = self.folder / plain_name(as_ if starter else path, ".toml")
             if starter:
                 write_new({file: EMPTY.encode()} if starter == DRAWING else case_files(starter, file))
-            self.load(file)
+            self.load(file, new=bool(starter))
             self.solids.stop()  # nobody waits for those of the case before
 
-    def load(self, file: Path) -> None:
+    def load(self, file: Path, *, new: bool = False) -> None:
         """Open a case, and offer what was not saved of it.
 
         Parameters
         ----------
         file : Path
             In the session's folder.
+        new : bool, optional
+            Whether it was made just now: what was not saved is of another one of its name.
         """
         stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
         if self._drafts is not None:
@@ -335,8 +336,8 @@ class Session:
         self._drafts = Drafts(file)
         if not self._drafts.alone:
             self._say("this case is open in another alula as well; what is not saved here is not kept")
-        kept, base = self._drafts.kept()
-        other = kept is not None and kept != text and base != digest(text)
+        kept, base, self._since = self._drafts.kept()
+        other = kept is not None and kept != text and (new or base != digest(text))
         if other and self._set_aside(kept or "", "was made from another text than the file has now"):
             kept = None
         self._changed()
@@ -369,12 +370,11 @@ class Session:
 
     async def _save(self) -> None:
         text = self._open().text
-        data = text.encode()
-        if not text.strip() or len(data) > LARGEST_FILE:
+        if not text.strip() or len(text.encode()) > LARGEST_FILE:
             raise CaseError(
                 "the text is empty or larger than 1 MiB, and no case would be read from it; it was not saved"
             )
-        await asyncio.to_thread(write_whole, self.path, data)
+        await asyncio.to_thread(write_file, self.path, text)
         self._stand(text, stamp_of(self.path))
         self._tell_document()
 
@@ -454,10 +454,8 @@ class Session:
         await asyncio.gather(self._workers.close(), self.solids.close())
 
 
-def _plain(document: Document | None) -> Any:
+def _plain(document: Document) -> Any:
     """Return the tables of a document as JSON has them, with times and what is no number as text, or None."""
-    if document is None:
-        return None
     try:
         return json.loads(json.dumps(document.tables(), default=str), parse_constant=str)
     except CaseError:

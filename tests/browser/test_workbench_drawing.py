@@ -9,6 +9,8 @@ import chromium
 import pytest
 from chromium import LOCAL, PHONE
 
+from alula.reports.workbench.editing.document import Document
+
 WIDE = (1400, 900)
 CASE = Path(__file__).parents[2] / "loads" / "cases" / "four-bar.toml"
 
@@ -141,6 +143,46 @@ def test_an_arrow_and_the_pose_are_pulled(bench):
     turned = state(bench, "now.drawn.coordinate.value")
     assert turned > 42.0
     assert turned == pytest.approx(round(turned))
+    assert not any(one.text.startswith("beyond") for one in bench.elements(".texts text")), "it turns fully"
+    stated = [{"op": "set", "path": ["motion"], "value": {"range": ["30 deg", "40 deg"]}}]
+    bench.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", stated)
+    bench.wait("[...document.querySelectorAll('.texts text')].some((one) => one.textContent.startsWith('beyond'))")
+
+
+def test_a_linkage_of_twelve_links_is_pulled_without_a_halt(bench):
+    """Five four-bars, one on the other: no task of the page holds up the hand, and the numbers follow."""
+    text = "import(document.baseURI + 'page/server.js').then(({ change }) => change('text', { text: arguments[0] }))"
+    bench.run(text, twelve_links())
+    settle(bench, "now.drawn.links.length === 12")
+    bench.run(
+        "window.long = []; const told = (list) => long.push(...list.getEntries().map((one) => one.duration));"
+        "new PerformanceObserver(told).observe({ type: 'longtask' })"
+    )
+    before = forces(bench)
+    pull(bench, "Pose", *[(2, -4)] * 12)
+    assert forces(bench) != before
+    assert max(bench.run("return window.long"), default=0) < 500.0
+
+
+def twelve_links():
+    """The built-in four-bar, with four dyads more: each from the last rocker's point to a pin of the ground."""
+    document = Document(CASE.read_text(encoding="utf-8"))
+    end = {"link": "rocker", "point": "P"}
+    for k in range(4):
+        x, y = 190 + 90 * k, 130 + 4 * k
+        for name, start, to in (("c", end, {"at": [x, y]}), ("r", None, {"ground": [x - 10, 5]})):
+            start = start or {"link": f"c{k}", "point": last(document, f"c{k}")}
+            document.apply([{"op": "link", "name": f"{name}{k}", "from": start, "to": to}], None)
+        end = {"joint": joint_of(document, f"r{k}", f"c{k}")}
+    return document.text
+
+
+def last(document, link):
+    return list(document.tables()["links"][link]["points"])[-1]
+
+
+def joint_of(document, *links):
+    return next(name for name, one in document.tables()["joints"].items() if set(one["links"]) == set(links))
 
 
 def test_the_keyboard_alone_moves_a_joint_and_adds_a_load(bench):

@@ -1,11 +1,14 @@
 """The panels of the page to work in: entries, text, solids, what goes out; against what the commands say."""
 
+import json
 import os
+import shlex
 import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from xml.etree import ElementTree
 
 import chromium
 import pytest
@@ -13,6 +16,7 @@ import pytest
 from alula.fea.check.run import check_case
 from alula.loads.case.case_file import read_case, read_text
 from alula.reports.sentences.verdicts import checks_of
+from alula.reports.tools.part import inspect_file
 
 SHOW = """
 const select = document.querySelector("#panel-forms select");
@@ -27,7 +31,14 @@ window.handed = [];
 const made = URL.createObjectURL;
 URL.createObjectURL = (blob) => (window.handed.push(blob), made.call(URL, blob));
 """
-READ = "const [kind, done] = arguments; window.handed.find(({ type }) => type.startsWith(kind)).text().then(done);"
+READ = "const [kind, done] = arguments; window.handed.findLast(({ type }) => type.startsWith(kind)).text().then(done);"
+CHANGE = """
+return import(document.baseURI + 'page/store.js').then(({ store }) => {
+  const { whole } = store.state.verdict;
+  const change = { text: "A width that was tried passes.", command: null, operations: [arguments[0]] };
+  store.put("verdict", { linear: null, solids: null, whole: { ...whole, changes: [change] } });
+});
+"""
 PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 
 
@@ -94,6 +105,10 @@ def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, ben
     shown = "[...document.querySelectorAll('#panel-verdict tbody tr')].map((row) => row.innerText).join()"
     browser.wait(f"{shown}.includes('{factor:.4g}') && !document.querySelector('#panel-verdict.old')")
     assert browser.element("#panel-verdict .stamp").text.lower() == told.verdict.value
+    browser.wait("document.querySelector('#panel-verdict .stamp-line').innerText.includes('whole')")
+    browser.run(CHANGE, {"op": "set", "path": ["parts", "bar", "width"], "value": "8 mm"})
+    browser.run(PRESS, "Apply")
+    browser.wait(f"""{TEXT} === {json.dumps(case.read_text(encoding="utf-8"))}""")
 
 
 def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
@@ -144,10 +159,13 @@ def test_what_is_selected_in_the_drawing_is_shown(browser: chromium.Browser, ben
     assert browser.run("return document.documentElement.scrollWidth") <= chromium.PHONE[0]
 
 
-def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
-    """The picture alone looks as on the page; the report opens, of the text that is shown."""
+def test_pictures_and_the_report_leave_the_page(
+    browser: chromium.Browser, bench: tuple[str, Path], tmp_path: Path
+) -> None:
+    """The picture alone looks as on the page, a solid is read again; the report opens, of the text that is shown."""
     address, _ = bench
     visit(browser, address)
+    browser.wait("document.querySelector('.texts .link')")
     browser.run(BLOBS)
     open_panel(browser, "out")
     browser.run(PRESS, "Picture, SVG")
@@ -156,11 +174,18 @@ def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench
     browser.wait("window.handed.length === 4")
     browser.wait("window.handed.map((one) => one.type).join().includes('png')")
     drawn = browser.driver.execute_async_script(READ, "image/svg")
-    assert drawn.startswith("<svg")
     assert "class=" not in drawn
     assert 'fill="rgb(' in drawn
+    picture = ElementTree.fromstring(drawn)
+    assert picture.tag == "{http://www.w3.org/2000/svg}svg"
+    assert {"crank", "coupler", "rocker"} <= {one.text.partition(":")[0] for one in picture.iter() if one.text}
     case = browser.driver.execute_async_script(READ, "application")
     assert tomllib.loads(case)["parts"]["bar"]["width"] == "9 mm"
+    browser.run(PRESS, "STEP")
+    browser.wait("window.handed.length === 5")
+    solid = tmp_path / "crank.step"
+    solid.write_text(browser.driver.execute_async_script(READ, "application/octet-stream"), encoding="utf-8")
+    assert len(inspect_file(solid, None).facts.bores) == 2
     page = browser.driver.current_window_handle
     browser.element("#panel-out a.button").click()
     browser.driver.switch_to.window(next(one for one in browser.driver.window_handles if one != page))
@@ -174,17 +199,33 @@ def test_pictures_and_the_report_leave_the_page(browser: chromium.Browser, bench
     assert [one for one in browser.messages() if "favicon" not in one] == []
 
 
+def copied_commands_run(browser: chromium.Browser, case: Path) -> None:
+    """What the page gives to be copied runs as a shell takes it, beside the case; by hand alone, which takes less."""
+    entry = "return import(document.baseURI + 'page/store.js').then(({ store }) => store.put('entry', arguments[0]))"
+    browser.run(entry, ["parts", "bar", "width"])
+    study, size = [one.text for one in browser.elements("#panel-out .command code")]
+    for command, more in ((study, ()), (size, ("--step", "4.5 mm"))):
+        program, *words = shlex.split(command)
+        assert program == "alula"
+        typed = [sys.executable, "-m", program, *words, *more, "--fidelity", "beam"]
+        done = subprocess.run(typed, cwd=case.parent, capture_output=True, text=True, check=False)
+        assert done.returncode in (0, 1, 3), done.stderr
+    assert (case.parent / "mine-study" / "study.sqlite").is_file()
+
+
 def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
     """The crank alone has a part, so that one link is solved, not finely: its model turns, and both bands are told."""
-    address, _ = bench
+    address, case = bench
     visit(browser, address)
     bare = [{"op": "set", "path": ["links", link, "part"], "value": None} for link in ("rocker", "coupler")]
     bare.append({"op": "set", "path": ["load_cases", "lift", "own_weight"], "value": False})
     bare.append({"op": "set", "path": ["solid", "accuracy"], "value": "30 %"})
+    bare.append({"op": "set", "path": ["parts", "bar", "width"], "value": "9 mm"})
     browser.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", bare)
     browser.wait(f"{TEXT}.includes('own_weight = false')")
     open_panel(browser, "solids")
-    browser.run(PRESS, "Check with solids")
+    browser.element("#solids-auto").click()  # by itself, once nothing has changed for three seconds
+    browser.wait("document.querySelector('#panel-solids [role=status]').innerText.includes('links are done')")
     browser.wait("document.querySelector('#panel-solids .model canvas')")
     assert browser.element("#panel-solids th").text == "crank"
     open_panel(browser, "verdict")
@@ -193,6 +234,10 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     assert told.startswith("crank: by hand ")
     assert "; solid " in told
     assert "with solids" in browser.element("#panel-verdict .stamp-line").text
+    browser.element("[aria-keyshortcuts='Control+S']").click()
+    browser.wait("document.querySelector('#name').innerText === 'mine.toml'")
+    open_panel(browser, "out")
+    copied_commands_run(browser, case)
 
 
 def test_a_part_from_cad_is_offered_to_the_pins_of_a_link(browser: chromium.Browser, bench: tuple[str, Path]) -> None:

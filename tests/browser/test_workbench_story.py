@@ -51,7 +51,7 @@ def opened(browser, folder, name, size=WIDE):
             address = re.search(r"http://\S+", server.stdout.readline())[0]
             browser.open(address, size)
             browser.wait("document.querySelector('#start button, .handles circle')")
-            yield Page(browser)
+            yield Page(browser, server)
             assert [one for one in browser.requests() if not one.startswith((address, "blob:"))] == []
             browser.driver.get("about:blank")
             assert browser.messages() == []
@@ -62,8 +62,8 @@ def opened(browser, folder, name, size=WIDE):
 class Page:
     """What hands do on the page, and what is seen there."""
 
-    def __init__(self, browser):
-        self.browser = browser
+    def __init__(self, browser, server):
+        self.browser, self.server = browser, server
 
     def state(self, expression):
         return self.browser.driver.execute_async_script(
@@ -302,7 +302,7 @@ def reach(page, label):
 def test_what_is_begun_from_is_legible_on_a_phone_and_refuses_in_a_sentence(own_browser, tmp_path):
     folder = tmp_path / "linkages"
     folder.mkdir()
-    (folder / "mine.toml").write_text(read_text("four-bar")[0], encoding="utf-8")
+    (folder / "mine.toml").write_text(read_text("finger")[0], encoding="utf-8")
     with opened(own_browser, folder, "new.toml", PHONE) as page:
         assert page.browser.run("return document.documentElement.scrollWidth") == PHONE[0]
         name = page.browser.element("#start input")
@@ -315,3 +315,11 @@ def test_what_is_begun_from_is_legible_on_a_phone_and_refuses_in_a_sentence(own_
         page.browser.wait("document.querySelector('.handles circle')")
         assert page.browser.run("return document.documentElement.scrollWidth") == PHONE[0]
         assert json.loads(page.state("JSON.stringify(now.document.saved)"))
+        page.until("now.drawn && Object.keys(now.drawn.forces).length")
+        page.browser.wait("!document.querySelector('#brief').hidden")
+        verdict = page.browser.element("#brief")
+        assert verdict.location["y"] + verdict.size["height"] < PHONE[1], "it is seen without scrolling"
+        page.server.kill()
+        page.browser.wait("document.querySelector('#notice').innerText.includes('alula open mine.toml')")
+        page.browser.driver.get("about:blank")
+        page.browser.messages()  # that nobody answered

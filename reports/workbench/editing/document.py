@@ -96,7 +96,7 @@ class Document:
             made = None
         if made is None or made != draft.tables:
             raise CaseError("edit: it cannot be written into this text without changing more; write it in the text")
-        self._take(text, gesture)
+        self.replace(text, gesture)
         self._read = text, made
 
     def replace(self, text: str, gesture: str = "") -> None:
@@ -109,9 +109,6 @@ class Document:
         gesture : str
             As for ``apply``.
         """
-        self._take(text, gesture)
-
-    def _take(self, text: str, gesture: str) -> None:
         if text == self.text:
             return
         if not (gesture and gesture == self._gesture and self._done):
@@ -148,11 +145,30 @@ class Document:
             From 1; that of the nearest entry that holds it where it is missing, None where no entry is named.
         """
         try:
-            tables = self.tables()
+            self.tables()
         except CaseError:
             if found := re.search(r"\(at line (\d+), column \d+\)", problem):
                 return int(found[1])
             return self.text.rstrip().count("\n") + 1 if "at end of document" in problem else None
         entry = re.split(r"[:,](?:\s|\Z)", problem, maxsplit=1)[0]
-        path: list[str | int] = [int(key) if key.isdecimal() else key.strip("\"'") for key in entry.split(".")]
-        return TomlText(self.text.removeprefix(_MARK), tables).line(path)
+        return self.line([int(key) if key.isdecimal() else key.strip("\"'") for key in entry.split(".")])
+
+    def line(self, path: Sequence[str | int]) -> int | None:
+        """Return the line on which an entry, or the nearest one that holds it, begins.
+
+        Parameters
+        ----------
+        path : sequence of str and int
+            Keys, and numbers in lists.
+
+        Returns
+        -------
+        int or None
+            From 1; None where nothing is found.
+
+        Raises
+        ------
+        CaseError
+            For text that is no TOML.
+        """
+        return TomlText(self.text.removeprefix(_MARK), self.tables()).line(path)

@@ -1,6 +1,7 @@
 """Operations of the drawing on a case: each becomes a few changes of entries."""
 
 import cmath
+import tomllib
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -9,59 +10,21 @@ from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 from alula.loads.case.part_points import KINDS
+from alula.loads.compose.starting import shipped
 from alula.loads.text.nesting import refuse_deep
 from alula.reports.workbench.editing.moves import lengthen, move, turn
-from alula.reports.workbench.editing.plane import SAME, Plane, Point, loose_positions, told
+from alula.reports.workbench.editing.plane import SAME, Plane, Point, told
 from alula.reports.workbench.editing.references import free, hand_over, remove, rename
 from alula.reports.workbench.editing.toml_text import TomlText, value_at
 
-__all__ = ["EMPTY", "loose_positions", "perform"]
-
-BAR = {
-    "shape": "bar",
-    "material": "aluminium-6061-t6",
-    "width": "6 mm",
-    "thickness": "5 mm",
-    "fillet_radius": "1.5 mm",
-}
+EMPTY = shipped("alula.loads.plans", "starter-linkage.toml.txt").decode()
+"""A case to start a drawing from: ground, part and checks; links, joints and loads are missing."""
+BAR = tomllib.loads(EMPTY)["parts"]["bar"]
 """Part and, below, pins of the built-in six-bar, for the first link and joint of a case. On bars of this width a load's
 usual patch of 5 mm is within what hand calculation is calibrated for."""
-EMPTY = f"""# A linkage to be drawn. Every quantity carries its unit.
-
-schema_version = 1
-title = "New linkage"
-
-# The ground link does not move; its points are in the global frame.
-[links.base]
-ground = true
-points.O2 = ["0 mm", "0 mm"]
-points.O4 = ["100 mm", "0 mm"]
-
-[joints]
-
-[pose]
-
-[parts.bar]
-{chr(10).join(f'{key} = "{value}"' for key, value in BAR.items())}
-
-# The checks that decide the verdict.
-[checks.strength]                  # stays elastic: first yield anywhere
-type = "safety-factor"             # default minimum: that of the material
-
-[checks.collapse]                  # does not break: links flow as a whole
-type = "plastic-collapse"
-minimum = 2.4
-
-[checks.eyes]                      # does not break: eyes by their modes
-type = "eye"
-minimum = 2.4
-
-[checks.stiffness]
-type = "displacement"              # of each link from the line through its pins
-maximum = "0.5 mm"
-"""
-"""A case to start a drawing from: ground, part and checks; links, joints and loads are missing."""
 PIN = "3 mm"
+OF_PIN = ("pin_diameter", "pin_material", "pin_gap", "friction", "friction_range", "tight_in", "clearance", "fit")
+"""Entries of a joint that one beside it takes over."""
 
 
 def perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) -> None:
@@ -234,16 +197,7 @@ def _joint(draft: TomlText, plane: Plane, first: Point, second: Point) -> None:
     kept: dict[str, Any] = {"links": [first[0], second[0]]}
     if not named:
         kept["points"] = [first[1], second[1]]
-    for key in (
-        "pin_diameter",
-        "pin_material",
-        "pin_gap",
-        "friction",
-        "friction_range",
-        "tight_in",
-        "clearance",
-        "fit",
-    ):
+    for key in OF_PIN:
         value = model.get(key)
         if isinstance(value, dict):
             value = {links[link]: one for link, one in value.items() if link in links}

@@ -257,33 +257,3 @@ class Plane:
             angle = size(angles.get(link, "0 deg"), "angle", ("pose", "near", link))
             at = origin + cmath.rect(1.0, turn) * self.local[known[0]]
             frames[link] = at - cmath.rect(1.0, angle) * self.local[link, point], angle
-
-
-def loose_positions(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return where links lie while no pose can be solved, for the drawing of a case that is not whole yet.
-
-    Parameters
-    ----------
-    tables : mapping
-        Of the case.
-
-    Returns
-    -------
-    dict of str to object
-        Link -> {"origin": [x, y] in mm, "angle" in rad, "points": {point: [x, y] in mm}}.
-
-    Raises
-    ------
-    CaseError
-        Where links, points and joints cannot be read.
-    """
-    plane = Plane(tables)
-    found = {}
-    for link, (origin, angle) in plane.frames.items():
-        places = {point: at for (one, point), at in plane.at.items() if one == link}
-        found[link] = {
-            "origin": [origin.real, origin.imag],
-            "angle": angle,
-            "points": {point: [at.real, at.imag] for point, at in places.items()},
-        }
-    return found

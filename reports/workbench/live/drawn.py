@@ -31,12 +31,10 @@ from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.states.rubbing import is_of
 from alula.reports.figures.sprung import mark_line
 from alula.reports.words.numbers import number
-from alula.reports.workbench.editing.edits import loose_positions
+from alula.reports.workbench.editing.plane import Frame, Plane
 
 Real = NDArray[np.float64]
 Plain = dict[str, Any]
-Frame = tuple[complex, float]
-"""Origin [mm] and angle [rad] of a link's frame."""
 
 _BAR = 0.022
 """Width of a link without part, as a share of the linkage's size: that of the drawings of reports."""
@@ -66,19 +64,15 @@ def drawn(case: Case, pose: Pose, statics: CaseStatics | None = None) -> Plain:
     whole = _size([complex(*pose.position(link, point)) for link, one in case.links.items() for point in one.points])
     frames = {link: (complex(*pose.origins[link]), pose.angles[link]) for link in case.links}
     ends = {name: (joint.links[1], linkage.joint_points(name)[1]) for name, joint in linkage.joints.items()}
-    return {
-        "links": [_link(name, one, frames[name], whole, case) for name, one in case.links.items()],
-        "joints": [
-            _joint(name, linkage.joints[name], complex(*pose.position(*end)), complex(pose.placement.along(name)))
-            for name, end in ends.items()
-        ],
-        "loads": [load for name, one in load_cases.items() for load in _loads(case, pose, name, one, statics)],
-        "springs": _springs(case, pose, whole, statics),
-        "coordinate": _coordinate(case, pose),
-        "drive": None if case.drive is None else {"link": case.drive.link, "joint": case.drive.joint},
-        "size": whole,
-        "load_cases": list(load_cases),
-    }
+    links = [_link(name, one, frames[name], whole, case) for name, one in case.links.items()]
+    joints = [
+        _joint(name, linkage.joints[name], complex(*pose.position(*end)), complex(pose.placement.along(name)))
+        for name, end in ends.items()
+    ]
+    loads = [load for name, one in load_cases.items() for load in _loads(case, pose, name, one, statics)]
+    drive = None if case.drive is None else {"link": case.drive.link, "joint": case.drive.joint}
+    standing = {"springs": _springs(case, pose, whole, statics), "coordinate": _coordinate(case, pose), "drive": drive}
+    return {"links": links, "joints": joints, "loads": loads, **standing, "size": whole, "load_cases": [*load_cases]}
 
 
 def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain | None:
@@ -97,12 +91,10 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
         As ``drawn``, without springs; None where links, points and joints cannot be read.
     """
     try:
-        places, pose = loose_positions(tables), tables.get("pose", {})
-        links = {name: Link.model_validate(one) for name, one in tables.get("links", {}).items()}
-        joints = {name: Joint.model_validate(one) for name, one in tables.get("joints", {}).items()}
-        frames = {name: (complex(*one["origin"]), float(one["angle"])) for name, one in places.items()}
-        at = {(name, point): complex(*xy) for name, one in places.items() for point, xy in one["points"].items()}
-        ends = {name: (joint.links[1], (joint.points or (name, name))[1]) for name, joint in joints.items()}
+        plane, pose = Plane(tables), tables.get("pose", {})
+        links = {name: Link.model_validate(one) for name, one in plane.links.items()}
+        joints, frames, at = plane.joints, plane.frames, plane.at
+        ends = {name: end for name, (_, end) in plane.ends.items()}
         kind, dimension = ("travel", "length") if "travel" in pose else ("angle", "angle")
         value = parse(pose.get(kind, "0 deg"), dimension) if pose.get("coordinate") else 0.0
         held = {"kind": kind, "value": math.degrees(value) if kind == "angle" else value, "least": None, "most": None}

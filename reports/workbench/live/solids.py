@@ -6,11 +6,10 @@ started.
 
 What the page does:
 
-* ``POST /solids {"do": "start", "fidelity": "solid"}`` starts it, ``{"do": "stop"}`` stops it.
+* ``POST /solids {"do": "start"}`` starts it, ``{"do": "stop"}`` stops it.
 * The event ``solids`` has ``links``: name -> ``state`` (``waiting``, ``solving``, ``done``, or ``kept`` where all was
   found), ``seconds`` since its state began or that it took, and ``model``, a number that grows with each model of the
-  link; 0 without one. Where it has grown, ``GET /model/{link}`` has the model. Those of a link that a check decided by
-  hand stay 0.
+  link; 0 without one. Where it has grown, ``GET /model/{link}`` has the model.
 * A model is shown by the viewer that reports have: the page loads ``viewer.js`` as a classic script with ``defer``, and
   ``turnable.css``; then ``window.alulaViewer.show(parent, "link", text)`` takes an element and the answer's text, puts
   the model first into it, and returns an object whose ``remove()`` takes it away again, or null without WebGL. Remove a
@@ -29,9 +28,8 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from alula.geometry.base.child import environment, last_line, module_command
 from alula.geometry.base.errors import AlulaError, CaseError
@@ -41,8 +39,6 @@ Tell = Callable[[str, Plain], None]
 
 ROLE = __name__.rpartition(".")[2]
 """Under which a process of ``alula.reports.workbench.live.workers`` answers with ``STAGES``."""
-THREADS = 2
-"""As many as ``alula check`` takes unless it is told otherwise."""
 _LONGEST = 1 << 28
 """Longest line of the process [bytes]: a model with a million nodes on its surface."""
 
@@ -56,14 +52,17 @@ class Solids:
         Takes the name of an event, ``solids`` or ``verdict``, and its data.
     folder : Path
         That of the case.
+    threads : int, optional
+    memory : str, optional
+        Limits of the process, as ``alula check`` takes them.
     """
 
-    def __init__(self, tell: Tell, folder: Path) -> None:
-        self._tell, self._folder = tell, folder
+    def __init__(self, tell: Tell, folder: Path, threads: int = 2, memory: str | None = None) -> None:
+        self._tell, self._folder, self._limits = tell, folder, {"threads": threads, "memory": memory}
         self._run: _Run | None = None
         self._ending: set[asyncio.Task[None]] = set()
 
-    def start(self, revision: int, text: str, name: str, fidelity: str = "solid") -> None:
+    def start(self, revision: int, text: str, name: str) -> None:
         """Begin a check, in place of one that is at work.
 
         Parameters
@@ -74,20 +73,12 @@ class Solids:
             Of the case file.
         name : str
             Its path or built-in name.
-        fidelity : {"solid", "auto"}
-            All links as solids, or those alone that hand calculation does not decide.
-
-        Raises
-        ------
-        CaseError
-            For another fidelity.
         """
-        if fidelity not in STAGES:
-            raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(STAGES)}")
         if self._run is not None:
             self._run.stop()
         self._ending = {task for task in self._ending if not task.done()}
-        self._run = _Run(self._tell, self._folder, revision, {"stage": fidelity, "text": text, "name": name})
+        request = {"stage": ROLE, "text": text, "name": name, **self._limits}
+        self._run = _Run(self._tell, self._folder, revision, request)
         self._ending.add(self._run.task)
 
     def stop(self) -> None:
@@ -160,7 +151,9 @@ class _Run:
         for name, link in self._links.items():
             seconds = now - self._since[name] if link["state"] == "solving" else link["seconds"]
             links[name] = {**link, "seconds": round(seconds, 2)}
-        told = {"revision": self._revision, "state": self._state, "sentence": self._sentence, "links": links}
+        ended = sum(link["state"] in ("done", "kept") for link in links.values())
+        so_far = f"{ended} of {len(links)} links are done. " if links and self._state == "running" else ""
+        told = {"revision": self._revision, "state": self._state, "sentence": so_far + self._sentence, "links": links}
         self._told("solids", told)
 
     def _end(self, state: str, sentence: str) -> None:
@@ -171,51 +164,38 @@ class _Run:
         self._tell()
 
     async def _work(self) -> None:
+        """Start the process, take what it tells, and say how it ended."""
+        pipe, status = asyncio.subprocess.PIPE, None
         with tempfile.TemporaryFile() as complaints:
             try:
-                status = await self._followed(complaints)
+                self._child = child = await asyncio.create_subprocess_exec(
+                    *module_command("alula.reports.workbench.live.workers", ROLE), stdin=pipe, stdout=pipe,
+                    stderr=complaints, env=environment(), cwd=self._folder, limit=_LONGEST, start_new_session=True,
+                )  # fmt: skip
+                assert child.stdin is not None
+                assert child.stdout is not None
+                child.stdin.write(json.dumps(self._request).encode() + b"\n")
+                while self._state == "running" and (line := await child.stdout.readline()):
+                    if self._state == "running":  # it may have been stopped meanwhile
+                        self._take(json.loads(line))
+                child.stdin.close()  # its end
             except (OSError, ValueError) as error:  # it could not be started; a line is no answer
                 self._end("failed", f"The check by solids could not be followed: {error}")
-                self._kill()
-                if self._child is not None:
-                    await self._child.wait()
+            if self._child is not None:
+                if self._state != "running":
+                    self._kill()
+                status = await self._child.wait()
             if self._state == "running":
                 complaints.seek(0)
                 why = last_line(complaints.read())
                 self._end("failed", f"The check by solids ended by itself (status {status}: {why})")
-
-    async def _followed(self, complaints: IO[bytes]) -> int:
-        """Start the process, take what it tells, and return its status."""
-        pipe = asyncio.subprocess.PIPE
-        self._child = child = await asyncio.create_subprocess_exec(
-            *module_command("alula.reports.workbench.live.workers", ROLE),
-            stdin=pipe,
-            stdout=pipe,
-            stderr=complaints,
-            env=environment(),
-            cwd=self._folder,
-            limit=_LONGEST,
-            start_new_session=True,
-        )
-        assert child.stdin is not None
-        assert child.stdout is not None
-        if self._state != "running":  # it was stopped meanwhile
-            self._kill()
-        with suppress(ConnectionError):
-            child.stdin.write(json.dumps(self._request).encode() + b"\n")
-        while self._state == "running" and (line := await child.stdout.readline()):
-            if self._state == "running":
-                self._take(json.loads(line))
-        child.stdin.close()  # its end
-        if self._state != "running":
-            self._kill()
-        return await child.wait()
 
     def _take(self, answer: Plain) -> None:
         """Take what the process told."""
         event, told = answer.get("event"), answer.get("data", {})
         if event == "links":
             self._links = {name: {"state": "waiting", "seconds": 0.0, "model": 0} for name in told["names"]}
+            self._sentence = "Joint forces are being solved ..."
         elif event == "link":
             link, now = self._links[name := told["name"]], time.monotonic()
             state = told.get("state", link["state"])
@@ -239,12 +219,13 @@ class _Run:
         self._tell()
 
 
-def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
+def _check(text: str, name: str, tell: Tell, threads: int, memory: str | None) -> None:
     """Check a text, in the process: tell links, models and the verdict."""
     from alula.fea.check.run import WatchedLink, check_case, effort_of
     from alula.fea.outcomes.result import LinkResult, SolidResult
     from alula.geometry.keeping.kept import keeping
     from alula.reports.turnable.link import link_model
+    from alula.reports.words.limits import limited
     from alula.reports.workbench.live.answers import case_of
     from alula.reports.workbench.live.verdicts import verdict_of
 
@@ -278,12 +259,12 @@ def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
     try:
         case = case_of(text, name)
         told("links", {"names": list(case.checked_links)})
-        with keeping():
+        with limited(threads, memory), keeping():
             result = check_case(
                 case,
                 name=name,
-                fidelity=fidelity,
-                threads=THREADS,
+                fidelity="solid",
+                threads=threads,
                 effort=effort_of(case),
                 watch=watch,
                 progress=progress,
@@ -297,5 +278,5 @@ def _check(fidelity: str, text: str, name: str, tell: Tell) -> None:
         told("failed", {"sentence": str(error)})
 
 
-STAGES: Mapping[str, Callable[[str, str, Tell], None]] = {name: partial(_check, name) for name in ("solid", "auto")}
-"""What the process may be asked: to check a text with this fidelity."""
+STAGES: Mapping[str, Callable[..., None]] = {ROLE: _check}
+"""What the process may be asked."""

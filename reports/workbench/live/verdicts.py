@@ -110,14 +110,14 @@ def verdict_of(result: CheckResult, stage: str, start: float) -> Plain:
     return {
         "stage": stage,
         "verdict": result.verdict.value,
-        "sentences": list(sentences),
+        "sentences": [_here(one) for one in sentences],
         "checks": [_check(result.case, check) for check in by_nearness(checks)],
         "links": {
             link: {"use": _use(own), "verdict": overall(one.verdict for one in own).value}
             for link, own in of_links.items()
         },
         "changes": _changes(result),
-        "warnings": [sentence(told(warning)) for warning in result.warnings],
+        "warnings": [_here(sentence(told(warning))) for warning in result.warnings],
         "ms": 1e3 * (time.perf_counter() - start),
     }
 
@@ -142,8 +142,13 @@ def _check(case: Case, check: CheckOutcome) -> Plain:
         "limit": _known(check.limit),
         "unit": check.unit,
         "verdict": check.answer,
-        "text": sentence(told(check.reason)),
+        "text": _here(sentence(told(check.reason))),
     }
+
+
+def _here(text: str) -> str:
+    """Return a sentence that names what the page has in place of an option of the command line."""
+    return text.replace("--fidelity solid", "'Check with solids'")
 
 
 def _known(value: float) -> float | None:
@@ -164,7 +169,7 @@ def _changes(result: CheckResult) -> list[Plain]:
     for change in result.changes:
         title = sentence(change_title(change, several=several))[:-1]
         told_of_it = f"{title}: {' '.join(change_sentences(change, result))}"
-        found.append({"text": told_of_it, "command": size_command(change, result) or None, "operations": None})
+        found.append({"text": _here(told_of_it), "command": size_command(change, result) or None, "operations": None})
         if (size := change.size) is not None and change.check.verdict is not Verdict.PASS:
             operations = [{"op": "set", "path": keys_of(size.entry), "value": size.last}]
             wide = f"With {size.entry} = {size.last} it passes; the least that does lies between {size.first} and this."

@@ -209,22 +209,23 @@ class _Service:
         os.dup2(nowhere, 1)
         self._stoppable, self._stop = False, False
 
-    def run(self, stages: Mapping[str, Callable[[str, str, Callable[[str, Plain], None]], None]]) -> None:
+    def run(self, stages: Mapping[str, Callable[..., None]]) -> None:
         """Answer requests until the parent ends, and this process with it."""
         signal.signal(signal.SIGINT, self._interrupted)
         threading.Thread(target=self._read, daemon=True).start()
         while True:
             request = self._requests.get()
+            stage = request.pop("stage")
             try:
                 self._stoppable = True
                 self._interrupted()  # a stop may be there already
-                stages[request["stage"]](request["text"], request["name"], self._tell)
+                stages[stage](tell=self._tell, **request)
                 self._stoppable, done = False, True
             except _StoppedError:
                 self._stoppable, done = False, False
             except Exception as error:  # a mistake of alula's own, which leaves the next text to be answered
                 self._stoppable, done = False, not self._stop  # a library may tell another error where ours was raised
-                wrong = f"the {request['stage']} of this text was not found: {type(error).__name__}: {error}"
+                wrong = f"the {stage} of this text was not found: {type(error).__name__}: {error}"
                 if done:
                     self._write({"event": "notice", "data": {"sentence": wrong}})
             self._write({"done": done})

@@ -1,7 +1,7 @@
 /** STEP files that are dropped on the page: what is found in them is offered to the pins of a link. */
 
-import { make, number, unused } from "./elements.js";
-import { edit } from "./server.js";
+import { free, make, number, unused } from "./elements.js";
+import { ask, edit } from "./server.js";
 
 const LARGEST = 64; // MiB, as the server takes them
 
@@ -18,12 +18,11 @@ export function mountDrop(holder, store) {
   async function take(file) {
     store.put("panel", "out");
     found.replaceChildren();
-    if (!/\.(step|stp)$/i.test(file.name)) return (said.textContent = `'${file.name}' is no STEP file by its name; drop one that ends with .step or .stp.`);
     if (file.size > LARGEST * 2 ** 20) return (said.textContent = `'${file.name}' is larger than ${LARGEST} MiB; export the part alone.`);
     said.textContent = `Looking into '${file.name}' ...`;
-    const answer = await fetch(`drop/${encodeURIComponent(file.name)}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file }).catch(() => null);
-    const told = (await answer?.json().catch(() => null)) ?? {};
-    if (!answer?.ok) return (said.textContent = told.sentence ?? "The server of alula does not answer; start it again with alula open.");
+    const post = { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file };
+    const told = await ask(`drop/${encodeURIComponent(file.name)}`, post).then((answer) => answer.json(), ({ message }) => void (said.textContent = message));
+    if (!told) return;
     said.textContent = `'${told.file}' stands beside the case: ${told.size.map(number).join(" × ")} mm, ${told.bores.length} bore${told.bores.length > 1 ? "s" : ""} that may hold pins.`;
     offer(told);
   }
@@ -53,20 +52,14 @@ export function mountDrop(holder, store) {
       const names = chosen.map(([name]) => name);
       if (!names.length) return (said.textContent = "Give at least one bore a point.");
       if (new Set(names).size < names.length) return (said.textContent = "Give each bore a point of its own.");
-      const free = (table, wish) => {
-        for (let count = 1; ; count += 1) {
-          const name = count === 1 ? wish : `${wish}-${count}`;
-          if (!(name in (tables[table] ?? {}))) return name;
-        }
-      };
-      const part = free("parts", told.part);
-      const name = link.value || free("links", told.part);
-      const points = Object.fromEntries(chosen.map(([point, bore]) => [point, told.link.points[bore.point]]));
-      const slots = Object.fromEntries(chosen.filter(([, bore]) => bore.slot).map(([point, bore]) => [point, told.link.slots[bore.point]]));
+      const part = free(told.part, Object.keys(tables.parts ?? {}));
+      const name = link.value || free(told.part, Object.keys(tables.links ?? {}));
       const bores = Object.fromEntries(chosen.map(([point, bore]) => [point, bore.bore]));
       const operations = [{ op: "set", path: ["parts", part], value: { ...told.table, bores } }, { op: "set", path: ["links", name, "part"], value: part }];
-      for (const [point, at] of Object.entries(points)) operations.push({ op: "set", path: ["links", name, "points", point], value: at });
-      for (const [point, slot] of Object.entries(slots)) operations.push({ op: "set", path: ["links", name, "slots", point], value: slot });
+      for (const [point, bore] of chosen) {
+        operations.push({ op: "set", path: ["links", name, "points", point], value: told.link.points[bore.point] });
+        if (bore.slot) operations.push({ op: "set", path: ["links", name, "slots", point], value: told.link.slots[bore.point] });
+      }
       try {
         await edit(operations);
         found.replaceChildren();

@@ -1,6 +1,6 @@
 /** The entries of the case as forms, made from the JSON Schema: one table, and one of its entries, at a time. */
 
-import { keepingFocus, make, unused, worded } from "./elements.js";
+import { free, keepingFocus, make, unused, worded } from "./elements.js";
 import { beginning, isList, isMap, isPlain, isTable, itemOf, optionOf, options, schema, titleOf } from "./schema.js";
 import { edit } from "./server.js";
 import { same } from "./store.js";
@@ -37,6 +37,7 @@ class Forms {
     store.on("selected", (selected) => this.follow(selected));
     store.on("panel", () => this.later());
     this.tables = store.state.document?.tables ?? null;
+    this.follow(store.state.selected); // it may have been chosen before the schema was there
     this.later();
   }
 
@@ -105,22 +106,21 @@ class Forms {
   /** A button that shows the entry that is wrong, where another one is shown. */
   elsewhere() {
     const tables = Object.keys(this.root.properties).filter((table) => this.begins([table]) && !this.plain(table));
-    const name = tables.length ? Object.keys(this.tables[tables[0]] ?? {}).find((one) => this.begins([tables[0], one])) : null;
-    if (!tables.length) return this.begins([this.wrong.split(/[ .:]/)[0]]) && this.wrong.split(/[ .:]/)[0] in this.root.properties ? this.shower(CASE, null, "the case itself") : "";
-    return this.shower(tables[0], name ?? null, [words(tables[0]), name].filter(Boolean).join(", "));
-  }
-
-  shower(table, name, title) {
+    if (!tables.length && !(this.wrong.split(/[ .:]/)[0] in this.root.properties)) return "";
+    const [table = CASE] = tables;
+    const name = Object.keys(this.tables[table] ?? {}).find((one) => this.begins([table, one])) ?? null;
+    const title = [words(table) || "the case itself", name].filter(Boolean).join(", ");
     return make("button", { type: "button", class: "to-line", onclick: () => this.show(table, name) }, `Something is wrong in ${title}: show it`);
   }
 
-  find(path) {
-    return [...this.form.querySelectorAll("[data-path]")].find((one) => one.dataset.path === key(path));
+  /** The element of an entry, or the one of its elements that has a property. */
+  find(path, property = "dataset") {
+    return [...this.form.querySelectorAll("[data-path]")].find((one) => one.dataset.path === key(path) && property in one);
   }
 
   /** Put the cursor back to where it was, with what was typed and not sent yet. */
   back(kept) {
-    const again = kept && [...this.form.querySelectorAll("[data-path]")].find((one) => one.dataset.path === kept.path && "value" in one);
+    const again = kept && this.find(JSON.parse(kept.path), "value");
     if (!again) return;
     if (kept.value !== kept.was) again.value = kept.value;
     again.focus({ preventScroll: true });
@@ -197,11 +197,7 @@ class Forms {
 
   free(wish) {
     const taken = Object.keys(this.tables[this.table] ?? {});
-    const base = wish.replace(/[^\w+ -]/g, " ").replace(/-\d+$/, "");
-    for (let place = 1; ; place += 1) {
-      const name = place === 1 ? base : `${base}-${place}`;
-      if (!taken.includes(name)) return name;
-    }
+    return free(wish.replace(/[^\w+ -]/g, " ").replace(/-\d+$/, ""), taken);
   }
 
   shown() {
@@ -366,7 +362,9 @@ class Forms {
       const label = path.at(-1) === "points" ? this.nameField(here, "point") : make("label", { for: id }, name);
       return make("div", { class: "field keyed", "data-path": key(here) }, label, make("span", { class: "values" }, ...inputs), remove, this.error(here, true));
     });
-    const fresh = make("input", { type: "text", "aria-label": "Name of the new entry", placeholder: "name", list: option["x-names"] || path.at(-1) === "near" ? this.listOf("links") : null });
+    const told = { type: "text", "aria-label": "Name of the new entry", placeholder: "name" };
+    const links = Object.keys(this.tables.links ?? {}).filter((name) => !(name in value));
+    const fresh = option["x-names"] || path.at(-1) === "near" ? make("select", told, links.map((name) => make("option", {}, name))) : make("input", told);
     const add = () => {
       const name = fresh.value.trim();
       if (!name) return fresh.focus();
@@ -474,14 +472,6 @@ class Forms {
     const own = Object.keys(this.tables[refers] ?? {});
     const library = refers === "materials" ? (options(node)[0].examples ?? node.examples ?? []) : [];
     return [...own, ...library.filter((name) => !own.includes(name))];
-  }
-
-  /** The id of a list of names that an input offers. */
-  listOf(table) {
-    const id = `names-of-${table}`;
-    document.getElementById(id)?.remove();
-    this.holder.append(make("datalist", { id }, ...Object.keys(this.tables[table] ?? {}).map((name) => make("option", { value: name }))));
-    return id;
   }
 
   refuse(path, sentence) {

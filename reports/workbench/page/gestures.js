@@ -6,7 +6,7 @@ import { fromLocal, key, poseHandle, scene, toLocal } from "./scene.js";
 import { arrowLength } from "./plane.js";
 import * as entry from "./entry.js";
 import { removeOf } from "./tools.js";
-import { angle, minus, number, pan, plus, round125, rounded, size, snap, snapStep, toPlane, toScreen, zoom } from "./view.js";
+import { angle, leastOf, minus, number, pan, plus, round125, rounded, size, snap, snapStep, toPlane, toScreen, zoom } from "./view.js";
 
 /** Pixels that a pointer may shake without being a drag. */
 const STILL = 4;
@@ -158,12 +158,17 @@ function dragOf(handle, start) {
   return null;
 }
 
+/** What names a joint or a point, the points that it is, and where. */
+function spotOf({ kind, name, link, point }, now = scene()) {
+  const joint = kind === "joint" && now.joints.find((one) => one.name === name);
+  return joint ? { end: { joint: name }, points: joint.points, at: joint.at } : { end: { link, point }, points: [key(link, point)], at: now.at.get(key(link, point)) };
+}
+
 function movingTo(handle) {
-  const points = handle.kind === "joint" ? scene().joints.find((one) => one.name === handle.name).points : [key(handle.link, handle.point)];
-  const what = handle.kind === "joint" ? { joint: handle.name } : { link: handle.link, point: handle.point };
+  const { end, points } = spotOf(handle);
   return (place, free, exact = false) => {
     const to = exact ? place : snap(place, free);
-    return { operations: [{ op: "move", ...what, to }], held: { points, at: to, text: `${number(to[0], 5)}, ${number(to[1], 5)} mm` } };
+    return { operations: [{ op: "move", ...end, to }], held: { points, at: to, text: `${number(to[0], 5)}, ${number(to[1], 5)} mm` } };
   };
 }
 
@@ -223,16 +228,14 @@ function following(handle, now, start) {
     return fromLocal({ origin: minus(at, fromLocal({ origin: [0, 0], direction }, first.local)), direction }, held);
   });
   const { value } = drawn.coordinate;
-  let here = nearest(path.map((_, k) => Math.abs(motion.values[k] - value)));
+  let here = leastOf(path.map((_, k) => Math.abs(motion.values[k] - value)));
   return (place, free) => {
     const reach = Math.max(2, Math.round(path.length / 8)); // where paths cross, the hand stays on its own branch
     const away = path.map((at, k) => (Math.abs(k - here) <= reach || (motion.turns && Math.abs(k - here) >= path.length - reach) ? size(minus(at, place)) : Infinity));
-    here = nearest(away);
+    here = leastOf(away);
     return turn(motion.values[here] + between(path, motion.values, here, place), poseStep(free), place);
   };
 }
-
-const nearest = (list) => list.reduce((best, one, k) => (one < list[best] ? k : best), 0);
 
 /** How far beyond the nearest instant the pointer is, along the path. */
 function between(path, values, k, place) {
@@ -280,8 +283,7 @@ function newPoint(link) {
 function endAt(handle, place, free) {
   const now = scene();
   const to = snap(place, free);
-  if (handle?.kind === "joint") return { end: { joint: handle.name }, at: now.joints.find((one) => one.name === handle.name).at, operations: [], handle };
-  if (handle?.kind === "point") return { end: { link: handle.link, point: handle.point }, at: now.at.get(key(handle.link, handle.point)), operations: [], handle };
+  if (handle?.kind === "joint" || handle?.kind === "point") return { ...spotOf(handle, now), operations: [], handle };
   if (handle?.kind === "link") {
     const link = now.links.find((one) => one.name === handle.name);
     const point = newPoint(link);
@@ -320,14 +322,11 @@ function use(handle, place, free) {
 
 function addLoad({ end, at, operations, to }) {
   const now = scene();
-  let target = end;
   if (!now) return;
-  if (end.joint) {
-    const points = now.joints.find((one) => one.name === end.joint).points.map((one) => now.links.flatMap((link) => (link.ground ? [] : link.points.map((point) => ({ link: link.name, point: point.name }))))
-      .find(({ link, point }) => key(link, point) === one));
-    target = points.findLast(Boolean);
-  }
-  if (!now.links.some((link) => link.name === target?.link && !link.ground)) return tell("A load acts on a link that moves: press on a point of one, or on the link itself.");
+  const moves = ({ link }) => now.links.some((one) => one.name === link && !one.ground);
+  const named = (joint) => spotOf({ kind: "joint", name: joint }, now).points.map((one) => one.split(".")).map(([link, point]) => ({ link, point }));
+  const target = (end.joint ? named(end.joint) : [end]).findLast(moves);
+  if (!target) return tell("A load acts on a link that moves: press on a point of one, or on the link itself.");
   const { loadCase, drawn } = store.state;
   const name = drawn.loads.find((load) => load.load_case === loadCase)?.path[1] ?? loadCase ?? "load";
   const drawnForce = to && minus(to, at).map((part) => rounded(part / newtonLength(), forceStep()));
@@ -386,8 +385,7 @@ function nudge(handle, way, free) {
   const step = snapStep() / (free ? 100 : 1);
   let pulled = null;
   if (handle.kind === "joint" || handle.kind === "point") {
-    const from = handle.kind === "joint" ? now.joints.find((one) => one.name === handle.name).at : now.at.get(key(handle.link, handle.point));
-    pulled = movingTo(handle)(from.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), free, true);
+    pulled = movingTo(handle)(spotOf(handle, now).at.map((one, k) => (way[k] ? rounded(one + way[k] * step, step) : one)), free, true);
   } else if (handle.kind === "load") {
     const load = now.loads.find((one) => same(one.path, handle.path));
     pulled = force(load, load.vector.map((one, k) => rounded(one + way[k] * forceStep() / (free ? 100 : 1), forceStep() / 100)));

@@ -13,17 +13,18 @@ import * as forms from "./forms.js";
 import * as text from "./text.js";
 import * as solids from "./solids.js";
 import * as out from "./out.js";
-import { add } from "./svg.js";
+import { add } from "./elements.js";
 
 const find = (id) => document.getElementById(id);
 const MODULES = { verdict, forms, text, solids, out };
+const TITLES = { verdict: "Verdict", forms: "Entries", text: "Text", solids: "Solids", out: "Out" };
 const PANELS = Object.keys(MODULES);
 
 /** Tabs as a keyboard expects them: arrows go from tab to tab, Tab goes into the panel. */
 function tabs() {
   for (const [place, name] of PANELS.entries()) {
-    const tab = find(`tab-${name}`);
-    tab.addEventListener("click", () => store.put("panel", name));
+    const tab = add(find("tabs"), "button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, onclick: () => store.put("panel", name) }, TITLES[name]);
+    add(find("panels"), "div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, tabindex: 0 });
     tab.addEventListener("keydown", (event) => {
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
       if (!step) return;
@@ -32,14 +33,16 @@ function tabs() {
       find(`tab-${other}`).focus();
     });
   }
-  store.on("panel", (shown) => {
+  const show = (shown) => {
     for (const name of PANELS) {
       const open = name === shown;
       find(`tab-${name}`).setAttribute("aria-selected", String(open));
       find(`tab-${name}`).tabIndex = open ? 0 : -1;
       find(`panel-${name}`).hidden = !open;
     }
-  });
+  };
+  store.on("panel", show);
+  show(store.state.panel);
 }
 
 /** The name of the file, what is wrong with it, and what happened. */
@@ -65,11 +68,11 @@ const DISK = {
   deleted: ["The file is gone from the disk.", ["Write it anew", "overwrite"]],
   "read-only": ["The file may not be written: Out has the case as a copy."],
 };
-const DRAFT = ["Changes of last time were not saved.", ["Take them", "draft", { take: true }], ["Let them go", "draft", { take: false }]];
+const draft = (since) => [`Changes of ${new Date(1000 * since).toLocaleString()} were not saved.`, ["Take them", "draft", { take: true }], ["Let them go", "draft", { take: false }]];
 
 /** What the page has to ask the reader about the file. */
 function asked(now) {
-  const [sentence, ...answers] = now.draft ? DRAFT : DISK[now.disk] ?? [""];
+  const [sentence, ...answers] = now.draft ? draft(now.draft) : DISK[now.disk] ?? [""];
   const bar = find("asked");
   bar.hidden = !sentence;
   if (bar.dataset.shown === sentence) return;
@@ -78,16 +81,8 @@ function asked(now) {
   for (const [label, route, body] of answers) add(bar, "button", { type: "button" }, label).addEventListener("click", () => change(route, body));
 }
 
-/** The load case that is shown: the first one until another is chosen. */
-function loadCases() {
-  store.on("drawn", (drawn) => {
-    if (drawn && !drawn.load_cases.includes(store.state.loadCase)) store.put("loadCase", drawn.load_cases[0] ?? null);
-  });
-}
-
 tabs();
 said();
-loadCases();
 gestures.mount(plane.mount(find("plane")));
 tools.mount(find("tools"));
 side.mount(find("side"));

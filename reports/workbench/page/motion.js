@@ -1,36 +1,34 @@
 /** The motion: a slider over its instants, play, paths of points, dead points, and taking over a pose. */
 
 import { store } from "./store.js";
+import { beyond } from "./scene.js";
 import { edit } from "./server.js";
-import { add, draw, set } from "./svg.js";
-import { number } from "./view.js";
+import { make } from "./elements.js";
+import { leastOf, number } from "./view.js";
 
 /** Seconds that the whole motion takes on the page. */
 const SECONDS = 5;
 let parts, playing = null;
 
 export function mount(element) {
-  const play = add(element, "button", { type: "button", "aria-pressed": "false" }, "Play");
-  const track = add(element, "div", { class: "track" });
-  const slider = add(track, "input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion" });
-  const dead = draw(track, "svg", { class: "dead", "aria-hidden": "true" });
-  const said = add(element, "output", {});
-  const one = add(element, "button", { type: "button", hidden: "" }, "Let it turn once");
-  const use = add(element, "button", { type: "button" }, "Use this pose");
-  const back = add(element, "button", { type: "button" }, "Back to the case's pose");
-  const label = add(element, "label", { class: "choice" });
-  const box = add(label, "input", { type: "checkbox" });
-  label.append(" paths of points");
-  parts = { element, play, slider, dead, said, one, use, back };
-  play.addEventListener("click", () => (playing ? stop() : start()));
-  slider.addEventListener("input", () => {
+  const button = (label, act, more = {}) => make("button", { type: "button", onclick: act, ...more }, label);
+  const box = make("input", { type: "checkbox", onchange: () => store.put("paths", box.checked) });
+  const slid = () => {
     stop();
-    store.put("instant", Number(slider.value));
-  });
-  use.addEventListener("click", take);
-  one.addEventListener("click", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]));
-  back.addEventListener("click", leave);
-  box.addEventListener("change", () => store.put("paths", box.checked));
+    store.put("instant", Number(parts.slider.value));
+  };
+  parts = {
+    element,
+    play: button("Play", () => (playing ? stop() : start())),
+    slider: make("input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion", oninput: slid }),
+    dead: make("svg", { class: "dead", "aria-hidden": "true" }),
+    said: make("output"),
+    one: button("Let it turn once", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]), { hidden: true }),
+    use: button("Use this pose", take),
+    back: button("Back to the case's pose", leave),
+  };
+  const { play, slider, dead, said, one, use, back } = parts;
+  element.append(play, make("div", { class: "track" }, slider, dead), said, one, use, back, make("label", { class: "choice" }, box, " paths of points"));
   store.on("motion", () => {
     const { motion, instant } = store.state;
     if (instant !== null && !(instant < motion?.values?.length)) leave();
@@ -77,15 +75,15 @@ function nearest() {
   const { motion, drawn } = store.state;
   const value = drawn?.coordinate?.value ?? motion.values[0];
   const far = (one) => (motion.turns ? Math.abs(((((one - value) % 360) + 540) % 360) - 180) : Math.abs(one - value));
-  return motion.values.reduce((best, one, k) => (far(one) < far(motion.values[best]) ? k : best), 0);
+  return leastOf(motion.values.map(far));
 }
 
 function show() {
-  const { motion, instant } = store.state;
+  const { drawn, motion, instant } = store.state;
   const moves = Boolean(motion?.values?.length);
   for (const one of [parts.play, parts.slider]) one.disabled = !moves;
   parts.use.hidden = parts.back.hidden = instant === null;
-  set(parts.play, { "aria-pressed": String(playing !== null) });
+  parts.play.setAttribute("aria-pressed", String(playing !== null));
   parts.play.textContent = playing ? "Pause" : "Play";
   parts.element.hidden = !motion;
   if (!moves) {
@@ -106,8 +104,8 @@ function show() {
   const dead = motion.dead?.length ? `; dead at ${motion.dead.map((one) => number(one) + signs).join(", ")}` : "";
   const text = `${number(instant === null ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
   parts.slider.setAttribute("aria-valuetext", text);
-  parts.said.textContent = `${text} (${range}${dead})`;
-  parts.dead.replaceChildren();
+  const wide = instant === null && drawn?.coordinate && beyond(drawn.coordinate) ? "beyond the stated motion; " : "";
+  parts.said.textContent = `${text} (${wide}${range}${dead})`;
   const share = (value) => `${(100 * (value - values[0])) / (values.at(-1) - values[0] || 1)}%`;
-  for (const value of motion.dead ?? []) draw(parts.dead, "line", { x1: share(value), x2: share(value), y1: 0, y2: 8 });
+  parts.dead.replaceChildren(...(motion.dead ?? []).map((value) => make("line", { x1: share(value), x2: share(value), y1: 0, y2: 8 })));
 }

@@ -1,8 +1,8 @@
 /** What leaves the page: report, picture, case, STEP; commands for a study and a least size; and what comes in. */
 
-import { command, handOut, make, unused } from "./elements.js";
+import { command, handOut, make, offer, unused } from "./elements.js";
 import { mountDrop } from "./drop.js";
-import { tell } from "./server.js";
+import { ask, tell } from "./server.js";
 import { shownVerdict } from "./verdict.js";
 
 const SHAPES = "fill fill-opacity stroke stroke-width stroke-dasharray stroke-linecap stroke-linejoin stroke-opacity opacity font-family font-size font-weight text-anchor dominant-baseline display visibility paint-order vector-effect marker-start marker-end".split(" ");
@@ -62,9 +62,7 @@ export function mount(holder, store) {
   async function fetched(route, name, doing) {
     said.textContent = doing;
     try {
-      const answer = await fetch(route);
-      if (!answer.ok) throw new Error((await answer.json().catch(() => ({}))).sentence ?? `The server refused (${answer.status}).`);
-      handOut(name, await answer.blob());
+      handOut(name, await (await ask(route)).blob());
       said.textContent = `${name} was handed out.`;
     } catch (problem) {
       said.textContent = problem.message;
@@ -84,11 +82,11 @@ export function mount(holder, store) {
     const value = path?.reduce((inside, step) => inside?.[step], store.state.document?.tables);
     const range = rangeOf(value);
     const file = quoted(store.state.document?.name ?? "case.toml");
-    const vary = range && quoted(`${path.join(".")}=${range}`);
+    const vary = (count) => quoted(`${path.join(".")}=${range}${count}`);
     asked.replaceChildren(...(range
       ? [make("p", {}, `Of ${path.join(".")}, which is ${value}, from half to double:`),
-        make("p", {}, "Study this ", command(`alula study ${file} --vary ${vary} -o ${quoted(`${stem()}-study`)}`)),
-        make("p", {}, "Least size ", command(`alula size ${file} --vary ${vary}`))]
+        make("p", {}, "Study this ", command(`alula study ${file} --vary ${vary("/7")} -o ${quoted(`${stem()}-study`)}`)),
+        make("p", {}, "Least size ", command(`alula size ${file} --vary ${vary("")}`))]
       : [make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the commands for a study of it, and for its least size that passes, stand here then.")]));
   }
 
@@ -97,7 +95,7 @@ export function mount(holder, store) {
     report.href = `out/report?fidelity=${found?.stage === "solids" ? "solid" : "beam"}`;
     report.textContent = found?.stage === "solids" ? "Report, with solids" : "Report, by hand";
     const links = (store.state.drawn?.links ?? []).filter((link) => link.part).map((link) => link.name);
-    if (links.join("\n") !== [...steps.options].map((one) => one.value).join("\n")) steps.replaceChildren(...links.map((name) => make("option", { value: name }, name)));
+    offer(steps, links);
     commands();
   }
 

@@ -2,10 +2,10 @@
 
 import { same, store } from "./store.js";
 import { shownVerdict } from "./verdict.js";
-import { freePoints, poseHandle, scene } from "./scene.js";
-import { add, draw, Group, set } from "./svg.js";
+import { beyond, freePoints, poseHandle, scene } from "./scene.js";
+import { add, Group, make } from "./elements.js";
 import { ahead, along, place } from "./labels.js";
-import { angle, fit, gridStep, minus, number, plus, round125, size, toScreen, turned } from "./view.js";
+import { angle, fit, gridStep, leastOf, minus, number, plus, round125, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
 const ARROW = 0.2;
@@ -16,8 +16,9 @@ export const USES = [
 let svg, groups, perNewton = 0, waiting = false, hovered = null;
 
 export function mount(element) {
-  svg = draw(element, "svg", { role: "application", "aria-label": "The linkage, to scale", id: "sheet" });
-  marks(draw(svg, "defs"));
+  const hatch = make("pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+    make("rect", { width: 6, height: 6, fill: USES.at(-1)[2] }), make("line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#b3261e", "stroke-width": 2 }));
+  svg = add(element, "svg", { role: "application", "aria-label": "The linkage, to scale", id: "sheet" }, make("defs", {}, hatch));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
   for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "cursor", "paths"]) {
@@ -28,12 +29,6 @@ export function mount(element) {
   new ResizeObserver(() => (store.state.fitted ? later() : fitAll())).observe(element);
   store.on("drawn", (drawn) => drawn && (store.state.fitted || fitAll()));
   return svg;
-}
-
-function marks(defs) {
-  const pattern = draw(defs, "pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" });
-  draw(pattern, "rect", { width: 6, height: 6, fill: USES.at(-1)[2] });
-  draw(pattern, "line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#b3261e", "stroke-width": 2 });
 }
 
 function hover(handle) {
@@ -134,8 +129,7 @@ const trace = (points, closed) => points.map((one, k) => `${k ? "L" : "M"}${toSc
 function paths({ now }) {
   const { motion } = store.state;
   if (!store.state.paths || !motion?.points) return;
-  const nearest = (value) => motion.values.reduce((best, one, k) => (Math.abs(one - value) < Math.abs(motion.values[best] - value) ? k : best), 0);
-  const dead = (motion.dead ?? []).map(nearest);
+  const dead = (motion.dead ?? []).map((value) => leastOf(motion.values.map((one) => Math.abs(one - value))));
   for (const [name, points] of Object.entries(motion.points)) {
     if (now.links.some((link) => link.ground && link.points.some((point) => name === `${link.name}.${point.name}`))) continue;
     groups.paths.put(name, "path", { d: trace(points, false) });
@@ -207,8 +201,9 @@ function joints(sheet) {
     const [x, y] = toScreen(joint.at);
     const grounded = joint.links.some((name) => ground.includes(name));
     const radius = Math.max(4.5, (joint.diameter * store.state.view.scale) / 2 || 0);
-    if (joint.way) guide(joint, [x, y], grounded, taken);
-    else if (grounded) support(joint, [x, y], Math.max(17, radius + 8), sheet);
+    const cut = joint.kind === "slot" && now.links.some((link) => link.name === joint.links[0] && link.rings); // its outline has the slot
+    if (joint.way && !cut) guide(joint, [x, y], grounded, taken);
+    else if (grounded && !joint.way) support(joint, [x, y], Math.max(17, radius + 8), sheet);
     const filled = joint.kind === "bonded" || joint.kind === "fixed";
     const handle = { kind: "joint", name: joint.name };
     const shape = { class: `${joint.kind} ${state(handle)}`, fill: filled ? "#1c2733" : "#fff" };
@@ -312,7 +307,7 @@ function moments({ now, texts, taken }) {
 }
 
 /** What a hand, a finger or the keyboard takes hold of: at least 24 px wide. */
-function handles({ now, taken }) {
+function handles({ now, taken, texts }) {
   const put = (key, handle, [x, y], label, more = {}) => {
     const target = groups.handles.put(key, "circle", { cx: x, cy: y, r: 14, tabindex: 0, role: "button", "aria-label": label, ...more });
     target.handle = handle;
@@ -334,6 +329,7 @@ function handles({ now, taken }) {
     arrow(groups.joints, "pose a", plus(at, turned([8, 0], way)), plus(at, turned([15, 0], way)), "pose");
     arrow(groups.joints, "pose b", plus(at, turned([-8, 0], way)), plus(at, turned([-15, 0], way)), "pose");
     taken.push(...along(plus(at, turned([-15, 0], way)), plus(at, turned([15, 0], way))));
+    if (beyond(coordinate)) texts.push({ key: "beyond", text: "beyond the stated motion", anchors: [at], gap: 12, kind: "link over", rank: 0, needed: true });
     put("pose", { kind: "pose" }, at, `Pose: ${coordinate.kind} of ${coordinate.name} ${number(coordinate.value, 5)}${unit}`);
   }
 }
@@ -386,7 +382,7 @@ function legend(now) {
   const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
   const key = largest ? round125(largest / 2) : 0;
   const entries = [
-    ...(uses ? [["", "strength used, at the worst (✗ fails, ? undecided):"], ...USES.map(([, text], k) => [`use${k}`, text])] : []),
+    ...(uses ? [["", "strength used, at the worst (✗ fails, ? undecided):"], ...USES.map(([, text, colour], k) => [k < USES.length - 1 ? "use" : "use over", text, colour])] : []),
     ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
     ...(now?.loads.length ? [["load", "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),
@@ -395,9 +391,9 @@ function legend(now) {
   if (element.dataset.shown === text) return;
   element.dataset.shown = text;
   element.replaceChildren();
-  for (const [kind, words] of entries) {
+  for (const [kind, words, colour] of entries) {
     const one = add(element, "span");
-    if (kind) add(one, "i", { class: kind });
+    if (kind) add(one, "i", { class: kind }).style.backgroundColor = colour ?? "";
     one.append(words);
   }
 }

@@ -18,7 +18,7 @@ export function scene({ drawn, motion, instant, held, loadCase } = store.state) 
     }
   }
   for (const one of held?.points ?? []) at.set(one, held.at);
-  const links = drawn.links.map((link) => ({ ...link, ...frame(link, at, moved, motion) }));
+  const links = drawn.links.map((link) => ({ ...link, ends: link.pieces, ...frame(link, at, moved, motion) }));
   const joints = drawn.joints.map((joint) => {
     const points = pointsOf(joint, drawn);
     const slotted = links.find((link) => link.name === joint.links[0]); // its slot turns with it
@@ -33,6 +33,12 @@ export function scene({ drawn, motion, instant, held, loadCase } = store.state) 
   }));
   return { drawn, at, links, joints, loads, springs: moved === null ? drawn.springs : [], still: moved === null,
     forces: (moved === null && drawn.forces?.[loadCase]) || { joints: {}, drive: null } };
+}
+
+/** Whether a pose lies beyond the motion that the case states; angles count from turn to turn. */
+export function beyond({ kind, value, least, most }) {
+  const turns = kind === "angle" ? [-360, 0, 360] : [0];
+  return least !== null && !turns.some((turn) => value + turn > least - 1e-6 && value + turn < most + 1e-6);
 }
 
 /** Pieces, direction and outline (with its holes) of a link where it stands. */

@@ -2,26 +2,25 @@
 
 import { store } from "./store.js";
 
-/** A request that changed nothing; its message is a sentence for the reader. */
-export class Refused extends Error {}
-
 const EVENTS = ["document", "drawn", "motion", "solids", "notice"];
 let revision = 0;
 let waiting = [];
 let busy = false;
 
-/** Ask the server; the answer as JSON. Without a body it is a GET. */
+/** Ask the server; its answer, or an error whose message is a sentence for the reader: nothing has changed then. */
+export async function ask(route, options = {}) {
+  const answer = await fetch(route, options).catch(() => {
+    throw new Error("The server of alula does not answer; start it again with alula open.");
+  });
+  if (answer.ok) return answer;
+  const { sentence } = await answer.json().catch(() => ({}));
+  throw new Error(sentence ?? `The server refused (${answer.status}).`);
+}
+
+/** What it answers as JSON. Without a body it is a GET. */
 export async function send(route, body) {
   const post = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
-  let answer;
-  try {
-    answer = await fetch(route, body === undefined ? {} : post);
-  } catch {
-    throw new Refused("The server of alula does not answer; start it again with alula open.");
-  }
-  const found = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Refused(found.sentence ?? `The server refused (${answer.status}).`);
-  return found;
+  return (await ask(route, body === undefined ? {} : post)).json();
 }
 
 /** Change the document. One request is on its way at a time; of one gesture the newest change wins. */
@@ -58,7 +57,6 @@ async function next() {
 
 /** Edit the case by a list of operations; those of one gesture are one step of undo. */
 export const edit = (operations, gesture = "") => change("edit", { operations }, gesture);
-export const replaceText = (text, gesture = "") => change("text", { text }, gesture);
 export const newGesture = () => crypto.randomUUID();
 
 /** Show a sentence to the reader. */
@@ -72,7 +70,8 @@ export function connect() {
   let lost = false;
   source.onerror = () => {
     lost = true;
-    tell("The server of alula has ended. Start it again with alula open, and use the page that it opens: changes that were not saved are offered there.");
+    const file = store.state.document?.name ?? "";
+    tell(`The server of alula has ended. Start it again with: alula open ${file} - and use the page that it opens: changes that were not saved are offered there.`);
   };
   source.onopen = () => {
     if (lost) store.put("notice", null);

@@ -3,7 +3,7 @@
 import { same, store } from "./store.js";
 import { edit } from "./server.js";
 import { scene } from "./scene.js";
-import { draw, Group } from "./svg.js";
+import { add, Group } from "./elements.js";
 import { toScreen } from "./view.js";
 import { useOf } from "./plane.js";
 
@@ -12,7 +12,7 @@ const ROW = 20;
 let svg, rows, marks, grab = null;
 
 export function mount(element) {
-  svg = draw(element, "svg", { role: "application", "aria-label": "Layers of the links, seen from the side", id: "layers" });
+  svg = add(element, "svg", { role: "application", "aria-label": "Layers of the links, seen from the side", id: "layers" });
   [rows, marks] = ["rows", "marks"].map((name) => new Group(svg, { class: name }));
   for (const name of ["drawn", "view", "selected", "instant", "verdict"]) store.on(name, show);
   svg.addEventListener("pointerdown", (event) => {

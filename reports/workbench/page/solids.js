@@ -24,7 +24,7 @@ export function mount(holder, store) {
     said, list, figures,
   );
 
-  const ask = (doing) => send("solids", { do: doing, fidelity: "solid" }).catch(({ message }) => tell(message));
+  const ask = (doing) => send("solids", { do: doing }).catch(({ message }) => tell(message));
 
   function later() {
     clearTimeout(pause);

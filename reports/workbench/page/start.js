@@ -2,7 +2,7 @@
 
 import { store } from "./store.js";
 import { change, send, tell } from "./server.js";
-import { add } from "./svg.js";
+import { make } from "./elements.js";
 
 export function mount(element) {
   let shown = false;
@@ -19,29 +19,16 @@ async function show(element) {
     tell(problem.message);
     return { starters: [], files: [], folder: "", new: "" };
   });
-  element.replaceChildren();
-  const told = add(element, "p", { role: "alert" });
+  const told = make("p", { role: "alert" });
   store.on("notice", (notice) => (told.textContent = notice?.sentence ?? ""));
-  add(element, "h2", {}, "Begin a case");
-  const label = add(element, "label", {}, "Its file ");
-  const name = add(label, "input", { "aria-label": "Name of the new file", spellcheck: "false" });
-  name.value = proposed;
-  label.append(` in ${folder}`);
-  const begin = (starter) => () => ({ starter, as: name.value.trim() });
-  const drawing = add(element, "p");
-  for (const one of starters.slice(0, 1)) button(drawing, "Draw a linkage", one.title, begin(one.name)).className = "first";
-  add(element, "p", {}, "Or start from a copy of one that is ready:");
-  const gallery = add(element, "ul");
-  for (const one of starters.slice(1)) button(add(gallery, "li"), one.name, one.title, begin(one.name));
-  if (!files.length) return;
-  add(element, "h2", {}, `Open a case of ${folder}`);
-  const here = add(element, "ul");
-  for (const file of files) button(add(here, "li"), file, "", () => ({ path: file }));
-}
-
-function button(row, text, title, body) {
-  const one = add(row, "button", { type: "button" }, text);
-  one.addEventListener("click", () => change("open", body()).catch(() => {}));
-  row.append(` ${title}`);
-  return one;
+  const name = make("input", { "aria-label": "Name of the new file", spellcheck: "false", value: proposed });
+  const button = (text, title, body, more = {}) => [make("button", { type: "button", onclick: () => change("open", body()).catch(() => {}), ...more }, text), ` ${title}`];
+  const begin = ({ name: starter }) => () => ({ starter, as: name.value.trim() });
+  const [drawing, ...gallery] = starters;
+  element.replaceChildren(
+    told, make("h2", {}, "Begin a case"), make("label", {}, "Its file ", name, ` in ${folder}`),
+    make("p", {}, drawing ? button("Draw a linkage", drawing.title, begin(drawing), { class: "first" }) : null),
+    make("p", {}, "Or start from a copy of one that is ready:"),
+    make("ul", {}, gallery.map((one) => make("li", {}, button(one.name, one.title, begin(one))))));
+  if (files.length) element.append(make("h2", {}, `Open a case of ${folder}`), make("ul", {}, files.map((path) => make("li", {}, button(path, "", () => ({ path }))))));
 }

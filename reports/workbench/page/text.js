@@ -1,8 +1,7 @@
 /** The text of the case: with line numbers, and what is wrong at its line. */
 
 import { make } from "./elements.js";
-import { lineOf, pathOf } from "./lines.js";
-import { newGesture, replaceText } from "./server.js";
+import { change, newGesture, send } from "./server.js";
 
 const PAUSE = 300; // ms after the last key until the text is sent
 export function mount(holder, store) {
@@ -82,9 +81,12 @@ export function mount(holder, store) {
     scrollTo(line);
   }
 
-  function point(scroll = false) {
-    const path = pathOf(store.state.selected);
-    marked = path && lineOf(area.value, path);
+  /** Mark the line of what is selected in the drawing. */
+  async function point(scroll = false) {
+    const { kind, name, link, point: at, path: of } = store.state.selected ?? {};
+    const path = { link: ["links", name], joint: ["joints", name], point: ["links", link, "points", at], load: of }[kind];
+    const keys = (path ?? []).map((key) => `key=${encodeURIComponent(JSON.stringify(key))}`).join("&");
+    marked = path && !holder.hidden ? (await send(`line?${keys}`).catch(() => ({}))).line : null;
     mark.hidden = !marked;
     if (marked && scroll && !holder.hidden) scrollTo(marked);
     follow();
@@ -101,7 +103,7 @@ export function mount(holder, store) {
     clearTimeout(typed);
     if (typed === null) return;
     typed = null;
-    replaceText(area.value, gesture).catch(() => {}); // the sentence stands above the page
+    change("text", { text: area.value }, gesture).catch(() => {}); // the sentence stands above the page
   }
 
   area.addEventListener("input", () => {

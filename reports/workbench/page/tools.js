@@ -2,7 +2,7 @@
 
 import { store } from "./store.js";
 import { change, edit } from "./server.js";
-import { add } from "./svg.js";
+import { add, make, offer } from "./elements.js";
 import { toPlane } from "./view.js";
 import { fitAll } from "./plane.js";
 
@@ -29,10 +29,8 @@ export function mount(element) {
   button(steps, "Fit", "0", "Show all of the linkage", fitAll);
   const keeping = group(element, "File");
   const save = button(keeping, "Save", "Ctrl+S", "", () => ask("save"));
-  const always = add(keeping, "label", { class: "choice" });
-  const box = add(always, "input", { type: "checkbox" });
-  always.append(" save as one goes");
-  box.addEventListener("change", () => ask("save", { always: box.checked }));
+  const box = make("input", { type: "checkbox", onchange: () => ask("save", { always: box.checked }) });
+  add(keeping, "label", { class: "choice" }, box, " save as one goes");
   loadCases(group(element, "Load case"));
   store.on("document", (now) => {
     undo.disabled = !now.undo;
@@ -50,11 +48,8 @@ function group(element, label) {
 }
 
 function button(parent, label, key, title, act) {
-  const one = add(parent, "button", { type: "button", title: title || `${label}: ${key}` }, `${label} `);
-  if (!key.startsWith("Ctrl")) add(one, "kbd", {}, named(key));
-  one.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
-  one.addEventListener("click", act);
-  return one;
+  const told = { type: "button", title: title || `${label}: ${key}`, "aria-keyshortcuts": key.replace("Ctrl", "Control"), onclick: act };
+  return add(parent, "button", told, `${label} `, key.startsWith("Ctrl") ? null : make("kbd", {}, named(key)));
 }
 
 const ask = (route, body) => change(route, body).catch(() => {}); // refusals are told as notices
@@ -78,16 +73,14 @@ export function removeOf(handle) {
   edit([{ op: "remove", path }]);
 }
 
+/** The load case that is shown: the first one until another is chosen. */
 function loadCases(element) {
-  const label = add(element, "label", { class: "choice" }, "Load case ");
-  const list = add(label, "select");
-  list.addEventListener("change", () => store.put("loadCase", list.value));
+  const list = make("select", { onchange: () => store.put("loadCase", list.value) });
+  add(element, "label", { class: "choice" }, "Load case ", list);
   const show = () => {
     const names = store.state.drawn?.load_cases ?? [];
-    if (names.join("\n") !== [...list.options].map((one) => one.value).join("\n")) {
-      list.replaceChildren();
-      for (const name of names) add(list, "option", { value: name }, name);
-    }
+    offer(list, names);
+    if (store.state.drawn && !names.includes(store.state.loadCase)) store.put("loadCase", names[0] ?? null);
     list.value = store.state.loadCase ?? "";
     element.hidden = names.length < 2;
   };

@@ -23,6 +23,8 @@ function band({ low, high, value }) {
 }
 
 export function mount(holder, store) {
+  const brief = document.getElementById("brief"); // stands above the drawing, whichever panel is open
+  brief.addEventListener("click", () => store.put("panel", "verdict"));
   const stamp = make("p", { class: "stamp-line", role: "status", "aria-live": "polite" });
   const rest = make("div");
   const open = new Set();
@@ -41,6 +43,9 @@ export function mount(holder, store) {
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
     stamp.replaceChildren(...badge(found, now));
+    brief.textContent = found?.verdict ?? "";
+    brief.className = `stamp ${found?.verdict ?? ""} ${late ? "late" : ""}`;
+    brief.hidden = !found;
   }
 
   function draw() {
@@ -62,7 +67,7 @@ export function mount(holder, store) {
 
   function solve() {
     store.put("panel", "solids");
-    send("solids", { do: "start", fidelity: "solid" }).catch(({ message }) => tell(message));
+    send("solids", { do: "start" }).catch(({ message }) => tell(message));
   }
 
   function badge(found, now) {

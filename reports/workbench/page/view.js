@@ -8,6 +8,9 @@ export function round125(value) {
   return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= value * (1 - 1e-9));
 }
 
+/** Which of some numbers is the least. */
+export const leastOf = (list) => list.reduce((best, one, k) => (one < list[best] ? k : best), 0);
+
 /** The nearest multiple of a step, without the dust of floating point. */
 export function rounded(value, step) {
   return Number((Math.round(value / step) * step).toPrecision(12)) || 0;

@@ -158,7 +158,7 @@ def test_without_a_folder_all_works_as_before(folder, monkeypatch, harm):
         folder.mkdir(mode=0o700, parents=True)
         folder.chmod({"open to others": 0o777, "read only": 0o500, "gone": 0o700}[harm])
         if harm == "read only" and os.geteuid() == 0:  # whom rights do not stop
-            monkeypatch.setattr(module.tempfile, "mkstemp", lambda **_: (_ for _ in ()).throw(OSError("read only")))
+            monkeypatch.setattr(module, "write_whole", lambda *_, **__: (_ for _ in ()).throw(OSError("read only")))
     with keeping() as store:
         if harm in ("none", "open to others"):
             assert store is None

@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.meshing.mesh import mass_properties
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case
+from alula.loads.states import masses
 from alula.loads.states.masses import part_mass, rough_masses
 
 LADEN = str(Path(__file__).parent / "four-bar-laden.toml")
@@ -53,6 +55,20 @@ def test_wrong_masses_end_in_one_sentence(overrides: list[str], sentence: str) -
     with pytest.raises(CaseError, match=sentence) as wrong:
         read_case(LADEN, overrides)
     assert "more problems" not in str(wrong.value)
+
+
+def test_bodies_of_one_shape_are_weighed_once_whatever_their_pins_are_called(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The levers of the ornithopter are alike but for the name of a pin."""
+    case, asked = read_case("ornithopter"), []
+    monkeypatch.setattr(masses, "_measured", lambda body: asked.append(body) or mass_properties(body))
+    right, left = (part_mass(case, name) for name in ("lever-right", "lever-left"))
+    assert case.body("lever-right") != case.body("lever-left")
+    assert len({*asked}) == 1
+    assert (right.mass, *right.centroid) == (left.mass, *left.centroid)
+    whole = mass_properties(case.body("lever-left"))
+    assert left.mass == whole.volume * case.material_of("lever-left").density
 
 
 # ---- torques on pins -------------------------------------------------------------------------------------------

@@ -15,7 +15,8 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, changed_tables, folder_of, read_case, validate
 from alula.reports.workbench.editing.document import Document
-from alula.reports.workbench.editing.edits import EMPTY, loose_positions
+from alula.reports.workbench.editing.edits import EMPTY
+from alula.reports.workbench.editing.plane import Plane
 from alula.reports.workbench.editing.references import BY_KEY, BY_VALUE, NAMED, references
 
 CASES = built_in_cases()
@@ -220,10 +221,9 @@ def test_a_four_bar_is_drawn_from_an_empty_case() -> None:
         document.apply([step], None)
         with pytest.raises(CaseError, match=r"\A[^\n]+\Z"):
             stated(document, "")
-        placed = loose_positions(document.tables())
-        if "crank" in placed:
-            assert placed["crank"]["points"]["B"] == pytest.approx([30, 25], abs=1e-5)
-    assert placed["coupler"]["points"]["C"] == pytest.approx([150, 70], abs=1e-5)
+        placed = Plane(document.tables()).at
+        assert placed.get(("crank", "B"), 30 + 25j) == pytest.approx(30 + 25j, abs=1e-5)
+    assert placed["coupler", "C"] == pytest.approx(150 + 70j, abs=1e-5)
     load = {"op": "load", "load_case": "lift", "link": "rocker", "point": "P", "force": ["0 N", "-5 N"]}
     document.apply([load], None)
     case = stated(document, "")
@@ -426,6 +426,19 @@ def test_a_point_is_given_to_another_link_with_its_load() -> None:
     assert axis @ (after.position("coupler", "P") - before) == pytest.approx(0.0, abs=1e-6)  # the nearest of its axis
     document.undo()
     assert document.text == opened("four-bar").text
+
+
+def test_points_of_a_part_from_a_file_are_handed_neither_way() -> None:
+    document = opened("step")
+    links = document.tables()["links"]
+    parts = document.tables()["parts"]
+    [imported] = [name for name, one in links.items() if "file" in parts.get(one.get("part"), {})]
+    other = next(name for name in links if name != imported)
+    point = next(iter(links[imported]["points"])) if isinstance(links[imported]["points"], dict) else "A"
+    for link, place, to in ((imported, point, other), (other, next(iter(links[other]["points"])), imported)):
+        with pytest.raises(CaseError, match="come from its bores"):
+            document.apply([{"op": "hand", "link": link, "point": place, "to": to}], None)
+    assert document.text == opened("step").text
 
 
 def test_a_joint_is_given_to_a_third_link_and_not_to_its_own() -> None:

@@ -83,7 +83,7 @@ def test_a_file_that_is_too_large_is_not_even_written(tmp_path: Path, monkeypatc
 
 
 def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
-    with pytest.raises(CannotRunError, match="cannot be written beside the case"):
+    with pytest.raises(CannotRunError, match="cannot be written"):
         parts.dropped("arm.step", BELL_CRANK, tmp_path / "gone")
 
 

@@ -5,6 +5,7 @@ import os
 import socket
 import time
 from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 import served
@@ -411,6 +412,12 @@ def test_a_full_disk_loses_nothing(bench, case, monkeypatch):
     assert not bench.document()["saved"]
 
 
+def test_the_line_of_an_entry_is_told(bench, case):
+    path = "&".join(f"key={quote(json.dumps(key))}" for key in ("load_cases", "lift", "forces", 0, "force"))
+    line = json.loads(bench.ask("GET", f"line?{path}")[2])["line"]
+    assert case.read_text().split("\n")[line - 1].startswith("force = ")
+
+
 def test_what_no_case_could_be_is_not_saved(bench, case):
     before = case.read_bytes()
     for revision, text in enumerate((" ", "x" * (1 << 20) + "y")):
@@ -436,7 +443,7 @@ def test_what_was_not_saved_is_offered_again(case, cache):
     for take in (True, False):
         with served.serving_of(case, case.parent) as bench:
             told = bench.document()
-            assert told["draft"]
+            assert abs(told["draft"] - time.time()) < 60.0, "it says from when it is"
             assert bench.post("save")[0] == 200  # of what is shown, which is no answer
             assert kept(cache)
             assert bench.document()["saved"]
@@ -465,7 +472,7 @@ def test_a_draft_that_is_not_taken_is_set_aside(case, cache, change):
         case.write_bytes(case.read_bytes() + b"# later\r\n")
     with served.serving_of(case, case.parent) as bench:
         with bench.events() as events:
-            assert events.next("document")["draft"] is (change == "on the page")
+            assert (events.next("document")["draft"] is not None) is (change == "on the page")
             retitled(bench, "newer")
             assert "stands in" in events.next("notice")["sentence"]
         [aside] = cache.rglob("*.toml")
@@ -493,6 +500,20 @@ def test_an_offered_draft_outlives_what_happens_before_the_answer(case, cache, m
     case.write_bytes(before)
     with served.serving_of(case, case.parent) as bench:
         assert bench.document()["draft"]
+
+
+def test_a_new_file_is_not_offered_what_was_not_saved_of_another_one(tmp_path, cache):
+    """The deleted one began with the same text and had the same name; what was not saved of it stands aside."""
+    mine = tmp_path / "mine.toml"
+    for _ in range(2):
+        with served.serving_of(mine, tmp_path) as bench:
+            assert bench.post("open", starter="empty", **{"as": "mine.toml"})[0] == 200
+            told = bench.document()
+            assert told["draft"] is None
+            bench.post("text", revision=told["revision"], text='title = "unsaved"', gesture="")
+        mine.unlink()
+        assert kept(cache) == ['title = "unsaved"']
+    assert [file.read_text() for file in cache.rglob("*.toml")] == ['title = "unsaved"']
 
 
 def test_a_second_server_is_told_and_keeps_off(case, cache):
@@ -543,3 +564,18 @@ def test_a_case_is_left_only_when_it_is_saved(bench, case: Path):
     assert solids.asked == []
     assert bench.post("open", starter="four-bar", **{"as": "new.toml"}) == (200, {"revision": 2})
     assert solids.asked == ["stop"]
+
+
+def test_connections_that_ask_nothing_block_nobody(bench):
+    lines = [socket.create_connection(("127.0.0.1", bench.port), timeout=5) for _ in range(100)]
+    try:
+        for line in lines[::2]:
+            line.sendall(b"GET / HTTP/1.1\r\n")  # half a head
+        assert bench.ask("GET", "")[0] == 200
+        assert lines[1].recv(1) == b"", "the oldest are closed"
+        lines[-1].sendall(b"GET /wrong/ HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % bench.port)
+        told = b"".join(iter(lambda: lines[-1].recv(4096), b""))
+        assert told.startswith(b"HTTP/1.1 404"), "and who may not ask is told so, and holds no connection"
+    finally:
+        for line in lines:
+            line.close()
