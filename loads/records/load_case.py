@@ -101,9 +101,10 @@ class LoadLine(CaseModel):
     """A force along a line through two points in space, which enters a link over a rigid lever."""
 
     from_: Place = Field(alias="from")
-    """Where the force begins, x and y, or x, y and z; the rigid lever to the link starts here."""
+    """Where the force begins, x, y and z; the rigid lever to the link starts here. Without z both ends lie in the
+    mid-planes of the links that they load."""
     to: Place
-    """The point that it goes towards."""
+    """The point that it goes towards, with as many coordinates."""
     force: Force
     """Its size; a negative one goes from ``to`` towards ``from``."""
     link: Name
@@ -119,6 +120,8 @@ class LoadLine(CaseModel):
 
     @model_validator(mode="after")
     def _fits(self) -> "LoadLine":
+        if len(self.from_) != len(self.to):
+            raise refusal("one of from and to has no z; state two coordinates for both, or three")
         start, end = vector3(self.from_), vector3(self.to)
         if np.linalg.norm(end - start) <= _SHORTEST * max(np.abs([start, end]).max(), 1.0):
             raise refusal("from and to are the same point, which gives the force no direction; state two points")

@@ -17,7 +17,7 @@ FIRST = {
     "at": "T",
 }
 SECOND = {
-    "from": ["10 mm", "70 mm"],
+    "from": ["10 mm", "70 mm", "0 mm"],
     "to": ["300 mm", "-60 mm", "15 mm"],
     "force": "-300 N",
     "link": "foot",
@@ -111,6 +111,17 @@ def test_what_leaves_by_another_link_goes_through_the_joint_between_them():
     assert reaction.wrench == pytest.approx(-np.concatenate([force, np.cross(arm, force)]))
 
 
+def test_without_z_both_ends_lie_in_the_planes_of_their_links():
+    """As all loads in the plane do: none makes a moment about x or y, in whichever layer its link is."""
+    flat = {**SECOND, "from": SECOND["from"][:2], "to": SECOND["to"][:2]}
+    case = two(flat)
+    [line] = case.load_cases["stand"].load_lines
+    found = ForceOnLine(line).loads(case.stated_pose.placement)
+    assert [load.link for load in found] == ["foot", "pylon"]
+    for load in found:
+        assert load.wrench[2:5] == pytest.approx([0.0, 0.0, 0.0], abs=0.0)
+
+
 def test_its_wrench_is_about_the_plane_of_the_link():
     case = two()
     place = case.stated_pose.placement
@@ -123,8 +134,14 @@ def test_its_wrench_is_about_the_plane_of_the_link():
             assert load.wrench == pytest.approx(np.concatenate([sense * force, np.cross(arm, sense * force)]))
 
 
-LINE = {"from": ["80 mm", "70 mm", "9 mm"], "to": ["30 mm", "-40 mm"], "force": "50 N", "link": "lever", "at": "P"}
-STRUT = {**LINE, "from": ["10 mm", "-90 mm"], "force": "-20 N"}
+LINE = {
+    "from": ["80 mm", "70 mm", "9 mm"],
+    "to": ["30 mm", "-40 mm", "0 mm"],
+    "force": "50 N",
+    "link": "lever",
+    "at": "P",
+}
+STRUT = {**LINE, "from": ["10 mm", "-90 mm"], "to": ["30 mm", "-40 mm"], "force": "-20 N"}
 MOTION = {"motion": {"speed": "1 rad/s", "range": ["-20 deg", "170 deg"], "poses": 39, "inertia": False}}
 
 
@@ -151,6 +168,7 @@ def test_a_line_in_axes_of_its_link_moves_along():
         ({"to": FIRST["from"]}, r"load_cases\.stand\.load_lines\.1: from and to are the same point"),
         ({"to": ["260 mm", "90 mm", "40.0000000001 mm"]}, "the same point"),
         ({"leaves": {"link": "pylon", "at": "T"}}, "enters and leaves at one point"),
+        ({"to": ["1 mm", "2 mm"]}, r"load_lines\.1: one of from and to has no z"),
         ({"from": ["1 mm"]}, r"load_lines\.1\.from: the list has too few|it has 1"),
         ({"from": ["1 mm"] * 4}, r"load_lines\.1\.from"),
         ({"from": None}, r"load_lines\.1\.from"),
