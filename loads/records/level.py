@@ -1,6 +1,5 @@
 """The table ``[level]`` of a case file: tests of a standard's level, as whoever owns the standard types them once."""
 
-from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -9,6 +8,7 @@ from pydantic import Field, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Force, Length, Time
+from alula.loads.records.attachment import Attachment
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Stated = Annotated[Text, Field(min_length=1)]
@@ -28,15 +28,6 @@ class Offsets(CaseModel):
     def vector(self) -> NDArray[np.float64]:
         """Forward, outward, up (3,) [mm]."""
         return np.array([self.forward, self.outward, self.up])
-
-
-class LevelPoint(CaseModel):
-    """A point of a link, where an end of every load line enters."""
-
-    link: Name
-    """The link."""
-    at: Name
-    """Its point."""
 
 
 class Step(CaseModel):
@@ -147,9 +138,9 @@ class Level(CaseModel):
     test: Name | None = None
     """The one test that the case is then: its load case and checks stand in place of those of the case. ``alula check``
     goes over all where it is left out."""
-    enters: LevelPoint
+    enters: Attachment
     """Where the upper end of every load line enters."""
-    leaves: LevelPoint | None = None
+    leaves: Attachment | None = None
     """Where the lower end leaves; where left out, the ground holds against it."""
     origin: tuple[Length, Length, Length] = (0.0, 0.0, 0.0)
     """Where the origin of the standard's axes lies: x, y, z."""
@@ -212,20 +203,3 @@ def _unit(axis: Axis) -> NDArray[np.float64]:
     found = np.zeros(3)
     found["xyz".index(axis[1])] = -1.0 if axis[0] == "-" else 1.0
     return found
-
-
-def selected(level: Level | None) -> Mapping[str, LevelTest]:
-    """Return the tests of a level that a case is about.
-
-    Parameters
-    ----------
-    level : Level or None
-
-    Returns
-    -------
-    mapping of str to LevelTest
-        The chosen one alone, else all; none without a level.
-    """
-    if level is None:
-        return {}
-    return level.tests if level.test is None else {level.test: level.tests[level.test]}
