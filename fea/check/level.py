@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
-from alula.fea.asked.tiers import tier_of
+from alula.fea.asked.tiers import tier_of, worst_of
 from alula.fea.check.run import check_case
-from alula.fea.common.verdict import CheckOutcome, Tier, Verdict, deciding, overall
+from alula.fea.common.verdict import CheckOutcome, Tier, Verdict, overall
 from alula.fea.outcomes.result import CheckResult
 from alula.loads.case.case import Case
 from alula.loads.case.level_case import Demand, demanded
@@ -34,8 +34,8 @@ class Statement:
 
     @property
     def decides(self) -> CheckOutcome | None:
-        """The outcome that has this verdict, nearest to its limit."""
-        return next(iter(deciding(self.outcomes)), None)
+        """The outcome that has this verdict, nearest to its limit; None where nothing was judged."""
+        return worst_of(self.outcomes) if self.outcomes else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +121,20 @@ class LevelResult:
         """
         tests = {name: replace(test, result=change(test.result)) for name, test in self.tests.items()}
         return replace(self, tests=tests, own=None if self.own is None else change(self.own))
+
+
+def has_tests(case: Case) -> bool:
+    """Return whether a case has a level of which no test is chosen, so that a check goes over all.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    bool
+    """
+    return case.level is not None and case.level.test is None
 
 
 def check_level(

@@ -102,6 +102,7 @@ def check_rules(case: CoreCase) -> None:
         check_place(case, f"carried.{i}", mass)
     check_wings(case)
     if case.level is not None:
+        check_file_names("level.tests", case.level.tests)
         check_place(case, "level.enters", case.level.enters)
         if case.level.leaves is not None:
             check_place(case, "level.leaves", case.level.leaves)
