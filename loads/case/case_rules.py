@@ -70,6 +70,7 @@ def check_rules(case: CoreCase) -> None:
         For the first rule that is broken.
     """
     check_file_names("links", case.links)
+    check_file_names("level.tests", case.level.tests if case.level else ())
     check_file_names("load_cases", case.load_cases)
     check_layers(case)
     _check_drive(case)
@@ -102,7 +103,6 @@ def check_rules(case: CoreCase) -> None:
         check_place(case, f"carried.{i}", mass)
     check_wings(case)
     if case.level is not None:
-        check_file_names("level.tests", case.level.tests)
         check_place(case, "level.enters", case.level.enters)
         if case.level.leaves is not None:
             check_place(case, "level.leaves", case.level.leaves)

@@ -42,6 +42,16 @@ class Step(CaseModel):
     cycles: Annotated[float, Field(gt=0)] | None = None
     """How often it comes and goes."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _no_profile(cls, stated: object) -> object:
+        if isinstance(stated, dict) and "profile" in stated:
+            raise refusal(
+                "a profile of force and tilt over time is not judged; state its instants as tests of their own, each "
+                "with top and bottom as tilted, and the largest force with its cycles"
+            )
+        return stated
+
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         if self.cycles is not None and self.duration is not None:
