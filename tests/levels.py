@@ -41,7 +41,7 @@ PYLON = {
             "fillet_radius": "1 mm",
         }
     },
-    "solid": {"mesh_size": 3.0},
+    "solid": {"mesh_size": 4.0},
 }
 
 

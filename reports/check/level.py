@@ -20,7 +20,7 @@ from alula.reports.sections.section import Part, Section, Table, Text
 from alula.reports.sections.table import Cell, Mark, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import besides
-from alula.reports.words.numbers import plain, sentence
+from alula.reports.words.numbers import number, sentence
 from alula.reports.words.terminal import say
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def _table(result: LevelResult) -> Table:
             subject = f"{decides.quantity} of {decides.subject}"
             mark = Mark(statement.verdict.value, statement.verdict.value)
             rows.append((name, statement_words(test, statement), subject, *against(decides), mark))
-    heads = words("test", role="under"), words("says"), words("by", role="what")
+    heads = words("test", role="under"), words("says", wraps=True), words("by", role="what", wraps=True)
     return Table.of((*heads, *JUDGED), rows, key="tests", below=below, kind="checks")
 
 
@@ -93,7 +93,7 @@ def statement_words(test: TestResult, statement: Statement) -> str:
         What is asked, followed by ``?``, where that is open.
     """
     demand, verdict = statement.demand, statement.verdict
-    cycles = f" {plain(test.spec.decisive.cycles or 0.0)} cycles"
+    cycles = f" {number(test.spec.decisive.cycles or 0.0, 3)} cycles"
     passed, failed = {
         Demand.ELASTIC: ("stays elastic", "yields"),
         Demand.PERMANENT_SET: ("permanent set kept", "permanent set too large"),
