@@ -2,10 +2,10 @@
 
 In a pose all stress goes with the load, so that one cycle at every place stands for all: from nothing to its stress and
 back, to its opposite, or to the share of it that the load case states. Of a solid it is that of its worst node, pulled
-or pressed. Where it has pins, the stress under an opposite load is not the opposite one, since they press on the other side of their holes: the band goes down
-to the cycle from nothing, which is there in any case, and none passes. By hand the place is not known, so that the
-largest stress counts as if it pulled; the band goes down to what bending and axial force leave of it in tension, and to
-the least share of a hole's peak that may count.
+or pressed. Where it has pins, the stress under an opposite load is not the opposite one, since they press on the other
+side of their holes: the band goes down to the cycle from nothing, which is there in any case, and none passes. By hand
+the place is not known, so that the largest stress counts as if it pulled; the band goes down to what bending and axial
+force leave of it in tension, and to the least share of a hole's peak that may count.
 """
 
 import math

@@ -11,7 +11,7 @@ class Case(SourceTables, CoreCase):
     """A linkage with its pose, drive, parts, loads and checks."""
 
     def model_post_init(self, context: object) -> None:
-        """Let the tests of a level be load cases, and a chosen one all that is asked; check that all names fit together.
+        """Let tests of a level be load cases, and a chosen one all that is asked; check that all names fit together.
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
 """What a level makes of a case: each test is a variant of it, with a load case, checks and conditions of its own."""
 
 from collections.abc import Iterator
-from functools import cache
 from enum import StrEnum
+from functools import cache
 from typing import Any
 
 from pydantic import TypeAdapter
@@ -70,7 +70,9 @@ def _load_case(level: Level, name: str) -> LoadCase:
     }
     cyclic = {"least": (step.least or 0.0) / step.force} if level.test is not None and step.cycles is not None else {}
     title = test.title or f"Test {name} of {level.title}"
-    return LoadCase.model_validate({"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line], **cyclic})
+    return LoadCase.model_validate(
+        {"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line], **cyclic}
+    )
 
 
 def demanded(case: CoreCase) -> dict[Demand, dict[str, Check]]:
@@ -92,7 +94,9 @@ def demanded(case: CoreCase) -> dict[Demand, dict[str, Check]]:
     if test.elastic:
         found[Demand.ELASTIC] = {"stays elastic": _least("safety-factor"), **_pins(case)}
     if test.permanent_set is not None:
-        found[Demand.PERMANENT_SET] = {"permanent set": _check(type="permanent-set", maximum=f"{test.permanent_set!r} mm")}
+        found[Demand.PERMANENT_SET] = {
+            "permanent set": _check(type="permanent-set", maximum=f"{test.permanent_set!r} mm")
+        }
     if test.no_break:
         found[Demand.NO_BREAK] = dict(_breaking(case)) | ({} if test.elastic else _pins(case))
     if test.lasts:

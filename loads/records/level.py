@@ -102,7 +102,7 @@ class LevelTest(CaseModel):
             raise refusal("top and bottom are one point, which is no line; correct one of them")
         if not (self.elastic or self.no_break or self.lasts or self.permanent_set is not None):
             raise refusal(
-                "it asks for nothing; write elastic = true, permanent_set with a length, no_break = true or lasts = true"
+                'it asks for nothing; write elastic = true, permanent_set = "5 mm", no_break = true or lasts = true'
             )
         cyclic = [step for step in self.steps if step.cycles is not None]
         if bool(cyclic) != self.lasts:

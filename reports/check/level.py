@@ -199,9 +199,7 @@ def level_names(case: Case) -> set[str]:
     return {MARK, *(f"{folder}/{name}" for folder, one in variants.items() for name in report_names(one))}
 
 
-def write_level(
-    result: LevelResult, target: Path, *, progress: Callable[[str], None] = lambda message: None
-) -> None:
+def write_level(result: LevelResult, target: Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
     """Write a report for each test, in a folder of its name, and ``result.json`` of the level; or nothing.
 
     Parameters

@@ -62,7 +62,7 @@ def found(result, load_case, link):
 
 
 def factor(stress, least=0.0):
-    """By hand: Goodman's reversed amplitude of a cycle from a share of the stress, under Basquin's line at 1e5 cycles."""
+    """By hand: Goodman's reversed amplitude of a cycle from a share of it, under Basquin's line at 1e5 cycles."""
     amplitude = (1.0 - least) / 2.0 * stress / (1.0 - (1.0 + least) / 2.0 * stress / SU)
     return 90.0 * 10.0 ** (1.0 / 6.0) / amplitude
 
