@@ -15,8 +15,8 @@ from pydantic import ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
-from alula.loads.case.level_file import in_level_file, with_level_file
-from alula.loads.case.part_points import with_part_points
+from alula.loads.stated.level_file import in_level_file, with_level_file
+from alula.loads.stated.part_points import with_part_points
 from alula.loads.text.entries import alike, names_tables
 from alula.loads.text.explain import printable, sentence
 from alula.loads.text.file_text import LARGEST_FILE, file_text

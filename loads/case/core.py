@@ -35,11 +35,11 @@ from alula.loads.records.check_spec import (
 )
 from alula.loads.records.conditions import Conditions, at_temperature, under
 from alula.loads.records.flapping import Wing
-from alula.loads.records.level import Level
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
 from alula.loads.records.tolerances import TolerancesTable
+from alula.loads.stated.level_spec import LevelSpec
 from alula.loads.statics.statics import Drive
 from alula.loads.text.places import check_point
 from alula.loads.text.revisable import Revisable
@@ -101,7 +101,7 @@ class CoreCase(Revisable):
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=1000)] = {}
     """Loads that act together, by name; each load case is checked by itself. Needed unless a level states tests, which
     are load cases then."""
-    level: Level | None = None
+    level: LevelSpec | None = None
     """Tests of a level of a standard, which ``alula check`` goes over one after the other."""
     checks: dict[Name, Check] = {}
     """What is to be decided, by name; the safety factor of every link where nothing is stated."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from alula.fea.check.level import LevelResult
 from alula.fea.common.verdict import Verdict
-from alula.reports.check.level import level_section, write_level
+from alula.reports.level.tests import level_section, write_level
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.notebook.shown import ShownTable, Tabled, summary, table_of
 from alula.reports.sections.section import Section

@@ -11,7 +11,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.case.level_case import Demand, demanded, level_caveats
 from alula.loads.compose.stated_case import StatedCase
-from alula.loads.records.level import Level
+from alula.loads.stated.level_spec import LevelSpec
 from alula.reports.sentences.caveats import caveat
 
 
@@ -74,7 +74,7 @@ def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
 def test_axes_of_the_standard_lie_as_the_case_says(changed, top):
     case = validate(pylon(level=changed))
     assert line(case, "proof")[0] == pytest.approx(top)
-    level = Level.model_validate(pylon(level=changed)["level"])
+    level = LevelSpec.model_validate(pylon(level=changed)["level"])
     forward, outward, up = level.axes
     if "outward" not in changed:
         assert np.cross(forward, outward) == pytest.approx(up)
