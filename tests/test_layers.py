@@ -18,17 +18,8 @@ LAYERS = {
         *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
     "loads": (
-        "text",
-        "records",
-        "acting",
-        "statics",
-        "sources",
-        "stated",
-        "case",
-        "compose",
-        "states",
-        "plans",
-        "exchange",
+        *("text", "records", "acting", "statics", "sources", "stated"),
+        *("case", "compose", "states", "plans", "exchange"),
     ),
     "fea": (
         *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
@@ -38,7 +29,7 @@ LAYERS = {
     ),
     "reports": (
         *("words", "sentences", "figures", "turnable", "sections", "page", "renderers"),
-        *("check", "motion", "study", "tools", "workbench", "commands", "notebook"),
+        *("check", "level", "motion", "study", "tools", "workbench", "commands", "notebook"),
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from alula.fea.check.level import LevelResult, Statement, TestResult
+from alula.fea.check.level import LevelResult, Statement, TestResult, has_tests
 from alula.fea.common.verdict import Verdict
 from alula.fea.outcomes.result import CheckResult
 from alula.loads.case.case import Case
@@ -180,19 +180,19 @@ def level_record(result: LevelResult, sections: Sequence[Section]) -> dict[str, 
     return as_record(sections, **head, verdict=result.worst.value)
 
 
-def level_names(case: Case) -> set[str]:
-    """Return the names of all files that the reports of a level can contain.
+def checked_names(case: Case) -> set[str]:
+    """Return the names of all files that a check of a case can write: of one report, or of those of all its tests.
 
     Parameters
     ----------
     case : Case
-        With a level of which no test is chosen.
 
     Returns
     -------
     set of str
     """
-    assert case.level is not None
+    if case.level is None or not has_tests(case):
+        return report_names(case)
     variants = {f"{TESTS}/{name}": case.with_values({"level.test": name}) for name in case.level.tests}
     if not case.tests_alone:
         variants[OWN] = case
