@@ -96,6 +96,12 @@ def test_a_file_beside_the_case_states_the_tests(tmp_path):
     assert read_case(str(tmp_path / "other" / "copy.toml")).level == case.level
 
 
+def test_a_force_may_be_a_share_of_the_body_weight():
+    test = {"tests": {"proof": {**PROOF, "steps": [{"force": "2 body_weight"}]}}}
+    case = validate(pylon(level=test, body_mass="100 kg"))
+    assert case.load_cases["proof"].load_lines[0].force == pytest.approx(2.0 * 980.665)
+
+
 def written(folder, level, *, encoding="utf-8", newline="\n", **placed):
     case = {**PYLON, "level": {"file": "level.toml", **PLACED, **placed}}
     (folder / "case.toml").write_text(tomlkit.dumps(case), encoding="utf-8")
@@ -134,6 +140,7 @@ SECOND = "level.tests.second"
         (with_test(PROOF, steps=[]), f"{SECOND}.steps (it is []): it has 0, but at least 1"),
         (with_test(PROOF, steps=[{"duration": "30 s"}]), f"{SECOND}.steps.0.force: this entry is missing"),
         (with_test(PROOF, steps=[{"force": 1000}]), f"{SECOND}.steps.0.force (it is 1000): "),
+        (with_test(PROOF, steps=[{"force": "1.1 body_weight"}]), "no body is stated that weighs so much"),
         (with_test(PROOF, steps=[{"force": "nan N"}]), f"{SECOND}.steps.0.force (it is 'nan N'): "),
         (with_test(PROOF, steps=[{"force": "-5 N"}]), f"{SECOND}.steps.0.force (it is '-5 N'): it must be greater"),
         (with_test(PROOF, elastic=False), f"{SECOND}: it asks for nothing; write elastic = true"),
