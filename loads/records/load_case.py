@@ -185,6 +185,25 @@ class LoadCase(CaseModel):
     """Air at rest in which the wings flap; without it they meet none."""
 
 
+def force_size(load_case: LoadCase) -> float:
+    """Return the size of the force that is all that a load case states, but for its own weight and its speed.
+
+    Parameters
+    ----------
+    load_case : LoadCase
+        With one force at a point, or one load line.
+
+    Returns
+    -------
+    float
+        [N]; zero where it states none, or other loads as well.
+    """
+    sizes = [float(np.linalg.norm(vector3(one.force))) for one in load_case.forces]
+    sizes += [abs(line.force) for line in load_case.load_lines]
+    others = load_case.moments or load_case.pressures or load_case.spread or load_case.air or load_case.flapping
+    return sizes[0] if len(sizes) == 1 and not others else 0.0
+
+
 def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """Return the weight per mass of a load case.
 
