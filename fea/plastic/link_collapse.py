@@ -101,7 +101,7 @@ class LinkCollapse:
     stays : tuple of 3 float or None
         Work of the stated loads on the displacements that stay after them, its least and its largest [N mm]
         (``alula.fea.plastic.load_path.what_stays``); infinite where the link does not bear its loads, None where it
-        was not asked for.
+        was not asked for or a state was not found.
     regained : float
         Share of ``stays`` that flow takes back while the load goes.
     """
@@ -283,8 +283,10 @@ def collapse_of(
     stays, regained = None, 0.0
     if factors is not None:
         steps = ratio**ORDER - 1.0
-        stiff, errors = CAUTION * abs(wide[0].work / held.work - 1.0) / steps, _errors(worst, *wide, steps)
-        stays, regained = _stays([one[1:] for one in found], factors, errors, spread, stiff)
+        stiff = CAUTION * abs(wide[0].work / held.work - 1.0) / steps
+        with suppress(NoPlasticStateError):
+            errors = _errors(worst, *wide, steps)
+            stays, regained = _stays([one[1:] for one in found], factors, errors, spread, stiff)
     flowed = worst.last.response.past.equivalent
     weights = held.problem.body.weights.reshape(-1)
     return LinkCollapse(

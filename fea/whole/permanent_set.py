@@ -186,10 +186,11 @@ def judge_permanent_set(here: SolvedLinks, one: Asked) -> Judged:
         known = here.collapses.get(link, NOT_SOLVED)
         if brittle := unlike_ductile(case, link):
             why = why or reason("set_of_brittle", link=link, why=brittle)
-        elif not isinstance(known, LinkCollapse):
-            why = why or reason("set_of_link_open", link=link, why=known)
+        elif isinstance(known, LinkCollapse) and known.stays is not None:
+            found.append(_link_set(here, link, known, known.stays))
         else:
-            found.append(_link_set(here, link, known))
+            lost = reason("set_not_found") if isinstance(known, LinkCollapse) else known
+            why = why or reason("set_of_link_open", link=link, why=lost)
     if why:
         return Judged(outcome=one.outcome(load_case, Band.unknown(why), why), numbers=tuple(found))
     whole = Band(
@@ -211,11 +212,10 @@ def judge_permanent_set(here: SolvedLinks, one: Asked) -> Judged:
     return Judged(outcome=outcome.because(said), numbers=tuple(found))
 
 
-def _link_set(here: SolvedLinks, link: str, known: LinkCollapse) -> LinkSet:
+def _link_set(here: SolvedLinks, link: str, known: LinkCollapse, works: tuple[float, float, float]) -> LinkSet:
     """Return what a link adds, of a pair both plates."""
     case, load_case = here.case, here.load_case
-    assert known.stays is not None  # paths of links that yield are followed for it
-    value, low, high = (work / force_size(case.load_cases[load_case]) for work in known.stays)
+    value, low, high = (work / force_size(case.load_cases[load_case]) for work in works)
     sources = [
         Source(kind=SourceKind.DISCRETISATION),
         *((Source(kind=SourceKind.PIN_PRESSURE),) if known.pressure > 1.0 + NEGLIGIBLE else ()),

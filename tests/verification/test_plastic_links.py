@@ -16,7 +16,16 @@ from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.elements.block_matrix import SymmetricBlockMatrix
 from alula.fea.elements.space import displacement_space, upper_half
 from alula.fea.elements.supports import isostatic_supports
-from alula.fea.plastic.link_collapse import COARSER, LEAST_RATIO, LinkCollapse, _pressing, _ratio_in_flow, collapse_of
+from alula.fea.plastic.link_collapse import (
+    COARSER,
+    LEAST_RATIO,
+    LinkCollapse,
+    _errors,
+    _pressing,
+    _ratio_in_flow,
+    _stays,
+    collapse_of,
+)
 from alula.fea.plastic.load_path import NoPlasticStateError, ProportionalLoad, follow
 from alula.fea.plastic.pin_contact import PinContact
 from alula.fea.plastic.plastic_body import PlasticBody
@@ -56,9 +65,13 @@ def mesh(coarser: float) -> TaggedMesh:
     return mirrored(half)
 
 
+ENDS = (0.9, 1.02)
+"""Of the load for which is sought what stays after it."""
+
+
 @cache
 def collapse(force: float) -> LinkCollapse:
-    return collapse_of(LINK, law(), pull(force), mesh, threads=1)
+    return collapse_of(LINK, law(), pull(force), mesh, factors=ENDS, threads=1)
 
 
 def ring_bears() -> float:
@@ -246,6 +259,33 @@ def test_what_stays_after_the_load():
     assert 1e-3 * HOLE < much.residual < 0.2 * HOLE
     assert over.strain is None
     assert over.residual is None
+    value, low, high = (work / (0.7 * NET) for work in much.stays)
+    assert low < value < high
+    assert value == pytest.approx(much.residual, rel=0.05)  # the far bore moves along the bar alone
+    assert 0.0 <= much.regained < 0.01
+    assert (over.stays[0], over.stays[2]) == (np.inf, np.inf)
+    assert 0.0 < over.stays[1] < np.inf
+
+
+def test_each_end_of_what_stays_is_read_at_a_load_of_its_own():
+    """Of two ways in which a torque may enter: those of load, mesh and pins; where the path ends below one, no end."""
+    ways = [(Mock(stays=lambda path, factor, by=by: (by * factor, None)), Mock(low=2.0, high=2.1)) for by in (3.0, 4.0)]
+    for found in (ways, ways[::-1]):
+        assert _stays(found, (0.8, 1.2), [(1.0, 0.0), (1.5, 0.1), (2.0, 0.2)], 1.25, 0.05) == (
+            pytest.approx((4.0, 3.0 * 0.8 / 1.25 / 1.05, 4.0 * 1.2 / 0.9 * 1.05)),
+            0.0,
+        )
+        (_, low, high), _ = _stays(found, (2.2, 1.9), [(1.0, 0.0), (2.0, 0.1)], 1.0, 0.0)
+        assert low == pytest.approx(3.0 * 2.0)  # between what the path bears for sure and what it may bear
+        assert high == np.inf
+    assert _stays(ways, (2.5, 3.0), [(1.0, 0.0), (2.0, 0.1)], 1.0, 0.0)[0][1] == np.inf
+
+
+def test_errors_of_the_load_are_those_of_two_meshes_in_the_same_states():
+    """Where one has not flowed; they never fall along the path."""
+    path = Mock(states=[Mock(factor=f, control=c) for f, c in ((1.0, 1.0), (1.5, 2.0), (1.8, 4.0))])
+    coarse = Mock(factor_at=lambda other, control: {1.0: 1.0, 2.0: 1.65, 4.0: 1.89}[control])
+    assert _errors(path, coarse, path, 0.5) == [(1.0, 0.0), pytest.approx((1.5, 0.25)), pytest.approx((1.8, 0.25))]
 
 
 def test_a_path_without_time_gives_no_factor():

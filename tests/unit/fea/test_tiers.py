@@ -56,7 +56,7 @@ def buckling(low, high=None):
 def test_each_quantity_is_of_one_tier():
     """What loads make of a link is about breaking, but for first yield and for lengths; the rest is of neither."""
     assert {one for one in Quantity if one.tier is Tier.ELASTIC} == {Quantity.SAFETY_FACTOR, Quantity.LINE_CONTACT}
-    lengths = {Quantity.DEFLECTION, Quantity.DISPLACEMENT, Quantity.LAYER_GAP}
+    lengths = {Quantity.DEFLECTION, Quantity.DISPLACEMENT, Quantity.LAYER_GAP, Quantity.PERMANENT_SET}
     neither = {one for one in Quantity if one.tier is Tier.NEITHER}
     assert {one for one in neither if one.origin == "loads"} == lengths
     assert {one for one in Quantity if one.origin != "loads"} < neither
