@@ -17,7 +17,10 @@ LAYERS = {
         *("base", "keeping", "materials", "imported", "bodies", "parts"),
         *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
-    "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
+    "loads": (
+        *("text", "records", "acting", "statics", "sources", "stated"),
+        *("case", "compose", "states", "plans", "exchange"),
+    ),
     "fea": (
         *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
         *("standing", "nonlinear", "buckling", "modes"),
@@ -26,7 +29,7 @@ LAYERS = {
     ),
     "reports": (
         *("words", "sentences", "figures", "turnable", "sections", "page", "renderers"),
-        *("check", "motion", "study", "tools", "workbench", "commands", "notebook"),
+        *("check", "level", "motion", "study", "tools", "workbench", "commands", "notebook"),
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""

@@ -70,6 +70,10 @@ def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
             check_place(case, f"{where}.air.{i}.spread.{j}", patch)
     if load_case.flapping is not None:
         _check_flapping(case, where, load_case)
+    if load_case.least is not None and case.conditions.cycles is None:
+        raise CaseError(
+            f"{where}.least: it says how cycles go, but none are stated; add cycles to [conditions] or leave least out"
+        )
     if load_case.speed != 0.0 and case.pose.coordinate is None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
     if load_case.speed != 0.0 and case.pose.travel is not None:

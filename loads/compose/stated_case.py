@@ -31,9 +31,9 @@ from alula.loads.case.case_file import (
     read_tables,
     stated_tables,
 )
-from alula.loads.case.part_points import FROM_PART
 from alula.loads.compose.case_text import case_text, name_files, write_case
 from alula.loads.compose.plain import mapping_of, path_text, plain, text_of
+from alula.loads.stated.part_points import FROM_PART
 from alula.loads.text.entries import alike
 from alula.loads.text.explain import printable, sentence
 

@@ -166,6 +166,9 @@ class LoadCase(CaseModel):
     scatter: LoadScatter = (1.0, 1.0)
     """How far all loads of this load case may be off together, such as "20 %", or { low = "90 %", high = "130 %" };
     the bands of all that they do hold it."""
+    least: Annotated[float, Field(ge=-1.0, lt=1.0)] | None = None
+    """What is left of the loads at the least point of each cycle of conditions.cycles in a pose, as a share of them: 0
+    where they go to nothing, -1 to their opposite. When left out, 0, or -1 with conditions.reverses."""
     forces: tuple[PointForce, ...] = ()
     """Forces at points."""
     moments: tuple[PointMoment, ...] = ()

@@ -3,7 +3,7 @@
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -17,6 +17,9 @@ from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
 from alula.reports.commands.telling import begun, tell, write
 from alula.reports.commands.tolerance import app as tolerance
+
+if TYPE_CHECKING:
+    from alula.loads.case.case import Case
 
 app = typer.Typer(
     name="alula",
@@ -88,20 +91,24 @@ def check(
         ),
     ] = False,
 ) -> None:
-    """Check a case: pose, joint forces, stress, verdict."""
+    """Check a case: pose, joint forces, stress, verdict; of a case with a level all tests, one after the other."""
+    from alula.fea.check.level import has_tests
     from alula.fea.check.run import check_case, effort_of
     from alula.fea.findings.of_check import with_findings
     from alula.geometry.keeping.kept import keeping
-    from alula.reports.check.folder import report_names
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
+    from alula.reports.level.tests import checked_names
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
-    beginning = begun("check", case, overrides, output, threads=threads, memory=memory, names=report_names)
+    beginning = begun("check", case, overrides, output, threads=threads, memory=memory, names=checked_names)
     with keeping(anew=fresh), beginning as parsed, ExitStack() as scratch:
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
         told = progress if output is None or threads == 1 else _solving
+        if has_tests(parsed):
+            given = {"fidelity": fidelity, "threads": threads, "effort": effort, "progress": told}
+            raise SystemExit(_check_tests(parsed, case, given, output, json=json, second_opinion=second_opinion))
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=told)
         if result.kept[0]:
             found, asked = result.kept
@@ -126,6 +133,28 @@ def check(
             if not json:
                 print(f"Report: {output / 'report.html'}")
     raise SystemExit(result.verdict.exit_status)
+
+
+def _check_tests(
+    case: "Case", name: str, options: dict[str, Any], output: Path | None, *, json: bool, second_opinion: bool
+) -> int:
+    """Check all tests of a case, tell what they say and write their reports; return the exit status of the worst."""
+    from alula.fea.check.level import check_level
+    from alula.fea.findings.of_check import with_findings
+    from alula.geometry.base.errors import CaseError
+    from alula.reports.level.tests import level_record, level_section, print_level, write_level
+
+    if second_opinion:
+        first = next(iter(case.level.tests)) if case.level else ""
+        raise CaseError(f'--second-opinion: it is on one test; choose one with --set level.test="{first}"')
+    result = check_level(case, name=name, **options).of_each(with_findings)
+    sections = (level_section(result),)
+    tell(sections, json=json, record=partial(level_record, result, sections), show=partial(print_level, result))
+    if output is not None:
+        write_level(result, output, progress=progress)
+        if not json:
+            print(f"Reports: {output / 'tests'}")
+    return result.worst.exit_status
 
 
 @app.command()

@@ -17,7 +17,7 @@ def test_schema_is_a_json_schema() -> None:
 
     schema = json.loads(programs.inside("schema").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
-    assert {"schema_version", "links", "joints", "load_cases"} <= set(schema["required"])
+    assert {"schema_version", "links", "joints"} <= set(schema["required"])
     assert schema["additionalProperties"] is False
     for table in (schema, *schema["$defs"].values()):
         for name, entry in table["properties"].items():
