@@ -208,19 +208,26 @@ def test_on_a_phone_nothing_runs_over_the_edge(browser, file):
         assert hit[3], control.text
 
 
-def test_paper_has_the_picture_in_place_of_the_model(shown):
-    """All pictures of the page are there, whole, and no canvas."""
+def test_paper_has_the_picture_in_place_of_the_model(shown, page):
+    """All pictures of the page are there, whole, and no canvas; lists are open, and each sheet tells of what it is."""
+    closed = "details:not([open])"
     shown.command("Emulation.setEmulatedMedia", media="print")
     try:
         assert not shown.element(f"{FIGURE} .model").is_displayed()
         assert shown.element(f"{FIGURE} .still svg").is_displayed()
         assert shown.element(f"{FIGURE} .still svg image").size["width"] > 100
+        assert min(part.size["height"] for part in shown.elements(f"{closed} :is(table, p, ul)")) > 0
         assert shown.run("return [...document.images].every((image) => image.complete && image.naturalWidth > 0)")
     finally:
         shown.command("Emulation.setEmulatedMedia", media="")
     printed = shown.pdf()
     assert printed.count(b"/Subtype /Image") >= len(shown.elements("img, svg image")) >= 1
-    assert chromium.sheets(printed) >= 1
+    sheets, made = chromium.texts(printed), page.record["provenance"]
+    foot = f"{made['date'][:16].replace('T', ' ')} UTC · alula {page.record['version']}"
+    assert len(sheets) == chromium.sheets(printed) >= 2
+    assert all(text.startswith(f"{k} / {len(sheets)}") for k, text in enumerate(sheets, 1))
+    assert all(foot in text[:120] for text in sheets)
+    assert made["sources"] in sheets[-1]
 
 
 @pytest.mark.usefixtures("browser")
