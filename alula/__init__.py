@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from alula.reports.notebook.claims_report import ClaimsReport
     from alula.reports.notebook.envelope_report import EnvelopeReport
     from alula.reports.notebook.frequency_report import FrequencyReport
+    from alula.reports.notebook.level_report import LevelReport
     from alula.reports.notebook.motion_report import MotionReport
     from alula.reports.notebook.part_report import PartReport
     from alula.reports.notebook.size_report import SizeReport
@@ -131,8 +132,8 @@ def check(
     accuracy: str | None = None,
     threads: int = 2,
     progress: Callable[[str], None] | None = None,
-) -> "CheckReport":
-    """Check a case: pose, statics, stress in every link, verdict.
+) -> "CheckReport | LevelReport":
+    """Check a case: pose, statics, stress in every link, verdict; of a case with a level all its tests.
 
     Parameters
     ----------
@@ -149,8 +150,8 @@ def check(
 
     Returns
     -------
-    CheckReport
-        Verdict, numbers, tables and pictures.
+    CheckReport or LevelReport
+        Verdict, numbers, tables and pictures; of a case with a level ``tests`` has them for each test by its name.
 
     Raises
     ------
@@ -169,20 +170,17 @@ def check(
     >>> round(report.drive_torques["weight"], 1)  # N·mm
     -19.9
     """
+    from alula.fea.check.level import check_level, has_tests
     from alula.fea.check.run import check_case, effort_of
     from alula.reports.notebook.check_report import CheckReport
+    from alula.reports.notebook.level_report import LevelReport
 
     found = _case(case)
-    return CheckReport(
-        check_case(
-            found,
-            name=found.origin,
-            fidelity=fidelity,
-            threads=threads,
-            effort=effort_of(found, accuracy),
-            progress=progress or _silent,
-        )
-    )
+    options: dict[str, Any] = {"name": found.origin, "fidelity": fidelity, "threads": threads}
+    options |= {"effort": effort_of(found, accuracy), "progress": progress or _silent}
+    if has_tests(found):
+        return LevelReport(check_level(found, **options))
+    return CheckReport(check_case(found, **options))
 
 
 def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionReport":

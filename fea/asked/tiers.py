@@ -98,14 +98,24 @@ def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, .
                 tier=tier,
                 links=links,
                 unasked=unasked,
-                decides=_decides(own) if own else None,
+                decides=worst_of(own) if own else None,
                 asks="plastic-collapse" if collapses else "safety-factor",
             )
         )
     return tuple(found)
 
 
-def _decides(own: Sequence[CheckOutcome]) -> CheckOutcome:
-    """Return the worst outcome of a tier; of what passes also one that is known to be at least so large alone."""
+def worst_of(own: Sequence[CheckOutcome]) -> CheckOutcome:
+    """Return the worst outcome of a tier; of what passes also one that is known to be at least so large alone.
+
+    Parameters
+    ----------
+    own : sequence of CheckOutcome
+        At least one.
+
+    Returns
+    -------
+    CheckOutcome
+    """
     first, *_ = found = deciding(own)
     return min(found, key=lambda one: one.margin) if first.verdict is Verdict.PASS else first

@@ -1,11 +1,11 @@
 """Fatigue of links: under the load of a pose that comes and goes, and the outcome of either that or of a motion.
 
 In a pose all stress goes with the load, so that one cycle at every place stands for all: from nothing to its stress and
-back, or to its opposite. Of a solid it is that of its worst node, pulled or pressed. Where it has pins, the stress
-under the opposite load is not the opposite one, since they press on the other side of their holes: the band goes down
-to the cycle from nothing, which is there in any case, and none passes. By hand the place is not known, so that the
-largest stress counts as if it pulled; the band goes down to what bending and axial force leave of it in tension, and to
-the least share of a hole's peak that may count.
+back, to its opposite, or to the share of it that the load case states. Of a solid it is that of its worst node, pulled
+or pressed. Where it has pins, the stress under an opposite load is not the opposite one, since they press on the other
+side of their holes: the band goes down to the cycle from nothing, which is there in any case, and none passes. By hand
+the place is not known, so that the largest stress counts as if it pulled; the band goes down to what bending and axial
+force leave of it in tension, and to the least share of a hole's peak that may count.
 """
 
 import math
@@ -134,12 +134,14 @@ def link_fatigue_outcomes(
         yield outcome
 
 
-def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason:
+def pulsating(case: Case, load_case: str, link: str, result: LinkResult) -> LinkFatigue | Reason:
     """Return the fatigue of a link whose load comes and goes as often as the conditions say.
 
     Parameters
     ----------
     case : Case
+    load_case : str
+        Its name.
     link : str
     result : LinkResult
         Under that load.
@@ -156,11 +158,11 @@ def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason
     if result.decisive.unknowable or result.von_mises_max.unknowable:
         return reason("peak_not_known")
     found = _of_solid(case, result, data) if isinstance(result, SolidResult) else _by_hand(case, result, data)
-    extremes, location, shares, notched = found
-    back = 1.0 if case.conditions.reverses else 0.0
-    backs = (back, 0.0 if _presses_elsewhere(case, result) else back, back)
+    extremes, location, counted, notched = found
+    least = case.least_share(load_case)
+    shares = (least, 0.0 if _presses_elsewhere(case, load_case, result) else least, least)
     lives = [
-        [fatigue_life(np.array([0.0 - turn * end, end]), material) for end, turn in zip(ends, backs, strict=True)]
+        [fatigue_life(np.array([0.0 + share * end, end]), material) for end, share in zip(ends, shares, strict=True)]
         for ends in extremes
     ]
     worst = max(range(len(lives)), key=lambda i: lives[i][0].stress)
@@ -168,19 +170,19 @@ def pulsating(case: Case, link: str, result: LinkResult) -> LinkFatigue | Reason
     return LinkFatigue.of(
         ends,
         lives[worst][0],
-        np.array([0.0 - back * extremes[worst][0], extremes[worst][0]]),
+        np.array([0.0 + least * extremes[worst][0], extremes[worst][0]]),
         location[worst],
         distinct(result.decisive.sources, (NOTCH,) if notched else ()),
         material=material,
         repetitions=case.conditions.cycles,
         without=result.decisive.without,
-        notch=shares[worst],
+        notch=counted[worst],
     )
 
 
-def _presses_elsewhere(case: Case, result: LinkResult) -> bool:
-    """Return True where the opposite load does not make the opposite stress: pins press on the other side of holes."""
-    return case.conditions.reverses and isinstance(result, SolidResult) and bool(case.body(result.link).pins)
+def _presses_elsewhere(case: Case, load_case: str, result: LinkResult) -> bool:
+    """Return True where an opposite load does not make an opposite stress: pins press on the other side of holes."""
+    return case.least_share(load_case) < 0.0 and isinstance(result, SolidResult) and bool(case.body(result.link).pins)
 
 
 def _of_solid(case: Case, result: SolidResult, data: Fatigue) -> Extremes:
@@ -251,7 +253,7 @@ def judge_fatigue(here: SolvedLinks, one: Asked) -> Judged:
     """
     case, load_case, link = here.case, here.load_case, one.subject.name
     result = here.links[link]
-    fatigue = pulsating(case, link, result)
+    fatigue = pulsating(case, load_case, link, result)
     if not isinstance(fatigue, LinkFatigue):
         return Judged(outcome=one.outcome(load_case, Band.unknown(fatigue), fatigue))
     [outcome] = link_fatigue_outcomes(case, [one], load_case, fatigue)
@@ -259,7 +261,7 @@ def judge_fatigue(here: SolvedLinks, one: Asked) -> Judged:
         outcome = outcome.left_open(result.why)
     elif outcome.verdict is Verdict.PASS and case.material_of(link).strength_across_layers is not None:
         outcome = outcome.left_open(reason("layers_fatigue_over_motion"))
-    elif outcome.verdict is Verdict.PASS and _presses_elsewhere(case, result):
+    elif outcome.verdict is Verdict.PASS and _presses_elsewhere(case, load_case, result):
         outcome = outcome.left_open(reason("pins_press_elsewhere"))
     pressed = _pressed(here, link, fatigue.strength or math.inf)
     return Judged(

@@ -388,7 +388,7 @@ def borne(material: Material, cycles: float) -> float | None:
     return None if found is None else min(found, material.ultimate_strength or material.allowable)
 
 
-def borne_pulsating(material: Material, cycles: float, factor: float, *, reverses: bool) -> float | None:
+def borne_pulsating(material: Material, cycles: float, factor: float, *, least: float) -> float | None:
     """Return the largest stress of a load that comes and goes at which a material keeps a factor on fatigue strength.
 
     Parameters
@@ -398,8 +398,8 @@ def borne_pulsating(material: Material, cycles: float, factor: float, *, reverse
         How often.
     factor : float
         Strength over the equivalent peak stress.
-    reverses : bool
-        True where the load goes to its opposite, False where it goes to nothing.
+    least : float
+        What is left of the load at the least point of a cycle, as a share of it.
 
     Returns
     -------
@@ -413,7 +413,7 @@ def borne_pulsating(material: Material, cycles: float, factor: float, *, reverse
     if data.rule == "peak-stress" or ultimate is None:
         return peak
     cycle = np.array([[peak * (1.0 - data.stress_ratio), peak * (1.0 + data.stress_ratio) / 2.0, 1.0]])
-    return float(_peak(reversed_amplitude(cycle, ultimate), -1.0 if reverses else 0.0, ultimate)[0])
+    return float(_peak(reversed_amplitude(cycle, ultimate), least, ultimate)[0])
 
 
 def notch_factors(body: Body, places: Real, fatigue: Fatigue) -> tuple[Real, Real]:

@@ -67,9 +67,10 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
     repeated = case.conditions
     for one in asked(case, FatigueCheck, subject=Subject.link(link)):
         assert repeated.cycles is not None
-        limit = borne_pulsating(material, repeated.cycles, one.limit, reverses=repeated.reverses)
-        if limit is not None:
-            found.append(_spread(limit, fatigue_scatter(material.fatigue).times(load.inverse)))
+        for least in dict.fromkeys(map(case.least_share, case.load_cases)):
+            limit = borne_pulsating(material, repeated.cycles, one.limit, least=least)
+            if limit is not None:
+                found.append(_spread(limit, fatigue_scatter(material.fatigue).times(load.inverse)))
     return tuple(found)
 
 

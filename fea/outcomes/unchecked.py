@@ -16,6 +16,7 @@ from alula.geometry.materials.plausible import untold, unusual
 from alula.loads.case.break_rules import eye_caveats
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import joint_caveats
+from alula.loads.case.level_case import level_caveats
 from alula.loads.case.load_rules import load_caveats
 from alula.loads.case.toleranced import tolerance_caveats
 from alula.loads.records.check_spec import (
@@ -56,6 +57,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: Reason | None = 
         *inertia_caveats(case, over_motion=over_motion),
         *(step_caveats(case) if over_motion else ()),
         *load_caveats(case),
+        *level_caveats(case),
         *_vibration(case, harmonic),
         *drive_caveats(case),
         *joint_caveats(case),

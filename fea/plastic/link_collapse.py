@@ -24,7 +24,14 @@ from numpy.typing import NDArray
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.elements.space import DisplacementSpace, UpperHalf, displacement_space, upper_half
 from alula.fea.elements.supports import LineReference, half_supports, isostatic_supports
-from alula.fea.plastic.load_path import LoadPath, NoPlasticStateError, PlasticState, ProportionalLoad, follow
+from alula.fea.plastic.load_path import (
+    LoadPath,
+    NoPlasticStateError,
+    PlasticState,
+    ProportionalLoad,
+    follow,
+    what_stays,
+)
 from alula.fea.plastic.pin_contact import PinContact
 from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.plastic.yield_law import YieldLaw
@@ -49,6 +56,8 @@ LEAST_RATIO = 1.1
 """Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
 IDLE = 1e-9
 """Share of the largest force of a link's pins below which a pin does not press: rounding makes no plug of its hole."""
+SAME = 1e-6
+"""Relative difference of the f·u of two states below which it is the same: rounding."""
 NOTHING = 1e-12
 """Plastic strain below which a point has not flowed."""
 
@@ -89,6 +98,12 @@ class LinkCollapse:
         Of the finer mesh.
     solves : int
         Linear systems that were solved in all.
+    stays : tuple of 3 float or None
+        Work of the stated loads on the displacements that stay after them, its least and its largest [N mm]
+        (``alula.fea.plastic.load_path.what_stays``); infinite where the link does not bear its loads, None where it
+        was not asked for.
+    regained : float
+        Share of ``stays`` that flow takes back while the load goes.
     """
 
     factor: float
@@ -108,6 +123,8 @@ class LinkCollapse:
     plastic_share: float
     unknowns: int
     solves: int
+    stays: tuple[float, float, float] | None = None
+    regained: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,6 +159,23 @@ class _Held:
         fixed, body = isostatic_supports(space.nodes, space.corners), PlasticBody.of(space, law)
         return cls(problem=ProportionalLoad(body, load, fixed, threads=threads, until=until), half=None)
 
+    @property
+    def work(self) -> float:
+        """Work of the load on the elastic displacements of the whole at factor 1 [N mm]."""
+        return self.problem.work * (1.0 if self.half is None else 2.0)
+
+    def stays(self, path: LoadPath, factor: float) -> tuple[float, PlasticState | None]:
+        """Return the work of the load on what stays of the whole, as ``what_stays``."""
+        work, state = what_stays(self.problem, path, factor)
+        return work / self.problem.work * self.work, state
+
+    def factor_at(self, path: LoadPath, control: float) -> float:
+        """Return the load at a given f·u, in a state of a path or between two of them."""
+        if control <= path.states[0].control:
+            return control
+        before = [state for state in path.states if state.control <= (1.0 + SAME) * control][-1]
+        return before.factor if before.control >= (1.0 - SAME) * control else self.problem.led(before, control).factor
+
     def displacement(self, state: PlasticState) -> Real:
         """Return the displacements (n, 3) of the whole."""
         u = self.problem.of_body(state.displacement).reshape(-1, 3)
@@ -164,6 +198,7 @@ def collapse_of(
     *,
     largest_strain: float = math.inf,
     transfers: Sequence[Transfer] = TRANSFERS,
+    factors: tuple[float, float] | None = None,
     threads: int | None = None,
     until: float = math.inf,
 ) -> LinkCollapse:
@@ -181,6 +216,8 @@ def collapse_of(
         Of the material.
     transfers : sequence of Transfer, optional
         Of a torque, where the link carries one.
+    factors : tuple of 2 float, optional
+        Least and largest factor on its loads for which is wanted what stays after them; it is not sought when left out.
     threads : int or None, optional
         Upper bound on the threads of the solver.
     until : float, optional
@@ -243,6 +280,11 @@ def collapse_of(
         spread = max(wide[1].factor / other[1].factor, 1.0)
     reference = LineReference(fine, link.line)
     strain, residual = _under_the_load(held, worst, reference)
+    stays, regained = None, 0.0
+    if factors is not None:
+        steps = ratio**ORDER - 1.0
+        stiff, errors = CAUTION * abs(wide[0].work / held.work - 1.0) / steps, _errors(worst, *wide, steps)
+        stays, regained = _stays([one[1:] for one in found], factors, errors, spread, stiff)
     flowed = worst.last.response.past.equivalent
     weights = held.problem.body.weights.reshape(-1)
     return LinkCollapse(
@@ -263,7 +305,47 @@ def collapse_of(
         plastic_share=float(weights[flowed > NOTHING].sum() / weights.sum()),
         unknowns=fine.unknowns,
         solves=sum(one.problem.solves for one in (held, wide[0], other[0])),
+        stays=stays,
+        regained=regained,
     )
+
+
+def _stays(
+    found: Sequence[tuple[_Held, LoadPath]],
+    factors: tuple[float, float],
+    errors: Sequence[tuple[float, float]],
+    spread: float,
+    stiff: float,
+) -> tuple[tuple[float, float, float], float]:
+    """Return the work of the loads on what stays, as ``LinkCollapse.stays``, and the share that flow takes back.
+
+    Mesh and pins change the load that brings the body to a state, so that each end is read at a load of its own:
+    ``errors`` are those of the load in the states of a path, each with its load, and never fall. ``stiff`` is the share
+    of the elastic displacements by which the mesh may miss them.
+    """
+    least = factors[0] / (1.0 + next((error for load, error in errors if load >= factors[0]), errors[-1][1])) / spread
+    kept = [factors[1] / (1.0 - error) for load, error in errors if load * (1.0 - error) >= factors[1]]
+    each, back = [], 0.0
+    for held, path in found:
+        value, loaded = held.stays(path, 1.0)
+        low = math.inf if least > path.high else held.stays(path, min(least, path.low))[0]
+        high = held.stays(path, kept[0])[0] if kept else math.inf
+        each.append((value, low / (1.0 + stiff), high * (1.0 + stiff)))
+        if loaded is not None and value > 0.0:
+            left = held.problem.loaded(loaded, 0.0).control * held.work
+            back = max(back, 1.0 - left / value)
+    value, low, high = (of(ends) for of, ends in zip((max, min, max), zip(*each, strict=True), strict=True))
+    return (value, low * (1.0 - back), high), back
+
+
+def _errors(path: LoadPath, coarse: _Held, other: LoadPath, steps: float) -> list[tuple[float, float]]:
+    """Return the load of each state of a path, and the share of it by which the mesh may miss it there at most.
+
+    ``steps`` is what Richardson's extrapolation divides the difference to the coarser mesh by.
+    """
+    loads = [state.factor for state in path.states]
+    misses = [abs(coarse.factor_at(other, state.control) / state.factor - 1.0) for state in path.states]
+    return list(zip(loads, np.maximum.accumulate(CAUTION * np.array(misses) / steps).tolist(), strict=True))
 
 
 def _pressing(tractions: LinkTractions, pose: LinkLoads) -> list[PinPressure]:

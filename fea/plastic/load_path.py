@@ -416,6 +416,40 @@ def _about(
     return below, above, part()
 
 
+def what_stays(load: ProportionalLoad, path: LoadPath, factor: float) -> tuple[float, PlasticState | None]:
+    """Return the work of the load at factor 1 on what stays after a load, by elastic unloading.
+
+    The path is followed to that load, and what the elastic body would give taken off: f·u - λ f·u_e. For loads on a
+    link that balance it is free of how the link is held.
+
+    Parameters
+    ----------
+    load : ProportionalLoad
+    path : LoadPath
+        Of the same.
+    factor : float
+        λ of the load that is taken away.
+
+    Returns
+    -------
+    tuple of (float, PlasticState or None)
+        Work [N mm]: zero up to first yield, infinite above what the path bears; and the state under the load, where
+        one was sought.
+
+    Raises
+    ------
+    NoPlasticStateError
+        As ``ProportionalLoad.led``.
+    """
+    if factor <= path.states[0].factor:
+        return 0.0, None
+    if factor > path.low:
+        return math.inf, None
+    before = [state for state in path.states if state.factor <= factor][-1]
+    state = load.loaded(before, factor)
+    return load.work * max(state.control - factor, 0.0), state
+
+
 def unloaded_share(body: PlasticBody, before: PointResponse, now: PointResponse) -> float:
     """Return the share of the volume that had flowed in which the stress is below the yield stress again.
 

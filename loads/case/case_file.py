@@ -19,6 +19,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.geometry.imported.files_read import files_read, note_read
 from alula.loads.case.case import Case
+from alula.loads.case.level_file import in_level_file, with_level_file
 from alula.loads.case.part_points import with_part_points
 from alula.loads.text.entries import alike, names_tables
 from alula.loads.text.explain import printable, sentence
@@ -67,7 +68,7 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
 
 
 def read_tables(name_or_path: str) -> dict[str, Any]:
-    """Read the tables of a case or of another TOML file, without validating them.
+    """Read the tables of a case or of another TOML file, with those of its level file, without validating them.
 
     Parameters
     ----------
@@ -82,9 +83,9 @@ def read_tables(name_or_path: str) -> dict[str, Any]:
     Raises
     ------
     CaseError
-        As ``read_text``, and for text that is no TOML.
+        As ``read_text``, for text that is no TOML, and as ``with_level_file``.
     """
-    return parse_tables(*read_text(name_or_path))
+    return with_level_file(parse_tables(*read_text(name_or_path)), folder_of(name_or_path), parse_tables)
 
 
 def parse_tables(text: str, where: str) -> dict[str, Any]:
@@ -380,11 +381,12 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     refuse_deep(data, "case")
     _check_version(data)
     context = {"folder": folder}
+    data = with_level_file(data, folder, parse_tables)
     tables = with_part_points(data, context)
     try:
         return Case.model_validate(tables, context=context)
     except ValidationError as error:
-        raise CaseError(sentence(error, Case)) from None
+        raise CaseError(in_level_file(sentence(error, Case), data)) from None
 
 
 def _check_version(data: Mapping[str, Any]) -> None:

@@ -70,6 +70,7 @@ def check_rules(case: CoreCase) -> None:
         For the first rule that is broken.
     """
     check_file_names("links", case.links)
+    check_file_names("level.tests", case.level.tests if case.level else ())
     check_file_names("load_cases", case.load_cases)
     check_layers(case)
     _check_drive(case)
@@ -101,12 +102,16 @@ def check_rules(case: CoreCase) -> None:
     for i, mass in enumerate(case.carried):
         check_place(case, f"carried.{i}", mass)
     check_wings(case)
+    if case.level is not None:
+        check_place(case, "level.enters", case.level.enters)
+        if case.level.leaves is not None:
+            check_place(case, "level.leaves", case.level.leaves)
     for name, load_case in case.load_cases.items():
         check_loads(case, f"load_cases.{name}", load_case)
     check_masses(case)
     _check_transfer(case)
     for name, check in case.checks.items():
-        _check_check(case, name, check)
+        check_check(case, name, check)
     if case.conditions != Conditions():
         for checked in case.checked_links:
             case.material_of(checked)
@@ -240,8 +245,21 @@ def _check_body(entry: str, body: Body, *, moves: bool) -> None:
         raise CaseError(f"{entry}: {error}") from None
 
 
-def _check_check(case: CoreCase, name: str, check: Check) -> None:
-    """Check what a check refers to."""
+def check_check(case: CoreCase, name: str, check: Check) -> None:
+    """Check what a check refers to.
+
+    Parameters
+    ----------
+    case : CoreCase
+    name : str
+        Of the check.
+    check : Check
+
+    Raises
+    ------
+    CaseError
+        For a link or joint that it is not for, and for what it needs besides.
+    """
     for entry in ("links", "joints"):
         named = vars(check).get(entry, ())
         if twice := [one for i, one in enumerate(named) if one in named[:i]]:

@@ -35,6 +35,7 @@ from alula.loads.records.check_spec import (
 )
 from alula.loads.records.conditions import Conditions, at_temperature, under
 from alula.loads.records.flapping import Wing
+from alula.loads.records.level import Level
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
@@ -97,8 +98,11 @@ class CoreCase(Revisable):
     """Plates that links carry through the air, which acts on them in load cases with ``flapping``."""
     massless: tuple[Name, ...] = ()
     """Moving links without part or carried mass that are to weigh nothing where others weigh or move."""
-    load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=1000)]
-    """Loads that act together, by name; each load case is checked by itself."""
+    load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=1000)] = {}
+    """Loads that act together, by name; each load case is checked by itself. Needed unless a level states tests, which
+    are load cases then."""
+    level: Level | None = None
+    """Tests of a level of a standard, which ``alula check`` goes over one after the other."""
     checks: dict[Name, Check] = {}
     """What is to be decided, by name; the safety factor of every link where nothing is stated."""
     hand_calculations: dict[Name, CantileverCalculation] = {}
@@ -129,6 +133,27 @@ class CoreCase(Revisable):
         if "own_weight" not in stated and "gravity_direction" in stated and self.carried and load_case.carried:
             found["own_weight"] = True
         return load_case.model_copy(update=found) if found else load_case
+
+    @property
+    def tests_alone(self) -> bool:
+        """True where all load cases are those of tests of the level."""
+        return self.level is not None and (self.level.test is not None or "load_cases" not in self.model_fields_set)
+
+    def least_share(self, load_case: str) -> float:
+        """Return what is left of a load case at the least point of its cycles in a pose, as a share of it.
+
+        Parameters
+        ----------
+        load_case : str
+            Its name.
+
+        Returns
+        -------
+        float
+            The stress ratio R of what its loads make alone.
+        """
+        stated = self.load_cases[load_case].least
+        return stated if stated is not None else -1.0 if self.conditions.reverses else 0.0
 
     @property
     def inert(self) -> bool:

@@ -77,36 +77,55 @@ def write_report(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from alula.reports.turnable.link import collapse_models, link_models
-    from alula.reports.turnable.moving import LINKAGE, check_linkage
-    from alula.reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
-        told, (beside_it, published) = result, published_page(result, claims, REPORT)
-        if beside_it:
-            (folder / CLAIMS).write_text(beside_it, encoding="utf-8")
-        sections = check_sections(told, published)
-        page = check_page(told, sections)
-        with ThreadPoolExecutor(1) as beside:
-            drawn = beside.submit(check_pictures, result, page, progress)
-            _write_fields(result, folder / FIELDS)
-            models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
-            models |= collapse_models(governing_collapses(result), result.case)
-            pictures, warnings = drawn.result()
-            files = beside.submit(_write_pictures, pictures, folder / PICTURES)  # packing them lets others run
-            if warnings:
-                for warning in warnings:
-                    progress(f"Warning: {warning}")
-                told = replace(result, warnings=(*result.warnings, *warnings))
-                sections = check_sections(told, published)
-                page = check_page(told, sections)
-            (folder / REPORT).write_text(as_page(page, pictures, models), encoding="utf-8")
-            (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
-            files.result()
+        fill_report(result, folder, claims=claims, progress=progress)
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
 
     write_folder(target, "check", fill)
+
+
+def fill_report(
+    result: CheckResult,
+    folder: Path,
+    *,
+    claims: Sequence[ClaimResult] = (),
+    progress: Callable[[str], None] = lambda message: None,
+) -> None:
+    """Write the files of a report, but for decks of CalculiX, into an empty folder.
+
+    Parameters
+    ----------
+    result, claims, progress
+        As of ``write_report``.
+    folder : Path
+    """
+    from alula.reports.turnable.link import collapse_models, link_models
+    from alula.reports.turnable.moving import LINKAGE, check_linkage
+    from alula.reports.turnable.pack import data_block
+
+    told, (beside_it, published) = result, published_page(result, claims, REPORT)
+    if beside_it:
+        (folder / CLAIMS).write_text(beside_it, encoding="utf-8")
+    sections = check_sections(told, published)
+    page = check_page(told, sections)
+    with ThreadPoolExecutor(1) as beside:
+        drawn = beside.submit(check_pictures, result, page, progress)
+        _write_fields(result, folder / FIELDS)
+        models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
+        models |= collapse_models(governing_collapses(result), result.case)
+        pictures, warnings = drawn.result()
+        files = beside.submit(_write_pictures, pictures, folder / PICTURES)  # packing them lets others run
+        if warnings:
+            for warning in warnings:
+                progress(f"Warning: {warning}")
+            told = replace(result, warnings=(*result.warnings, *warnings))
+            sections = check_sections(told, published)
+            page = check_page(told, sections)
+        (folder / REPORT).write_text(as_page(page, pictures, models), encoding="utf-8")
+        (folder / MARK).write_text(check_json(told, sections) + "\n", encoding="utf-8")
+        files.result()
 
 
 def _write_pictures(pictures: Mapping[str, Drawing], folder: Path) -> None:

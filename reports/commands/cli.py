@@ -10,6 +10,7 @@ import typer
 from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
+from alula.reports.commands.level import checked_names, run_level
 from alula.reports.commands.materials import app as materials
 from alula.reports.commands.open import app as opening
 from alula.reports.commands.size import app as size
@@ -88,20 +89,23 @@ def check(
         ),
     ] = False,
 ) -> None:
-    """Check a case: pose, joint forces, stress, verdict."""
+    """Check a case: pose, joint forces, stress, verdict; of a case with a level all tests, one after the other."""
+    from alula.fea.check.level import has_tests
     from alula.fea.check.run import check_case, effort_of
     from alula.fea.findings.of_check import with_findings
     from alula.geometry.keeping.kept import keeping
-    from alula.reports.check.folder import report_names
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
-    beginning = begun("check", case, overrides, output, threads=threads, memory=memory, names=report_names)
+    beginning = begun("check", case, overrides, output, threads=threads, memory=memory, names=checked_names)
     with keeping(anew=fresh), beginning as parsed, ExitStack() as scratch:
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
         told = progress if output is None or threads == 1 else _solving
+        if has_tests(parsed):
+            given = {"fidelity": fidelity, "threads": threads, "effort": effort, "progress": told}
+            raise SystemExit(run_level(parsed, case, given, output, json=json, second_opinion=second_opinion))
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=told)
         if result.kept[0]:
             found, asked = result.kept

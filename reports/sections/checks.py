@@ -31,7 +31,7 @@ _MEANING = {
     Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
     "decide it. This is neither a pass nor a fail.",
 }
-_JUDGED = (
+JUDGED = (
     Column("value (band)", role="value"),
     Column("limit", role="limit"),
     words("verdict", role="found"),
@@ -110,7 +110,7 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
             words("quantity", role="what"),
             words("link", role="who"),
             words("load case", role="under", hidden=not several),
-            *_JUDGED,
+            *JUDGED,
         ),
         [
             (
@@ -120,7 +120,7 @@ def check_table(checks: Sequence[CheckOutcome], *, several: bool, key: str = "")
                 else f"{check.name}: {check.quantity}",
                 check.link,
                 "any" if check.shared else check.load_case,
-                *_against(check),
+                *against(check),
                 Mark(check.answer, check.verdict.value if check.applies else ""),
             )
             for check in checks
@@ -152,12 +152,12 @@ def nearest(checks: Sequence[CheckOutcome], *, several: bool, all_below: bool) -
     rows = [
         (
             f"{sentence(named(check))[:-1]}{f', {check.load_case}' if several and not check.shared else ''}",
-            *_against(check),
+            *against(check),
             Mark(check.verdict.value, check.verdict.value),
         )
         for check in worst[:MOST]
     ]
-    columns = (words("check", role="what"), *_JUDGED)
+    columns = (words("check", role="what"), *JUDGED)
     order = "Nearest to its limit first, by the unfavourable end of its band over the limit."
     if len(worst) > MOST:
         order = f"The {MOST} of {len(worst)} checks that decide or are nearest to their limits."
@@ -233,8 +233,17 @@ def has_all(checks: Sequence[CheckOutcome]) -> bool:
     return len(checks) > MOST or any(_reasons(checks))
 
 
-def _against(check: CheckOutcome) -> tuple[Number, Number]:
-    """Return value and limit of a check."""
+def against(check: CheckOutcome) -> tuple[Number, Number]:
+    """Return value and limit of a check as cells of a table.
+
+    Parameters
+    ----------
+    check : CheckOutcome
+
+    Returns
+    -------
+    tuple of 2 Number
+    """
     sense, digits = check.quantity.sense.value, digits_beside(check.value, check.limit)
     return Number(check.value, check.unit, digits), Number(check.limit, check.unit, stated=True, sense=sense)
 

@@ -61,9 +61,9 @@ def found(result, load_case, link):
     return one
 
 
-def factor(stress, reverses=False):
-    """By hand: Goodman's reversed amplitude of a cycle from nothing, under Basquin's line at 1e5 cycles."""
-    amplitude = stress if reverses else (stress / 2.0) / (1.0 - stress / (2.0 * SU))
+def factor(stress, least=0.0):
+    """By hand: Goodman's reversed amplitude of a cycle from a share of it, under Basquin's line at 1e5 cycles."""
+    amplitude = (1.0 - least) / 2.0 * stress / (1.0 - (1.0 + least) / 2.0 * stress / SU)
     return 90.0 * 10.0 ** (1.0 / 6.0) / amplitude
 
 
@@ -92,10 +92,27 @@ def test_it_tells_how_often_the_load_is_borne(by_hand):
     assert "of 1.00·10⁵ cycles" in told(found(by_hand, "pull", "level").reason)
 
 
-def test_a_load_that_reverses_has_no_mean():
-    result = check_case(repeated({}, reverses=True), fidelity="beam")
-    stress = result.load_cases["pull"].links["level"].decisive
-    assert found(result, "pull", "level").value.value == pytest.approx(factor(stress.value, reverses=True))
+def test_each_load_case_goes_back_to_its_own_share():
+    """One that reverses has no mean; one that states what is left of it goes back to that."""
+
+    def held(tables):
+        tables["load_cases"]["pull"]["least"] = 0.4
+
+    result = check_case(repeated({}, change=held, reverses=True), fidelity="beam")
+    for load_case, link, least in (("pull", "level", 0.4), ("lift", "rising", -1.0)):
+        stress = result.load_cases[load_case].links[link].decisive
+        outcome = found(result, load_case, link)
+        assert outcome.value.value == pytest.approx(factor(stress.value, least))
+        assert outcome.value.low == pytest.approx(factor(stress.high, least))
+
+
+def test_a_share_that_is_left_needs_cycles():
+    def once(tables):
+        tables["load_cases"]["pull"]["least"] = 0.0
+        tables["conditions"], tables["checks"] = {}, {}
+
+    with pytest.raises(CaseError, match=r"load_cases\.pull\.least: it says how cycles go, but none are stated"):
+        repeated(change=once)
 
 
 def test_the_band_holds_load_and_strength():
@@ -129,14 +146,17 @@ def test_by_hand_a_pressed_link_may_do_better(rule, least):
         assert outcome.value.high == least
 
 
-@pytest.mark.parametrize("reverses", [False, True])
+@pytest.mark.parametrize("least", [0.0, -1.0, 0.4])
 @pytest.mark.parametrize("changed", [{}, {"rule": "peak-stress"}, {"stress_ratio": 0.1}])
-def test_meshes_are_refined_for_the_stress_at_which_the_limit_is_met(changed, reverses):
-    case = repeated(changed, reverses=reverses)
-    limit = borne_pulsating(case.material_of("level"), 1e5, 1.5, reverses=reverses)
+def test_meshes_are_refined_for_the_stress_at_which_the_limit_is_met(changed, least):
+    def back(tables):
+        tables["load_cases"]["lift"]["least"] = least
+
+    case = repeated(changed, change=back)
+    limit = borne_pulsating(case.material_of("level"), 1e5, 1.5, least=least)
     assert (limit, limit) in stress_limits(case, "level")
     if not changed:
-        assert factor(limit, reverses) == pytest.approx(1.5)
+        assert factor(limit, least) == pytest.approx(1.5)
 
 
 @pytest.mark.parametrize(("cycles", "strength"), [(1e6, None), (1.1e6, math.nan)])
@@ -329,7 +349,7 @@ def test_what_reverses_on_a_solid_with_pins_does_not_pass(solved):
 
     case = repeated({"notch_length": "0.51 mm"}, reverses=True, change=lax)
     links = {"level": solved.load_cases["pull"].links["level"]}
-    life = pulsating(case, "level", links["level"])
+    life = pulsating(case, "pull", "level", links["level"])
     assert life.stress.low == pytest.approx(once.stress.low)
     assert life.stress.value > 1.5 * once.stress.value
     outcome = judged(case, links)
@@ -359,7 +379,7 @@ def test_a_pressed_brittle_solid_counts_every_variant_and_the_wider_band(solved)
         von_mises_max=Band(value=1.3, low=0.9, high=1.2 * 1.3),
     )
     push = float(signed_stress(of.stress.nodal, brittle=True).max())
-    found = pulsating(case, "level", result)
+    found = pulsating(case, "pull", "level", result)
     assert found.stress.value == pytest.approx(1.3 * push)
     assert found.stress.high == pytest.approx(1.2 * 1.3 * push)
     assert found.stress.low == pytest.approx(0.9 * push / 2.0)

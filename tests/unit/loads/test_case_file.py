@@ -361,7 +361,7 @@ def _file(folder: Path, content: bytes, name: str = "case.toml") -> str:
         (b"a = " + b"1" * 5000, ["not valid TOML"]),
         (b"a = " + b"[" * 100_000, ["nested too deeply"]),
         (b"title = 'no version'", ["schema_version: it is missing", "write schema_version = 1"]),
-        (b"schema_version = 1", ["title, links, joints, ", "load_cases: these entries are missing; add them"]),
+        (b"schema_version = 1", ["title, links, joints: these entries are missing; add them"]),
         (b"\x00", ["not valid TOML"]),
     ],
     ids=lambda x: repr(x[:12]) if isinstance(x, bytes) else "",

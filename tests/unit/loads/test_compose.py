@@ -118,7 +118,7 @@ def test_quantities_and_arrays_are_what_their_text_is(lever):
         (lambda c: c.without("load_cases").record, "load_cases: this entry is missing"),
         (lambda c: c.with_joint("Q", links=("base", "levr"), points=("O", "O")).record, "levr"),
         (lambda c: c.with_values({"parts.bar.width": 4 * UNITS.N}), '"N" is not a unit of length'),
-        (lambda c: alula.Case("x").with_values({"title": "y"}), "links, joints, load_cases: these entries are missing"),
+        (lambda c: alula.Case("x").with_values({"title": "y"}), "links, joints: these entries are missing"),
         (lambda c: alula.Case.from_dict({"title": "x"}), "schema_version: it is missing"),
         (lambda c: alula.Case.from_dict("four-bar"), "from_dict: it takes the tables of a case"),
         (lambda c: alula.check(7), "case: it is int; give a case"),

@@ -1,0 +1,235 @@
+"""A level of tests: what each test says, on the console, in ``result.json`` and in the folder of its reports."""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from alula.fea.check.level import LevelResult, Statement, TestResult
+from alula.fea.common.verdict import Verdict
+from alula.fea.outcomes.result import CheckResult
+from alula.loads.case.case import Case
+from alula.loads.case.level_case import Demand
+from alula.loads.text.caveat import Caveat
+from alula.reports.check.folder import fill_report, report_names
+from alula.reports.page.output import MARK, write_folder
+from alula.reports.renderers.console import print_parts, verdict_line
+from alula.reports.renderers.record import as_json, as_record
+from alula.reports.sections.checks import JUDGED, against, check_records
+from alula.reports.sections.data import data, entries
+from alula.reports.sections.section import Part, Section, Table, Text
+from alula.reports.sections.table import Cell, Mark, words
+from alula.reports.sentences import told
+from alula.reports.sentences.verdicts import besides
+from alula.reports.words.numbers import number, sentence
+from alula.reports.words.terminal import say
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+TESTS, OWN = "tests", "own"
+"""Folders of the reports of the tests, and of the case's own load cases."""
+
+
+def level_section(result: LevelResult) -> Section:
+    """Return what each test of a level says of each thing that it asks for.
+
+    Parameters
+    ----------
+    result : LevelResult
+
+    Returns
+    -------
+    Section
+        With the table ``tests``.
+    """
+    level = result.level
+    own: list[Part] = []
+    if result.own is not None:
+        text = f"Load cases of the case itself, which are of no test: {result.own.verdict}."
+        own.append(Text(text))
+    return Section(
+        key="level",
+        title=level.title,
+        short="Tests",
+        parts=(_table(result), *own),
+        data={
+            "level": entries(level, "standard name condition source read_from")
+            | {
+                "verdict": result.verdict.value,
+                "tests": {name: _record(result, test) for name, test in result.tests.items()},
+                "own_load_cases": None if result.own is None else result.own.verdict.value,
+            }
+        },
+    )
+
+
+def _table(result: LevelResult) -> Table:
+    rows, below = list[tuple[Cell, ...]](), dict[int, str]()
+    for name, test in result.tests.items():
+        for statement in test.statements:
+            decides = statement.decides
+            if decides is None or (statement.demand is Demand.BESIDES and statement.verdict is Verdict.PASS):
+                continue
+            if statement.verdict is not Verdict.PASS:
+                below[len(rows)] = sentence(f"{name}: {told(decides.reason)}")
+            subject = f"{decides.quantity} of {decides.subject}"
+            mark = Mark(statement.verdict.value, statement.verdict.value)
+            rows.append((name, statement_words(test, statement), subject, *against(decides), mark))
+    heads = words("test", role="under"), words("says", wraps=True), words("by", role="what", wraps=True)
+    return Table.of((*heads, *JUDGED), rows, key="tests", below=below, kind="checks")
+
+
+def statement_words(test: TestResult, statement: Statement) -> str:
+    """Return what a test says of one thing that it asks for, such as ``breaks`` or ``lasts 1000000 cycles``.
+
+    Parameters
+    ----------
+    test : TestResult
+    statement : Statement
+
+    Returns
+    -------
+    str
+        What is asked, followed by ``?``, where that is open.
+    """
+    demand, verdict = statement.demand, statement.verdict
+    cycles = f" {number(test.spec.decisive.cycles or 0.0, 3)} cycles"
+    passed, failed = {
+        Demand.ELASTIC: ("stays elastic", "yields"),
+        Demand.PERMANENT_SET: ("permanent set kept", "permanent set too large"),
+        Demand.NO_BREAK: ("does not break", "breaks"),
+        Demand.LASTS: (f"lasts{cycles}", f"does not last{cycles}"),
+        Demand.BESIDES: ("else", "else"),
+    }[demand]
+    return {Verdict.PASS: passed, Verdict.FAIL: failed, Verdict.UNDECIDED: f"{passed}?"}[verdict]
+
+
+def _record(result: LevelResult, test: TestResult) -> dict[str, Any]:
+    step = test.spec.decisive
+    return (
+        {"title": test.spec.title, "source": test.spec.source or result.level.source, "verdict": test.verdict.value}
+        | entries(step, "force least cycles")
+        | {
+            "hold": test.spec.hold,
+            "top": data(result.level.place(test.spec.top)),
+            "bottom": data(result.level.place(test.spec.bottom)),
+            "statements": [
+                {
+                    "asks": one.demand.value,
+                    "says": statement_words(test, one),
+                    "verdict": one.verdict.value,
+                    "judged": len(one.outcomes),
+                    "decides": None if one.decides is None else check_records([one.decides])[0],
+                }
+                for one in test.statements
+            ],
+        }
+    )
+
+
+def level_caveats(result: LevelResult) -> tuple[Caveat, ...]:
+    """Return what a reader of a level's verdict must know besides, of all tests, each once.
+
+    Parameters
+    ----------
+    result : LevelResult
+
+    Returns
+    -------
+    tuple of Caveat
+    """
+    return tuple(dict.fromkeys(one for test in result.tests.values() for one in test.result.caveats))
+
+
+def print_level(result: LevelResult, sections: Sequence[Section], console: "Console") -> None:
+    """Print what each test says, and the verdict of the level.
+
+    Parameters
+    ----------
+    result : LevelResult
+    sections : sequence of Section
+        That of ``level_section``.
+    console : rich.console.Console
+    """
+    verdict_line(result.worst, result.case.title, console)
+    say(console, f"{sections[0].title}: {result.verdict}.")
+    print_parts(sections[0].parts, console, [])
+    if line := besides(level_caveats(result)):
+        say(console, line)
+    every = {name: test.result.warnings for name, test in result.tests.items()}
+    alike = (told(one).removeprefix(f"load case {name}: ") for name, found in every.items() for one in found)
+    for warning in dict.fromkeys(alike):
+        say(console, f"Warning: {warning}", style="yellow")
+    say(console, 'All numbers of a test: --set level.test="..." with its name, and --verbose')
+
+
+def level_record(result: LevelResult, sections: Sequence[Section]) -> dict[str, Any]:
+    """Return a level as data that JSON can hold.
+
+    Parameters
+    ----------
+    result : LevelResult
+    sections : sequence of Section
+
+    Returns
+    -------
+    dict
+        As ``docs/result.md`` describes it.
+    """
+    head = {"case": result.name, "title": result.case.title, "source": result.case.source}
+    return as_record(sections, **head, verdict=result.worst.value)
+
+
+def level_names(case: Case) -> set[str]:
+    """Return the names of all files that the reports of a level can contain.
+
+    Parameters
+    ----------
+    case : Case
+        With a level of which no test is chosen.
+
+    Returns
+    -------
+    set of str
+    """
+    assert case.level is not None
+    variants = {f"{TESTS}/{name}": case.with_values({"level.test": name}) for name in case.level.tests}
+    if not case.tests_alone:
+        variants[OWN] = case
+    return {MARK, *(f"{folder}/{name}" for folder, one in variants.items() for name in report_names(one))}
+
+
+def write_level(result: LevelResult, target: Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
+    """Write a report for each test, in a folder of its name, and ``result.json`` of the level; or nothing.
+
+    Parameters
+    ----------
+    result : LevelResult
+        With what ``alula.fea.findings.of_check`` finds besides.
+    target : Path
+        The output folder.
+    progress : callable, optional
+        Receives messages.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
+    """
+
+    def fill(folder: Path) -> None:
+        for place, found in _reports(result):
+            (folder / place).mkdir(parents=True)
+            fill_report(found, folder / place, progress=progress)
+        record = level_record(result, (level_section(result),))
+        (folder / MARK).write_text(as_json(record) + "\n", encoding="utf-8")
+
+    write_folder(target, "check", fill)
+
+
+def _reports(result: LevelResult) -> Iterator[tuple[str, CheckResult]]:
+    """Yield the folder of each report, and what it is of."""
+    for name, test in result.tests.items():
+        yield f"{TESTS}/{name}", test.result
+    if result.own is not None:
+        yield OWN, result.own

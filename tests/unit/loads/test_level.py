@@ -1,0 +1,238 @@
+"""A level of tests: what each makes of the case, where its load line lies, and what is refused in one sentence."""
+
+from copy import deepcopy
+
+import numpy as np
+import pytest
+import tomlkit
+from levels import CYCLIC, LEVEL, PLACED, PROOF, PYLON, TOP, pylon
+
+from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import read_case, validate
+from alula.loads.case.level_case import Demand, demanded, level_caveats
+from alula.loads.compose.stated_case import StatedCase
+from alula.loads.records.level import Level
+from alula.reports.sentences.caveats import caveat
+
+
+def line(case, test):
+    [found] = case.load_cases[test].load_lines
+    return np.array([found.from_, found.to])
+
+
+def test_tests_are_load_cases_where_the_case_states_none():
+    case = validate(pylon())
+    assert list(case.load_cases) == ["proof", "cyclic"]
+    assert case.tests_alone
+    assert [case.load_cases[x].load_lines[0].force for x in case.load_cases] == [1000.0, 600.0]
+    [told] = level_caveats(case)
+    assert "alula check goes over all of them" in caveat(told)
+    own = validate(pylon(load_cases={"push": {"forces": [{"link": "pylon", "at": "T", "force": ["5 N", "0 N"]}]}}))
+    assert list(own.load_cases) == ["push"]
+    assert not own.tests_alone
+
+
+def test_without_load_cases_and_level_the_entry_is_missing():
+    with pytest.raises(CaseError, match=r"^load_cases: this entry is missing; add it$"):
+        validate(deepcopy(PYLON))
+
+
+def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
+    stated = pylon(
+        level={"test": "cyclic"},
+        load_cases={"push": {"forces": [{"link": "pylon", "at": "T", "force": ["5 N", "0 N"]}]}},
+        checks={"stiff": {"type": "displacement", "at": "T", "maximum": "1 mm"}},
+        conditions={"cycles": 10, "reverses": True, "temperature": "20 degC"},
+        ways_to_hold={"link": "pylon", "at": "T", "load_case": "push"},
+    )
+    case = validate(stated)
+    assert list(case.load_cases) == ["cyclic"]
+    assert case.least_share("cyclic") == pytest.approx(0.1)
+    assert (case.conditions.cycles, case.conditions.reverses, case.conditions.temperature) == (1e6, False, 20.0)
+    assert {name: check.type for name, check in case.checks.items()} == {"lasts": "fatigue"}
+    assert case.checks["lasts"].minimum == 1.0
+    stated["level"]["test"] = "proof"
+    case = validate(stated)
+    assert case.conditions.cycles is None
+    assert {name: check.type for name, check in case.checks.items()} == {"stays elastic": "safety-factor"}
+    told = [caveat(one) for one in level_caveats(case)]
+    assert told[0].startswith("steps of 200 N (the step of 1000 N is judged")
+    assert told[1].startswith("creep while the force is held for 20 s")
+
+
+@pytest.mark.parametrize(
+    ("changed", "top"),
+    [
+        ({}, [50.0, 400.0, 20.0]),  # up times forward is -z: outward of a left leg that walks along x
+        ({"outward": "+z"}, [50.0, 400.0, -20.0]),
+        ({"forward": "-x"}, [-50.0, 400.0, -20.0]),
+        ({"forward": "+y", "up": "-x", "outward": "-z"}, [-400.0, 50.0, 20.0]),
+        ({"forward": "+z", "up": "+y", "outward": "-x"}, [20.0, 400.0, 50.0]),
+        ({"origin": ["1 mm", "2 mm", "3 mm"]}, [51.0, 402.0, 23.0]),
+    ],
+)
+def test_axes_of_the_standard_lie_as_the_case_says(changed, top):
+    case = validate(pylon(level=changed))
+    assert line(case, "proof")[0] == pytest.approx(top)
+    level = Level.model_validate(pylon(level=changed)["level"])
+    forward, outward, up = level.axes
+    if "outward" not in changed:
+        assert np.cross(forward, outward) == pytest.approx(up)
+
+
+def test_a_file_beside_the_case_states_the_tests(tmp_path):
+    """It may have a byte order mark and CRLF; entries of it can be changed, and a case written elsewhere holds them."""
+    written(tmp_path, LEVEL, encoding="utf-8-sig", newline="\r\n")
+    path = str(tmp_path / "case.toml")
+    case, here = read_case(path), validate(pylon())
+    assert case.level.tests == here.level.tests
+    assert case.level.read_from.startswith("level.toml, SHA-256 ")
+    assert case.load_cases == here.load_cases
+    heavier = read_case(path, ['level.tests.proof.steps.1.force="1100 N"', "level.test=proof"])
+    assert heavier.load_cases["proof"].load_lines[0].force == 1100.0
+    assert case.with_values({"level.test": "cyclic"}).conditions.cycles == 1e6
+    (tmp_path / "other").mkdir()
+    StatedCase.read(path).to_toml(tmp_path / "other" / "copy.toml")
+    assert read_case(str(tmp_path / "other" / "copy.toml")).level == case.level
+
+
+def written(folder, level, *, encoding="utf-8", newline="\n", **placed):
+    case = {**PYLON, "level": {"file": "level.toml", **PLACED, **placed}}
+    (folder / "case.toml").write_text(tomlkit.dumps(case), encoding="utf-8")
+    text = level if isinstance(level, str) else tomlkit.dumps(level)
+    (folder / "level.toml").write_text(text, encoding=encoding, newline=newline)
+
+
+def with_test(test, **changes):
+    return {"tests": {"proof": PROOF, "second": {key: x for key, x in (test | changes).items() if x is not None}}}
+
+
+SECOND = "level.tests.second"
+
+
+@pytest.mark.parametrize(
+    ("level", "sentence"),
+    [
+        ({"source": None}, "level: test 'proof' does not say where its numbers come from; write source"),
+        ({"source": " "}, "level: test 'proof' does not say where its numbers come from"),
+        ({"source": None, "tests": {"a": PROOF | {"source": "x"}, "b": PROOF}}, "level: test 'b' does not say where"),
+        ({"standard": None}, "level.standard: this entry is missing"),
+        ({"enters": None}, "level.enters: this entry is missing"),
+        ({"enters": {"link": "pilon", "at": "T"}}, "level.enters.link: 'pilon' is not a moving link; choose one of"),
+        ({"enters": {"link": "pylon", "at": "B"}}, "level.enters: link 'pylon' has no point 'B'"),
+        ({"leaves": {"link": "foot", "at": "O"}}, "level.leaves.link: 'foot' is not a moving link"),
+        ({"forward": "x"}, "level.forward (it is 'x'): it must be one of '+x', '-x'"),
+        ({"up": "-x"}, 'level: two of forward = "+x", up = "-x" lie along one axis'),
+        ({"outward": "+y"}, "lie along one axis; give each an axis of its own"),
+        ({"test": "prof"}, "level: test = 'prof' is none of its tests; choose one of proof, cyclic"),
+        ({"tests": {}}, "level.tests: it has 0, but at least 1 must be there"),
+        ({"tests": {"Proof": PROOF, "proof": PROOF}}, "level.tests: 'Proof' and 'proof' differ in case alone"),
+        (with_test(PROOF, top=None), f"{SECOND}.top: this entry is missing"),
+        (with_test(PROOF, top={"forward": "5 mm", "up": "1 mm"}), f"{SECOND}.top.outward: this entry is missing"),
+        (with_test(PROOF, top={**TOP, "up": "4,0 mm"}), f"{SECOND}.top.up (it is '4,0 mm'): "),
+        (with_test(PROOF, bottom=TOP), f"{SECOND}: top and bottom are one point"),
+        (with_test(PROOF, steps=[]), f"{SECOND}.steps (it is []): it has 0, but at least 1"),
+        (with_test(PROOF, steps=[{"duration": "30 s"}]), f"{SECOND}.steps.0.force: this entry is missing"),
+        (with_test(PROOF, steps=[{"force": 1000}]), f"{SECOND}.steps.0.force (it is 1000): "),
+        (with_test(PROOF, steps=[{"force": "nan N"}]), f"{SECOND}.steps.0.force (it is 'nan N'): "),
+        (with_test(PROOF, steps=[{"force": "-5 N"}]), f"{SECOND}.steps.0.force (it is '-5 N'): it must be greater"),
+        (with_test(PROOF, elastic=False), f"{SECOND}: it asks for nothing; write elastic = true"),
+        (with_test(PROOF, permanent_set="0 mm"), f"{SECOND}.permanent_set (it is '0 mm'): "),
+        (with_test(PROOF, lasts=True), f"{SECOND}: lasts = true needs a step with cycles"),
+        (with_test(CYCLIC, lasts=False, elastic=True), f"{SECOND}: a step has cycles, but that they are borne"),
+        (with_test(CYCLIC, steps=CYCLIC["steps"] * 2), f"{SECOND}: 2 steps have cycles, but one is judged"),
+        (with_test(CYCLIC, steps=[*CYCLIC["steps"], {"force": "700 N"}]), f"{SECOND}: a step of 700 N is held besides"),
+        (with_test(CYCLIC, steps=[{"force": "5 N", "cycles": float("nan")}]), f"{SECOND}.steps.0.cycles (it is nan)"),
+        (
+            with_test(CYCLIC, steps=[{"force": "5 N", "cycles": 2, "least": "5 N"}]),
+            f"{SECOND}.steps.0: least is 5 N, but must be below force, 5 N",
+        ),
+        (with_test(PROOF, steps=[{"force": "5 N", "least": "1 N"}]), f"{SECOND}.steps.0: least is that of cycles"),
+        (
+            with_test(CYCLIC, steps=[{"force": "5 N", "cycles": 2, "duration": "1 s"}]),
+            f"{SECOND}.steps.0: a step is held for a duration or has cycles",
+        ),
+        (with_test(PROOF, steps=[{"profile": "x.csv"}]), f"{SECOND}.steps.0: a profile of force and tilt over time is"),
+    ],
+)
+def test_what_a_level_must_not_state_is_one_sentence(level, sentence, tmp_path):
+    with pytest.raises(CaseError) as caught:
+        validate(pylon(level=level))
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "placed", "sentence"),
+    [
+        ({**LEVEL, "source": ""}, {}, "level: test 'proof' does not say where its numbers come from"),
+        (
+            {**LEVEL, **with_test(PROOF, steps=[{"force": "1,000 N"}])},
+            {},
+            "level file 'level.toml': tests.second.steps.0.force (it is '1,000 N'): ",
+        ),
+        (
+            {**LEVEL, **with_test(PROOF, steps=[{"duration": "5 s"}], top=None)},
+            {},
+            "level file 'level.toml': tests.second.top, tests.second.steps.0.force: these entries are missing",
+        ),
+        ({**LEVEL, "test": "proof"}, {}, "level file 'level.toml': test: this key is unknown; did you mean 'tests'?"),
+        ({**LEVEL, "level": LEVEL}, {}, "level file 'level.toml': level: this key is unknown; a level file has"),
+        (LEVEL, {"name": "X"}, "level.name: it stands in level file 'level.toml' too; state it in one of the two"),
+        (tomlkit.dumps(LEVEL) + "[tests.proof]\n", {}, "level file 'level.toml': this is not valid TOML: "),
+        ("standard = \n", {}, "level file 'level.toml': this is not valid TOML: "),
+        ("\ufeff\n", {}, "level file '"),
+        (LEVEL, {"file": "../level.toml"}, "level.file: '../level.toml' must be the plain name of a file beside"),
+        (LEVEL, {"file": "/etc/passwd"}, "level.file: '/etc/passwd' must be the plain name"),
+        (LEVEL, {"file": ".hidden"}, "level.file: '.hidden' must be the plain name"),
+        (LEVEL, {"file": ""}, "level.file: '' must be the plain name"),
+        (LEVEL, {"file": "none.toml"}, "there is no such file beside the case; put it there, or correct level.file"),
+        (LEVEL, {"file": 5}, "level.file (it is 5): it must be text"),
+    ],
+)
+def test_a_malformed_level_file_is_one_sentence(text, placed, sentence, tmp_path):
+    written(tmp_path, text, **placed)
+    with pytest.raises(CaseError) as caught:
+        read_case(str(tmp_path / "case.toml"))
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_and_latin_text_are_no_level_file(tmp_path):
+    written(tmp_path, LEVEL)
+    (tmp_path / "level.toml").write_bytes(b'standard = "N\xe4me"\n')
+    with pytest.raises(CaseError, match="it is not UTF-8 text"):
+        read_case(str(tmp_path / "case.toml"))
+    (tmp_path / "level.toml").unlink()
+    (tmp_path / "level.toml").mkdir()
+    with pytest.raises(CaseError, match="it is a folder"):
+        read_case(str(tmp_path / "case.toml"))
+    with pytest.raises(CaseError, match=r"level\.file: 'nul\?' must be the plain name"):
+        validate(pylon(level=dict.fromkeys(LEVEL) | {"file": "nul\0"}))
+
+
+def test_each_link_is_asked_whether_it_breaks_by_what_can_be_told_of_it():
+    """A ductile tube collapses, a printed one breaks where its layers part, a brittle one at its notches."""
+    tests = {"break": PROOF | {"elastic": False, "no_break": True}}
+    stated = pylon(level={"tests": tests, "test": "break"}, joint_model="bonded")
+    stated["links"] |= {
+        name: {"part": name, "points": {"T": ["0 mm", "0 mm"], "E": ["60 mm", "0 mm"]}} for name in ("print", "cast")
+    }
+    stated["joints"] |= {
+        "T": {"links": ["pylon", "print"], "pin_diameter": "4 mm", "angle": "0 deg"},
+        "E": {"links": ["print", "cast"], "pin_diameter": "4 mm", "angle": "0 deg"},
+    }
+    stated["links"]["cast"]["points"] = {"E": ["0 mm", "0 mm"], "F": ["60 mm", "0 mm"]}
+    bar = {"shape": "bar", "width": "12 mm", "thickness": "6 mm", "fillet_radius": "1 mm"}
+    stated["parts"] |= {
+        "print": {**bar, "material": "petg-fdm-xy", "build_direction": [0, 0, 1]},
+        "cast": {**bar, "material": "resin-405nm"},
+    }
+    checks = demanded(validate(stated))[Demand.NO_BREAK]
+    asked = {check.type: getattr(check, "links", None) for check in checks.values()}
+    assert asked["plastic-collapse"] == ("pylon",)
+    assert asked["safety-factor"] == ("print",)
+    assert asked["notch"] == ("cast",)
+    assert asked["wall"] == ("pylon", "print", "cast")
+    assert checks["pins"].joints == ("T", "E")
+    assert all(check.minimum == 1.0 for check in checks.values())

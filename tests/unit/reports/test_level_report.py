@@ -1,0 +1,137 @@
+"""The check of a level: each test judged as the case that it is, what it says, and the folder of its reports."""
+
+import json
+import re
+from copy import deepcopy
+from dataclasses import replace
+
+import pytest
+import tomlkit
+from levels import CYCLIC, LEVEL, PLACED, PROOF, PYLON, pylon
+from typer.testing import CliRunner
+
+import alula
+from alula.fea.check.level import check_level
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.refine.refinement import Effort
+from alula.loads.case.case_file import validate
+from alula.loads.case.level_case import Demand
+from alula.loads.compose.stated_case import StatedCase
+from alula.reports.check.level import level_section, statement_words
+from alula.reports.commands.cli import app
+
+COARSE = Effort(max_unknowns=1000)
+HARD = PROOF | {"steps": [{"force": "12 kN"}]}
+OFTEN = CYCLIC | {"steps": [{"least": "400 N", "force": "4 kN", "cycles": 2e6}]}
+TESTS = {"proof": PROOF, "hard": HARD, "often": OFTEN}
+
+
+def read(level, **changes):
+    return StatedCase.from_dict(pylon(level=level, **changes)).record
+
+
+@pytest.fixture(scope="module")
+def checked():
+    return check_level(read({"tests": TESTS}), effort=COARSE)
+
+
+def value(result, quantity):
+    [[outcome]] = [[x for x in of.checks if x.quantity is quantity] for of in result.load_cases.values()]
+    return outcome.value
+
+
+def test_each_test_is_judged_by_itself_and_the_worst_is_the_levels(checked):
+    verdicts = {name: test.verdict.value for name, test in checked.tests.items()}
+    assert verdicts == {"proof": "pass", "hard": "fail", "often": "undecided"}
+    assert checked.verdict is Verdict.FAIL
+    assert checked.worst is Verdict.FAIL
+    assert checked.own is None
+    said = {name: [statement_words(test, one) for one in test.statements] for name, test in checked.tests.items()}
+    assert said["proof"] == ["stays elastic", "else"]
+    assert said["hard"] == ["yields", "else"]
+    assert said["often"][0] == "lasts 2.00·10⁶ cycles?"
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_worst_test_counts_wherever_it_stands(checked, order):
+    pair = [("proof", checked.tests["proof"]), ("often", checked.tests["often"])]
+    assert replace(checked, tests=dict(pair[::order])).verdict is Verdict.UNDECIDED
+
+
+def test_a_test_is_the_case_that_a_user_could_type():
+    """Its load line lies 50 mm forward of the axis at the top, and comes back to a tenth of its force."""
+    checked = check_level(read({}), fidelity="beam")
+    line = {"link": "pylon", "at": "T", "to": ["-40 mm", "0 mm", "-10 mm"]}
+    typed = pylon()
+    del typed["level"]
+    cases = {
+        "proof": {"load_lines": [line | {"from": ["50 mm", "400 mm", "20 mm"], "force": "1 kN"}]},
+        "cyclic": {"load_lines": [line | {"from": ["60 mm", "400 mm", "20 mm"], "force": "600 N"}], "least": 0.1},
+    }
+    for name, quantity in (("proof", Quantity.SAFETY_FACTOR), ("cyclic", Quantity.FATIGUE_STRESS)):
+        case = typed | {"load_cases": {name: cases[name]}}
+        if name == "cyclic":
+            case |= {"conditions": {"cycles": 1e6}, "checks": {"f": {"type": "fatigue", "minimum": 1.0}}}
+        own = value(check_case(validate(deepcopy(case)), fidelity="beam"), quantity)
+        found = value(checked.tests[name].result, quantity)
+        assert found.value == pytest.approx(own.value)
+
+
+def test_what_breaks_is_told_of_what_was_asked():
+    tests = {"proof": HARD | {"permanent_set": "5 mm"}, "break": HARD | {"elastic": False, "no_break": True}}
+    found = check_level(read({"tests": tests}), effort=COARSE)
+    proof, broken = (found.tests[name].statements for name in tests)
+    assert [one.demand for one in proof] == [Demand.ELASTIC, Demand.PERMANENT_SET, Demand.BESIDES]
+    [asked] = broken  # buckling belongs to what breaks
+    assert asked.demand is Demand.NO_BREAK
+    assert {Quantity.PLASTIC_COLLAPSE, Quantity.WALLS, Quantity.BUCKLING} <= {one.quantity for one in asked.outcomes}
+    assert asked.decides.quantity is Quantity.PLASTIC_COLLAPSE
+    assert statement_words(found.tests["break"], asked) == "breaks"
+
+
+def test_the_section_has_a_row_for_each_thing_that_is_asked(checked):
+    section = level_section(checked)
+    table = section.parts[0]
+    assert [(row[0], row[1]) for row in table.rows][:2] == [("proof", "stays elastic"), ("hard", "yields")]
+    record = section.data["level"]
+    assert record["verdict"] == "fail"
+    assert record["tests"]["often"]["cycles"] == 2e6
+    assert record["tests"]["proof"]["hold"] == 20.0
+    assert record["tests"]["proof"]["top"] == [50.0, 400.0, 20.0]
+    [elastic, _] = record["tests"]["hard"]["statements"]
+    assert (elastic["asks"], elastic["verdict"], elastic["decides"]["limit"]) == ("stays elastic", "fail", 1.0)
+
+
+def test_the_command_writes_a_report_for_each_test(tmp_path):
+    """Load cases of the case's own are checked besides, and the worst of all is the exit status."""
+    own = {"push": {"forces": [{"link": "pylon", "at": "T", "force": ["20 kN", "0 N"]}]}}
+    case = {**PYLON, "level": {"file": "level.toml", **PLACED}, "load_cases": own, "checks": {}}
+    case["checks"] = {"strength": {"type": "safety-factor"}}
+    (tmp_path / "case.toml").write_text(tomlkit.dumps(case), encoding="utf-8")
+    (tmp_path / "level.toml").write_text(tomlkit.dumps(LEVEL | {"tests": {"proof": PROOF}}), encoding="utf-8")
+    path, out = str(tmp_path / "case.toml"), tmp_path / "out"
+    run = CliRunner().invoke(app, ["check", path, "--fidelity", "beam", "-o", str(out)])
+    assert run.exit_code == 3, run.output
+    assert "In the manner of ISO 10328, example, condition I: undecided." in run.output
+    assert re.search(r"proof +stays elastic\?", run.output)
+    assert "Load cases of the case itself, which are of no test: undecided." in run.output
+    assert {str(x.relative_to(out)) for x in out.rglob("report.html")} == {
+        "tests/proof/report.html",
+        "own/report.html",
+    }
+    record = json.loads((out / "result.json").read_text(encoding="utf-8"))
+    assert record["level"]["read_from"].startswith("level.toml, SHA-256 ")
+    assert json.loads((out / "tests/proof/result.json").read_text(encoding="utf-8"))["verdict"] == "undecided"
+    again = CliRunner().invoke(app, ["check", path, "--fidelity", "beam", "-o", str(out)])
+    assert again.exit_code == 3, again.output
+    refused = CliRunner().invoke(app, ["check", path, "--second-opinion"])
+    assert 'choose one with --set level.test="proof"' in str(refused.exception)
+
+
+def test_python_gives_the_same():
+    report = alula.check(StatedCase.from_dict(pylon()), fidelity="beam")
+    assert report.verdict == "undecided"
+    assert report.tests["proof"].safety_factors["pylon"].value > 5.0
+    assert [row["test"] for row in report.table()][:2] == ["proof", "cyclic"]
+    assert "proof undecided" in str(report)
