@@ -26,7 +26,7 @@ LAYERS = {
     ),
     "reports": (
         *("words", "sentences", "figures", "turnable", "sections", "page", "renderers"),
-        *("check", "motion", "study", "tools", "workbench", "commands", "notebook"),
+        *("check", "level", "motion", "study", "tools", "workbench", "commands", "notebook"),
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""

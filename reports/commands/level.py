@@ -25,7 +25,7 @@ def checked_names(case: "Case") -> set[str]:
     """
     from alula.fea.check.level import has_tests
     from alula.reports.check.folder import report_names
-    from alula.reports.check.level import level_names
+    from alula.reports.level.folder import level_names
 
     return level_names(case) if has_tests(case) else report_names(case)
 
@@ -63,17 +63,19 @@ def run_level(
     from alula.fea.check.level import check_level
     from alula.fea.findings.of_check import with_findings
     from alula.geometry.base.errors import CaseError
-    from alula.reports.check.level import level_record, level_section, print_level, write_level
+    from alula.reports.level.folder import write_level
+    from alula.reports.level.page import level_sections
+    from alula.reports.level.tests import level_record, print_level
 
     if second_opinion:
         assert case.level is not None
         first = next(iter(case.level.tests))
         raise CaseError(f'--second-opinion: it is on one test; choose one with --set level.test="{first}"')
     result = check_level(case, name=name, **options).of_each(with_findings)
-    sections = (level_section(result),)
+    sections = level_sections(result)
     tell(sections, json=json, record=partial(level_record, result, sections), show=partial(print_level, result))
     if output is not None:
         write_level(result, output, progress=progress)
         if not json:
-            print(f"Reports: {output / 'tests'}")
+            print(f"Level: {output / 'level.html'}")
     return result.worst.exit_status

@@ -18,8 +18,8 @@ from alula.fea.refine.refinement import Effort
 from alula.loads.case.case_file import validate
 from alula.loads.case.level_case import Demand
 from alula.loads.compose.stated_case import StatedCase
-from alula.reports.check.level import level_section, statement_words
 from alula.reports.commands.cli import app
+from alula.reports.level.tests import level_section, statement_words
 
 COARSE = Effort(max_unknowns=1000)
 HARD = PROOF | {"steps": [{"force": "12 kN"}]}
