@@ -17,7 +17,10 @@ LAYERS = {
         *("base", "keeping", "materials", "imported", "bodies", "parts"),
         *("joints", "linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
-    "loads": ("text", "records", "acting", "statics", "sources", "case", "compose", "states", "plans", "exchange"),
+    "loads": (
+        *("text", "records", "acting", "statics", "sources", "stated"),
+        *("case", "compose", "states", "plans", "exchange"),
+    ),
     "fea": (
         *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
         *("standing", "nonlinear", "buckling", "modes"),

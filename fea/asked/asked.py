@@ -113,20 +113,20 @@ def checks_of(case: Case, kind: type[K]) -> Iterator[tuple[str, K]]:
     yield from ((name, check) for name, check in case.all_checks.items() if isinstance(check, kind))
 
 
-def asks(case: Case, kind: type[CaseModel]) -> bool:
-    """Return whether a case has a check of one kind.
+def asks(case: Case, *kinds: type[CaseModel]) -> bool:
+    """Return whether a case has a check of one of some kinds.
 
     Parameters
     ----------
     case : Case
-    kind : type
-        Of the entry.
+    *kinds : type
+        Of the entries.
 
     Returns
     -------
     bool
     """
-    return any(checks_of(case, kind))
+    return any(any(checks_of(case, kind)) for kind in kinds)
 
 
 def asked(
@@ -213,10 +213,13 @@ def cards_of(case: Case, check: CaseModel | None, subject: Subject) -> tuple[str
     Returns
     -------
     tuple of str
-        That of the link, or of the pin; for bearing those of the eyes, for line contact those of pin and slot.
+        That of the link, or of the pin, of the linkage those of all links; for bearing those of the eyes, for line
+        contact those of pin and slot.
     """
     if subject.kind == "link":
         return (case.part_of(subject.name).material,)
+    if subject == LINKAGE:
+        return tuple(case.part_of(link).material for link in case.checked_links)
     if isinstance(check, ConnectionCheck):
         return cards_of_connection(case, check)
     joint = case.joints[subject.name]

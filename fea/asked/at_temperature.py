@@ -24,6 +24,7 @@ STRENGTH = (
     Quantity.CONNECTION,
     Quantity.SUSTAINED_STRESS,
     Quantity.PLASTIC_COLLAPSE,
+    Quantity.PERMANENT_SET,
     Quantity.NOTCHES,
     Quantity.FATIGUE_STRESS,
     Quantity.FATIGUE_LIFE,
@@ -36,6 +37,7 @@ STIFFNESS = (
     Quantity.WALLS,
     Quantity.LOAD_SHARE,
     Quantity.LIMIT_LOAD,
+    Quantity.PERMANENT_SET,
     Quantity.LAYER_GAP,
     Quantity.FREQUENCY_RATIO,
 )

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from alula.fea.asked.asked import asked, asks
+from alula.fea.asked.asked import asked, asked_of, asks
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.check.load_case import LoadCaseByHand, SolvedAnswers
 from alula.fea.check.point_solids import decide_point
@@ -20,10 +20,11 @@ from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_task import LinkTask
 from alula.fea.refine.refinement import Effort, RefinedSolid, Watch
 from alula.fea.solid.solution import SolidSolution, require_compressible
+from alula.fea.whole.permanent_set import adds_to_set, ends_of_load
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
-from alula.loads.records.check_spec import DisplacementCheck, PlasticCollapseCheck
+from alula.loads.records.check_spec import DisplacementCheck, PermanentSetCheck, PlasticCollapseCheck
 
 Progress = Callable[[str], None]
 BY_HAND = ("beam", "frame")
@@ -149,21 +150,27 @@ class Deciding:
             for one in self.load_cases
         }
 
-    def collapses(self, results: Mapping[str, Mapping[str, LinkResult]]) -> dict[str, dict[str, Collapse]]:
-        """Return the plastic collapse of links of which a check asks for it, and whose first yield does not tell.
+    def collapses(
+        self, results: Mapping[str, Mapping[str, LinkResult]], solved: Mapping[str, Mapping[str, SolvedAnswers]]
+    ) -> dict[str, dict[str, Collapse]]:
+        """Return the plastic collapse of links whose path a check wants, since their first yield does not tell.
 
         Parameters
         ----------
         results : mapping of str to mapping of str to LinkResult
             Load case -> link -> its result.
+        solved : mapping of str to mapping of str to SolvedAnswers
+            As of ``solved``.
 
         Returns
         -------
         dict of str to dict of str to Collapse
             Load case -> link -> what was found.
         """
-        if self.fidelity in BY_HAND or not asks(self.case, PlasticCollapseCheck):
+        if self.fidelity in BY_HAND or not asks(self.case, PlasticCollapseCheck, PermanentSetCheck):
             return {}
+        always = asked_of(self.case, PlasticCollapseCheck) if self.fidelity == "solid" else ()
+        factors = self._set_factors(results, solved)
         acting = {
             one.load_case: {
                 link: [cut for cut, _ in plates]
@@ -171,7 +178,9 @@ class Deciding:
                 if one.acts_on(link)
                 and (self.only is None or link in self.only)
                 and (
-                    self.fidelity == "solid" or needs_path(self.case, one.load_case, link, results[one.load_case][link])
+                    link in always
+                    or (one.load_case, link) in factors
+                    or needs_path(self.case, one.load_case, link, results[one.load_case][link])
                 )
             }
             for one in self.load_cases
@@ -181,10 +190,24 @@ class Deciding:
             acting,
             self.start,
             self.first,
+            factors,
             time_limit=self._left,
             threads=self.threads,
             progress=self.progress,
         )
+
+    def _set_factors(
+        self, results: Mapping[str, Mapping[str, LinkResult]], solved: Mapping[str, Mapping[str, SolvedAnswers]]
+    ) -> dict[tuple[str, str], tuple[float, float]]:
+        """Return within what factors on the load permanent set is read, of the links that add to one: (case, link)."""
+        found = {}
+        for one in self.load_cases if asks(self.case, PermanentSetCheck) else ():
+            for link, result in results[one.load_case].items():
+                if adds_to_set(one.case, one.load_case, link, result):
+                    doubts = one.doubts_on(link, solved[one.load_case].get(link))
+                    ends = ends_of_load(one.case, link, one.load_case, result, *doubts)
+                    found[one.load_case, link] = min(ends.low, 1.0), max(ends.high, 1.0)
+        return found
 
     @property
     def _left(self) -> float:

@@ -25,6 +25,7 @@ from alula.fea.outcomes.result import LinkResult, LoadCaseResult
 from alula.fea.outcomes.unloaded import undecided
 from alula.fea.standing.case_statics import with_ends
 from alula.fea.standing.joint_forces import JointForces, ways_to_hold
+from alula.fea.whole.permanent_set import of_one_force
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import PinCheck
 from alula.loads.statics.statics import Reactions
@@ -86,6 +87,7 @@ def judged(
         collapses=collapses,
         acts_on=hand.acts_on,
         doubts=lambda link: hand.doubts_on(link, solved.get(link)),
+        beside_one_force=of_one_force(case, load_case, forces, statics.loads[load_case]),
     )
     by_hand, on_solids = [*judged_by_hand(here)], [*judged_on_solids(here)]
     every = (

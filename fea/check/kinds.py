@@ -16,6 +16,7 @@ from alula.fea.judging.loading import ByHand, Judged, Loading, OnSolids, SolvedL
 from alula.fea.judging.notches import judge_notches
 from alula.fea.judging.plastic_collapse import judge_collapse
 from alula.fea.judging.walls import WALLS
+from alula.fea.whole.permanent_set import judge_permanent_set
 from alula.geometry.base.model import CaseModel
 from alula.loads.records.check_spec import (
     BearingCheck,
@@ -24,6 +25,7 @@ from alula.loads.records.check_spec import (
     FatigueCheck,
     LineContactCheck,
     NotchCheck,
+    PermanentSetCheck,
     PlasticCollapseCheck,
     WallCheck,
 )
@@ -37,6 +39,7 @@ BY_HAND: dict[type[CaseModel], ByHand] = {
 }
 ON_SOLIDS: dict[type[CaseModel], OnSolids] = {
     PlasticCollapseCheck: judge_collapse,
+    PermanentSetCheck: judge_permanent_set,
     NotchCheck: judge_notches,
     FatigueCheck: judge_fatigue,
 }
@@ -72,7 +75,7 @@ def judged_on_solids(here: SolvedLinks) -> Iterator[Judged]:
     for kind, judge in ON_SOLIDS.items():
         for one in asked(here.case, kind):
             found = judge(here, one)
-            if not here.acts_on(one.subject.name):
+            if one.subject.kind == "link" and not here.acts_on(one.subject.name):
                 idle = one.outcome(here.load_case, Band.exact(math.inf), reason("idle_link"))
                 found = replace(found, outcome=idle)
             yield found

@@ -10,7 +10,7 @@ from alula.fea.common.verdict import CheckOutcome, Tier, Verdict, overall
 from alula.fea.outcomes.result import CheckResult
 from alula.loads.case.case import Case
 from alula.loads.case.level_case import Demand, demanded
-from alula.loads.records.level import Level, LevelTest
+from alula.loads.stated.level_spec import LevelSpec, LevelTest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +84,7 @@ class LevelResult:
         As it is stated, with all tests.
     name : str
         What the case was called on the command line.
-    level : Level
+    level : LevelSpec
     tests : mapping of str to TestResult
         In the order in which they are stated.
     own : CheckResult or None
@@ -93,7 +93,7 @@ class LevelResult:
 
     case: Case
     name: str
-    level: Level
+    level: LevelSpec
     tests: Mapping[str, TestResult]
     own: CheckResult | None = None
 

@@ -213,9 +213,9 @@ def check_case(
         clock("solid models")
     solved = deciding.solved(decided)
     results = {x: one.links(decided, solved[x]) for x, one in by_hand.items()}
-    collapses = deciding.collapses(results)
+    collapses = deciding.collapses(results, solved)
     if collapses:
-        clock("plastic collapse")
+        clock("plastic paths")
     outlines = None if whole.clearance is None else whole.clearance.assembly
     of_whole = dict.fromkeys(by_hand, ()) if linear else whole_outcomes(whole)
     load_cases = {

@@ -155,6 +155,8 @@ class Quantity(StrEnum):
     """By what all loads may grow until the linkage gives way."""
     PLASTIC_COLLAPSE = "plastic-collapse factor", "", Sense.AT_LEAST, "loads", "plastic-collapse"
     """By what all loads on a link may grow until it flows without end, or to its material's largest strain."""
+    PERMANENT_SET = "permanent set", "mm", Sense.AT_MOST, "loads", "permanent-set"
+    """Of the linkage: how far the point of entry of its load stays displaced along it, once it is gone."""
     NOTCHES = "safety factor of the notches", "", Sense.AT_LEAST, "loads", "notch"
     """Of a brittle link: by what its loads may grow until it breaks at a notch, by critical distance and by volume."""
     FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST, "loads", "fatigue"
@@ -234,6 +236,9 @@ UNLOADED_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.unload
 """What does not come from loads."""
 MOTOR_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.origin == "motor")
 """What is asked of a motor over the motion of a rigid linkage."""
+
+_OF_LOADED_LINKAGE = (Quantity.LIMIT_LOAD, Quantity.PERMANENT_SET)
+"""Of the linkage as a whole, which may miss their limits while it holds its load."""
 
 
 @dataclass(frozen=True)
@@ -447,7 +452,7 @@ class CheckOutcome:
     def gives_way(self) -> bool:
         """True where it says that the linkage as a whole does not hold the load."""
         quantity = self.quantity
-        asked = self.subject == LINKAGE and quantity is not Quantity.LIMIT_LOAD and not quantity.unloaded
+        asked = self.subject == LINKAGE and quantity not in _OF_LOADED_LINKAGE and not quantity.unloaded
         return asked and self.verdict is Verdict.FAIL
 
     @property

@@ -199,7 +199,7 @@ def unless_it_gives_way(
 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
     if outcome.subject == LINKAGE:
-        return outcome.quantity is Quantity.LAYER_GAP
+        return outcome.quantity in (Quantity.LAYER_GAP, Quantity.PERMANENT_SET)
     return outcome.quantity.origin == "loads"
 
 

@@ -125,6 +125,8 @@ class SolvedLinks(Loading):
         Of a link, to whether anything acts on it.
     doubts : callable
         Of a link, to what leaves its loads open, as ``alula.fea.judging.link_result.spread`` takes it.
+    beside_one_force : Reason or None
+        Why joint forces are not in proportion to one force alone; None where they are.
     """
 
     links: Mapping[str, LinkResult]
@@ -132,6 +134,7 @@ class SolvedLinks(Loading):
     collapses: Mapping[str, Collapse]
     acts_on: Callable[[str], bool]
     doubts: Callable[[str], tuple[Growths, Shares]]
+    beside_one_force: Reason | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
-from alula.fea.asked.asked import Asked, asked, asked_of
+from alula.fea.asked.asked import Asked, asked
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
@@ -81,12 +81,13 @@ def find_collapses(
     loaded: Mapping[str, Mapping[str, Sequence[LinkLoads]]],
     start: MeshSettings,
     first: Mapping[str, TaggedMesh],
+    factors: Mapping[tuple[str, str], tuple[float, float]],
     *,
     time_limit: float,
     threads: int | None,
     progress: Callable[[str], None],
 ) -> dict[str, dict[str, Collapse]]:
-    """Return at what factor links collapse of which a check asks for it.
+    """Return at what factor links collapse whose path is wanted.
 
     Parameters
     ----------
@@ -97,6 +98,8 @@ def find_collapses(
         Of the first mesh of the elastic check.
     first : mapping of str to TaggedMesh
         Such meshes that are there already.
+    factors : mapping of tuple of (str, str) to tuple of 2 float
+        Load case and link -> as ``collapse_of`` takes them, where what stays after the load is wanted.
     time_limit : float
         For all of them [s].
     threads : int or None
@@ -107,11 +110,11 @@ def find_collapses(
     Returns
     -------
     dict of str to dict of str to (LinkCollapse or Reason or str)
-        Load case -> link -> what was found, the worse of two plates; or why it is not known.
+        Load case -> link -> what was found, the worse of two plates with what stays of both; or why it is not known.
     """
     until = time.perf_counter() + time_limit
     found: dict[str, dict[str, Collapse]] = {load_case: {} for load_case in loaded}
-    for link in asked_of(case, PlasticCollapseCheck):
+    for link in dict.fromkeys(link for links in loaded.values() for link in links):
         body, material = case.body(link), case.material_of(link)
 
         @cache
@@ -121,6 +124,7 @@ def find_collapses(
             return mesh_body(case.body(link), start.scaled(coarser))
 
         for load_case, links in loaded.items():
+            each: list[Collapse] = []
             for loads in links.get(link, ()):
                 progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
                 try:
@@ -130,13 +134,16 @@ def find_collapses(
                         loads,
                         start,
                         largest_strain(material),
+                        factors.get((load_case, link)),
                         mesh=mesh,
                         threads=threads,
                         until=until,
                     )
                 except CannotRunError as error:
                     one = str(error)
-                found[load_case][link] = _worse(found[load_case].get(link), one)
+                each.append(one)
+            if each:
+                found[load_case][link] = _of_plates(each, case.links[link].count)
     return found
 
 
@@ -147,6 +154,7 @@ def _collapse(
     loads: LinkLoads,
     start: MeshSettings,
     largest: float,
+    factors: tuple[float, float] | None,
     *,
     mesh: Callable[[float], TaggedMesh],
     threads: int | None,
@@ -158,7 +166,9 @@ def _collapse(
     """
     found: Collapse
     try:
-        found = collapse_of(link, law, loads, mesh, largest_strain=largest, threads=threads, until=until)
+        found = collapse_of(
+            link, law, loads, mesh, largest_strain=largest, factors=factors, threads=threads, until=until
+        )
     except NoPlasticStateError as error:
         found = str(error)
     return (found,) if time.perf_counter() < until else NotKept((found,))
@@ -226,11 +236,20 @@ def needs_path(case: Case, load_case: str, link: str, result: LinkResult) -> boo
     return any(above_first_yield(case, one, of_link(case, load_case, as_elastic(one), result)) is None for one in every)
 
 
-def _worse(one: Collapse | None, other: Collapse) -> Collapse:
-    """Return the plate that is not known, else the one that collapses first."""
-    if one is None or not isinstance(other, LinkCollapse):
-        return other
-    return other if isinstance(one, LinkCollapse) and other.low < one.low else one
+def _of_plates(found: Sequence[Collapse], count: int) -> Collapse:
+    """Return a plate that is not known, else the one that collapses first, with what stays of all of a link's plates.
+
+    Of equal plates one was solved.
+    """
+    known = [one for one in found if isinstance(one, LinkCollapse)]
+    if len(known) < len(found):
+        return next(one for one in found if not isinstance(one, LinkCollapse))
+    stays, alike = [one.stays for one in known if one.stays is not None], count / len(known)
+    whole = None
+    if stays:
+        value, low, high = (alike * sum(works) for works in zip(*stays, strict=True))
+        whole = value, low, high
+    return replace(min(known, key=lambda one: one.low), stays=whole, regained=max(one.regained for one in known))
 
 
 def judge_collapse(here: SolvedLinks, one: Asked) -> Judged:

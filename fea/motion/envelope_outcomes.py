@@ -29,6 +29,7 @@ from alula.fea.motion.linkage_history import when
 from alula.fea.motion.loading import loading_over
 from alula.fea.motion.loosened import column_growth
 from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
+from alula.fea.whole.permanent_set import NOTHING, WITHOUT_YIELD, first_yield
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.ties import first_largest, first_least
 from alula.geometry.materials.material import Material
@@ -36,6 +37,7 @@ from alula.loads.case.case import Case
 from alula.loads.records.check_spec import (
     FatigueCheck,
     LimitLoadCheck,
+    PermanentSetCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -45,7 +47,7 @@ from alula.loads.states.case_motion import CaseMotion
 LEFT_OUT = reason("left_out_near_dead_point")
 NOT_FOLLOWED = reason("buckling_not_followed")
 COLLAPSE_NOT_FOLLOWED = reason("collapse_not_followed")
-OF_LINKS: tuple[type[CaseModel], ...] = (SafetyFactorCheck, PlasticCollapseCheck, FatigueCheck)
+OF_LINKS: tuple[type[CaseModel], ...] = (SafetyFactorCheck, PlasticCollapseCheck, PermanentSetCheck, FatigueCheck)
 FOLLOWED: tuple[type[CaseModel], ...] = (*OF_LINKS, PinCheck, *BY_HAND, LimitLoadCheck)
 """Checks of the case that are decided over the motion, besides those of the linkage as a whole."""
 
@@ -100,6 +102,7 @@ def envelope_outcomes(
                 outcome = link_outcome(case, load_case, elastic, over.safety_factor, over.discretisation)
                 outcome = _complete(outcome, evaluated)
                 found.append(outcome if one == elastic else _above_first_yield(case, one, outcome))
+    found += _sets(case, links, evaluated)
     for link, envelope in links.items():
         found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
@@ -118,6 +121,22 @@ def _above_first_yield(case: Case, one: Asked, elastic: CheckOutcome) -> CheckOu
     """Outcome of plastic collapse over the motion, where no path is followed: by its first yield alone."""
     why = COLLAPSE_NOT_FOLLOWED
     return above_first_yield(case, one, elastic) or one.outcome(elastic.load_case, Band.unknown(why), why)
+
+
+def _sets(case: Case, links: Mapping[str, LinkEnvelope], evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
+    """Yield the permanent set over the motion, where no path is followed: none where nothing yields at any pose."""
+    for one in asked(case, PermanentSetCheck):
+        for load_case in dict.fromkeys(x for envelope in links.values() for x in envelope.load_cases):
+            elastic = []
+            for link, envelope in links.items():
+                if load_case in envelope.load_cases:
+                    over, own = envelope.load_cases[load_case], as_elastic(first_yield(link))
+                    factor = link_outcome(case, load_case, own, over.safety_factor, over.discretisation)
+                    elastic.append(above_first_yield(case, first_yield(link), factor) is not None)
+            if all(elastic):
+                yield _complete(one.outcome(load_case, NOTHING, WITHOUT_YIELD), evaluated)
+            else:
+                yield one.outcome(load_case, Band.unknown(COLLAPSE_NOT_FOLLOWED), COLLAPSE_NOT_FOLLOWED)
 
 
 def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iterator[CheckOutcome]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from alula.fea.asked.asked import asked, asked_of, cards_of, subjects_of
+from alula.fea.asked.asked import asked, asked_of, asks, cards_of, subjects_of
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import (
     Scatter,
@@ -24,6 +24,7 @@ from alula.loads.records.check_spec import (
     FatigueCheck,
     FrequencyCheck,
     NotchCheck,
+    PermanentSetCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -39,7 +40,7 @@ _ON_LOADS = {kind for one in Quantity if one.origin == "loads" and one.sense is 
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
     """Return the limits [MPa] of all checks on a link's deciding stress, each with both ends of its stated scatter.
 
-    Plastic collapse is among them: below such a stress no path to it has to be followed.
+    Plastic collapse and permanent set are among them: below such a stress no path has to be followed.
 
     Parameters
     ----------
@@ -64,6 +65,8 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
             found.append(_spread(material.allowable / one.limit, strength))
         elif not math.isnan(one.limit):
             found.append(_spread(one.limit, load.inverse))
+    if asks(case, PermanentSetCheck):
+        found.append(_spread(material.allowable, strength_scatter(material).times(load.inverse)))
     repeated = case.conditions
     for one in asked(case, FatigueCheck, subject=Subject.link(link)):
         assert repeated.cycles is not None

@@ -72,7 +72,7 @@ def size_range(trials: Trials, check: CheckOutcome) -> SizeRange | None:
 def _entry(trials: Trials, check: CheckOutcome) -> tuple[str, float] | None:
     """Return the entry of the size that bears on a check, and the size as it is [mm]."""
     case, subject = trials.result.case, check.subject
-    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.LAYER_GAP):
+    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.LAYER_GAP, Quantity.PERMANENT_SET):
         return None
     if subject.kind in ("pin", "joint"):
         path, size = f"joints.{subject.name}.pin_diameter", case.joints[subject.name].pin_diameter

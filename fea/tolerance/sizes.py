@@ -23,7 +23,7 @@ from alula.geometry.base.errors import AlulaError, CannotRunError
 from alula.loads.case.case import Case
 from alula.loads.case.toleranced import Variable
 from alula.loads.records.applied import PartMass
-from alula.loads.records.check_spec import PlasticCollapseCheck
+from alula.loads.records.check_spec import PermanentSetCheck, PlasticCollapseCheck
 from alula.loads.text.explain import printable
 
 Real = NDArray[np.float64]
@@ -211,9 +211,10 @@ def sized_check(
     def solved(end: SizeEnd, by: float) -> SolvedCheck:
         progress(f"{ends.variable.tolerance} at {ends.variable.nominal + by:.4g} mm")
         case = end.case
-        kept = {name: check for name, check in case.checks.items() if not isinstance(check, PlasticCollapseCheck)}
+        paths = PlasticCollapseCheck | PermanentSetCheck
+        kept = {name: check for name, check in case.checks.items() if not isinstance(check, paths)}
         result = check_case(
-            case.model_copy(update={"checks": kept}),  # samples do not cover collapse, whose paths take long
+            case.model_copy(update={"checks": kept}),  # samples do not cover plastic paths, which take long
             name=base.result.name,
             fidelity="solid",
             threads=threads,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.linkage.placement import Placement, vector
 from alula.loads.acting.acting import Acting
-from alula.loads.records.applied import Load, PointLoad, rotated, shifted
+from alula.loads.records.applied import PointLoad, rotated, shifted
 from alula.loads.records.load_case import LoadLine, vector3
 
 Real = NDArray[np.float64]
@@ -45,7 +45,7 @@ class ForceOnLine(Acting):
         origin, turn = self._in_plane(place, self.line.link, place.origin(self.line.link)), place.axes(self.line.link)
         return origin + rotated(turn, start), origin + rotated(turn, end)
 
-    def loads(self, place: Placement) -> tuple[Load, ...]:
+    def loads(self, place: Placement) -> tuple[PointLoad, ...]:
         """As ``Acting.loads``: the force on its link and, where it leaves by another, the opposite on that one."""
         line, (start, end) = self.line, self.ends(place)
         force = line.force * (end - start) / np.linalg.norm(end - start, axis=-1, keepdims=True)

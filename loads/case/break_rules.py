@@ -36,7 +36,7 @@ def break_links(case: CoreCase, check: BreakCheck) -> tuple[str, ...]:
         return check.links
     notches = isinstance(check, NotchCheck)
     return tuple(
-        link for link in case.checked_links if not (_unlike_brittle if notches else _unlike_ductile)(case, link)
+        link for link in case.checked_links if not (_unlike_brittle if notches else unlike_ductile)(case, link)
     )
 
 
@@ -59,8 +59,19 @@ def check_break_check(case: CoreCase, name: str, check: BreakCheck) -> None:
         (_check_notched if isinstance(check, NotchCheck) else _check_ductile)(case, name, link)
 
 
-def _unlike_ductile(case: CoreCase, link: str) -> str:
-    """Why a link has no plastic collapse; "" of one that flows before it breaks, alike in all directions."""
+def unlike_ductile(case: CoreCase, link: str) -> str:
+    """Return why a link has no plastic collapse.
+
+    Parameters
+    ----------
+    case : CoreCase
+    link : str
+
+    Returns
+    -------
+    str
+        "" of one that flows before it breaks, alike in all directions.
+    """
     part = case.part_of(link)
     material = case.all_materials[part.material]
     if material.brittle:
@@ -75,8 +86,8 @@ def _unlike_brittle(case: CoreCase, link: str) -> bool:
 
 
 def _check_ductile(case: CoreCase, name: str, link: str) -> None:
-    if why := _unlike_ductile(case, link):
-        others = any(not _unlike_ductile(case, other) for other in case.checked_links)
+    if why := unlike_ductile(case, link):
+        others = any(not unlike_ductile(case, other) for other in case.checked_links)
         raise CaseError(
             f"checks.{name}: link '{link}' has no plastic collapse, since {why}; check its safety factor, and "
             f"{'name the other links in links' if others else 'leave this check out'}"

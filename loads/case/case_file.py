@@ -16,11 +16,12 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.geometry.imported.files_read import files_read, note_read
 from alula.loads.case.case import Case
-from alula.loads.case.level_file import in_level_file, with_level_file
-from alula.loads.case.part_points import with_part_points
+from alula.loads.stated.level_file import in_level_file, with_level_file
+from alula.loads.stated.part_points import with_part_points
 from alula.loads.text.entries import alike, names_tables
 from alula.loads.text.explain import printable, sentence
 from alula.loads.text.file_text import LARGEST_FILE, file_text
@@ -380,7 +381,7 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     """
     refuse_deep(data, "case")
     _check_version(data)
-    context = {"folder": folder}
+    context = {"folder": folder, BODY_WEIGHT: weight_of(data.get("body_mass"))}
     data = with_level_file(data, folder, parse_tables)
     tables = with_part_points(data, context)
     try:

@@ -19,7 +19,14 @@ from alula.loads.case.forks import check_fork, check_pair
 from alula.loads.case.heights import layer_of
 from alula.loads.case.joint_rules import check_clamps, check_clearances, check_friction
 from alula.loads.case.layers import check_layers, pin_masses
-from alula.loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
+from alula.loads.case.load_rules import (
+    check_frequency,
+    check_loads,
+    check_masses,
+    check_permanent_set,
+    check_place,
+    check_wings,
+)
 from alula.loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from alula.loads.case.toleranced import toleranced
 from alula.loads.records.check_spec import (
@@ -36,6 +43,7 @@ from alula.loads.records.check_spec import (
     MassCheck,
     MotorCheck,
     NotchCheck,
+    PermanentSetCheck,
     PinCheck,
     PlasticCollapseCheck,
     SafetyFactorCheck,
@@ -300,6 +308,8 @@ def check_check(case: CoreCase, name: str, check: Check) -> None:
         check_line_contact(case, name, check)
     elif isinstance(check, PlasticCollapseCheck | NotchCheck):
         check_break_check(case, name, check)
+    elif isinstance(check, PermanentSetCheck):
+        check_permanent_set(case, name)
     elif isinstance(check, FatigueCheck) and case.conditions.cycles is None:
         raise CaseError(
             f"checks.{name}: a check of fatigue needs the number of cycles; add [conditions] with cycles, for example "

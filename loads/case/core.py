@@ -8,7 +8,7 @@ from pydantic import Field
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import Name, Text
-from alula.geometry.base.units import NOT_NEGATIVE, Length
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length, Mass
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.bodies.features import FlatFace
 from alula.geometry.joints.joint import Joint
@@ -35,11 +35,11 @@ from alula.loads.records.check_spec import (
 )
 from alula.loads.records.conditions import Conditions, at_temperature, under
 from alula.loads.records.flapping import Wing
-from alula.loads.records.level import Level
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
 from alula.loads.records.tolerances import TolerancesTable
+from alula.loads.stated.level_spec import LevelSpec
 from alula.loads.statics.statics import Drive
 from alula.loads.text.places import check_point
 from alula.loads.text.revisable import Revisable
@@ -58,6 +58,9 @@ class CoreCase(Revisable):
     """Where its numbers come from."""
     assumptions: tuple[Text, ...] = ()
     """What the case assumes beyond its source, one sentence each; the report lists them."""
+    body_mass: Annotated[Mass, POSITIVE] | None = None
+    """Mass of the body whose weight, under standard gravity of 9.80665 m/s², is the unit body_weight: any force may be
+    stated as "1.1 body_weight", any moment as "0.05 body_weight*m"."""
     links: Annotated[dict[Name, Link], Field(min_length=2, max_length=200)]
     """The links by name; one of them is the ground."""
     joints: Annotated[dict[Name, Joint], Field(min_length=1, max_length=400)]
@@ -101,7 +104,7 @@ class CoreCase(Revisable):
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=1000)] = {}
     """Loads that act together, by name; each load case is checked by itself. Needed unless a level states tests, which
     are load cases then."""
-    level: Level | None = None
+    level: LevelSpec | None = None
     """Tests of a level of a standard, which ``alula check`` goes over one after the other."""
     checks: dict[Name, Check] = {}
     """What is to be decided, by name; the safety factor of every link where nothing is stated."""

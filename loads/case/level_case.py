@@ -11,8 +11,8 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_rules import check_check
 from alula.loads.case.core import CoreCase
 from alula.loads.records.check_spec import Check
-from alula.loads.records.level import Level
 from alula.loads.records.load_case import LoadCase
+from alula.loads.stated.level_spec import LevelSpec
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.reason import reason
 
@@ -57,7 +57,7 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
     }
 
 
-def _load_case(level: Level, name: str) -> LoadCase:
+def _load_case(level: LevelSpec, name: str) -> LoadCase:
     """Return the load case of a test: its decisive force along its load line, on a linkage that stands still."""
     test = level.tests[name]
     step = test.decisive

@@ -11,7 +11,15 @@ from alula.loads.records.attachment import Attachment
 from alula.loads.records.carried import CarriedBody, CarriedSpread
 from alula.loads.records.check_spec import FrequencyCheck
 from alula.loads.records.flapping import WIDEST, Wing, check_flapping
-from alula.loads.records.load_case import FacePressure, LoadCase, LoadLine, PointForce, PointMoment, SpreadForce
+from alula.loads.records.load_case import (
+    FacePressure,
+    LoadCase,
+    LoadLine,
+    PointForce,
+    PointMoment,
+    SpreadForce,
+    force_size,
+)
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.places import check_moving, check_point
 from alula.loads.text.reason import reason
@@ -73,6 +81,30 @@ def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
             f"{where}.speed: it is the angular speed of the pose's coordinate, but '{case.pose.coordinate}' is a "
             "slider; leave it out and state motion.travel_speed"
         )
+
+
+def check_permanent_set(case: CoreCase, name: str) -> None:
+    """Check that each load case states one force, along which a permanent set is.
+
+    Parameters
+    ----------
+    case : CoreCase
+    name : str
+        Of the check.
+
+    Raises
+    ------
+    CaseError
+        For the first load case of which that is not so, and where no link has a part.
+    """
+    if not case.checked_links:
+        raise CaseError(f"checks.{name}: no link has a part, so nothing stays bent; give a link a part")
+    for load_case, stated in case.load_cases.items():
+        if force_size(stated) == 0.0:
+            raise CaseError(
+                f"checks.{name}: a permanent set is along the line of one force, but load case '{load_case}' does not "
+                "state one force, or one load line, and no other load; put what else acts in a case of its own"
+            )
 
 
 def _check_flapping(case: CoreCase, where: str, load_case: LoadCase) -> None:
@@ -269,3 +301,9 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
             what=reason("forces_on_pins", places=tuple(on_pins)),
             why=reason("pin_bears_it"),
         )
+    lines = [line for load_case in case.load_cases.values() for line in load_case.load_lines]
+    ends = [end for line in lines for end in (line, line.leaves) if end is not None]
+    places = tuple(dict.fromkeys(f"{end.at} of {end.link}" for end in ends))
+    if places:
+        yield Caveat(heading=Heading.ASSUMED, topic=Topic.LOADS, what=reason("rigid_levers", places=places))
+        yield Caveat(topic=Topic.LOADS, what=reason("beyond_levers", places=places), why=reason("not_modelled"))

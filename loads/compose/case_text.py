@@ -8,7 +8,7 @@ from typing import Any
 import tomlkit
 
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.loads.case.part_points import KINDS
+from alula.loads.stated.part_points import KINDS
 from alula.loads.text.explain import printable
 
 

@@ -10,10 +10,10 @@ from pydantic import ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import Change, changed_tables, folder_of, read_tables
-from alula.loads.case.part_points import KINDS
 from alula.loads.plans.derived import derived_value, in_turn
 from alula.loads.plans.plan import StudyPlan, case_name, table_of
 from alula.loads.plans.points import Point, Points
+from alula.loads.stated.part_points import KINDS
 from alula.loads.text.explain import printable, sentence
 
 LEFT_OUT = ("published_statics", "claims")

@@ -249,6 +249,19 @@ class PlasticCollapseCheck(CaseModel):
     above the minimum is solved as a solid."""
 
 
+class PermanentSetCheck(CaseModel):
+    """How far the point at which the load enters stays displaced along its line, once it is gone, must be small enough.
+
+    Along the line of the one force, or the one load line, of each load case: what all links that yield leave of it, by
+    their plastic solutions, with strengths as plastic collapse has them. A load line that leaves by another link has
+    its two ends nearer to each other by as much. Brittle and printed links must stay elastic.
+    """
+
+    type: Literal["permanent-set"]
+    maximum: Annotated[Length, POSITIVE]
+    """The limit. A link whose safety factor is not wholly at or above 1 is solved as a solid."""
+
+
 class NotchCheck(CaseModel):
     """Each link of a brittle material must not break at its notches: holes, fillets, edges.
 
@@ -344,6 +357,7 @@ Check = Annotated[
     | ConnectionCheck
     | LimitLoadCheck
     | PlasticCollapseCheck
+    | PermanentSetCheck
     | NotchCheck
     | FatigueCheck
     | ClearanceCheck

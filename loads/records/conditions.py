@@ -27,7 +27,7 @@ class Conditions(CaseModel):
     """How often each load case comes and goes: in a pose from nothing to its load and back, over a motion once with
     each repetition. Where stated, links are checked for fatigue."""
     reverses: bool = False
-    """True where in a pose each load goes to its opposite in place of nothing, unless the load case states ``least``."""
+    """True where in a pose each load goes to its opposite in place of nothing, unless its load case states least."""
     temperature: Temperature | None = None
     """Where stated, strengths and moduli are multiplied by the factors of the material's card; what needs a strength or
     a modulus that the card does not tell at this temperature is undecided."""

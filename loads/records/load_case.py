@@ -4,10 +4,20 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Length, Stress, parse
+from alula.geometry.base.units import (
+    NOT_NEGATIVE,
+    Acceleration,
+    Angle,
+    AngularSpeed,
+    Force,
+    Length,
+    Stress,
+    parse,
+    weight_in,
+)
 from alula.loads.records.aero import AirLoad
 from alula.loads.records.attachment import Attachment
 from alula.loads.records.flapping import Flapping
@@ -18,12 +28,13 @@ Place = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]
 
 
-def _moment(stated: object) -> tuple[float, float, float]:
+def _moment(stated: object, info: ValidationInfo) -> tuple[float, float, float]:
+    weight = weight_in(info)
     if not isinstance(stated, list | tuple):
-        return 0.0, 0.0, parse(stated, "moment")
+        return 0.0, 0.0, parse(stated, "moment", weight)
     if len(stated) != 3:
         raise refusal('it must be one moment about z or three about x, y and z; write for example "130 N*mm"')
-    x, y, z = (parse(component, "moment") for component in stated)
+    x, y, z = (parse(component, "moment", weight) for component in stated)
     return x, y, z
 
 
@@ -172,6 +183,25 @@ class LoadCase(CaseModel):
     """Lift and drag of streams."""
     flapping: Flapping | None = None
     """Air at rest in which the wings flap; without it they meet none."""
+
+
+def force_size(load_case: LoadCase) -> float:
+    """Return the size of the force that is all that a load case states, but for its own weight and its speed.
+
+    Parameters
+    ----------
+    load_case : LoadCase
+        With one force at a point, or one load line.
+
+    Returns
+    -------
+    float
+        [N]; zero where it states none, or other loads as well.
+    """
+    sizes = [float(np.linalg.norm(vector3(one.force))) for one in load_case.forces]
+    sizes += [abs(line.force) for line in load_case.load_lines]
+    others = load_case.moments or load_case.pressures or load_case.spread or load_case.air or load_case.flapping
+    return sizes[0] if len(sizes) == 1 and not others else 0.0
 
 
 def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

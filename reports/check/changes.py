@@ -152,6 +152,8 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
                 if result.case.sprung
                 else "mean stress counts."
                 if check.quantity is Quantity.FATIGUE_STRESS
+                else "links yield."
+                if check.quantity is Quantity.PERMANENT_SET
                 else "large displacement was not looked at."
                 if result.load_cases[check.load_case].large_displacement.state == "off"
                 else "the shape of the deformed linkage counts."

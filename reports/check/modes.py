@@ -5,12 +5,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from alula.fea.common.band import Band
+from alula.fea.common.verdict import LINKAGE, Subject
 from alula.fea.modes.connection_modes import ConnectionFactors
 from alula.fea.modes.eye_modes import EyeFactors
 from alula.fea.modes.line_contact import LineContact
 from alula.fea.modes.notches import NotchFactor
 from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.fea.outcomes.result import LoadCaseResult
+from alula.fea.whole.permanent_set import LinkSet
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import Part
 from alula.reports.sections.table import Cell, Column, Number, Table, words
@@ -132,13 +134,25 @@ KINDS = {
         ),
         caption="Connections: what each mode bears over what goes through the joint, ordered by low ends",
     ),
+    "permanent_sets": Telling(
+        of=LinkSet,
+        columns=(
+            words("link"),
+            Column("adds along the load", "mm"),
+            Column("bears times its loads"),
+            Column("plastic strain"),
+        ),
+        rows=lambda one: [(one.link, *map(Number, (one.set, one.factor, one.strain)))],
+        entries=lambda one: entries(one, "link set factor strain regained"),
+        caption="Permanent set: what each link that yields adds to it, along the line of the load; others add nothing",
+    ),
 }
 """Key of the table and of the entries -> how what was found is told; a new kind of numbers is an entry here."""
 
 
-def _subject(kind: str) -> str:
-    """Return what the column of subjects is called: a pin is named by its joint."""
-    return "link" if kind == "link" else "joint"
+def _subject(subject: Subject) -> dict[str, str]:
+    """Return the name of a subject by what it is, a pin by its joint; nothing of the linkage."""
+    return {} if subject == LINKAGE else {"link" if subject.kind == "link" else "joint": subject.name}
 
 
 def mode_parts(case: LoadCaseResult) -> Iterator[Part]:
@@ -156,10 +170,10 @@ def mode_parts(case: LoadCaseResult) -> Iterator[Part]:
         found = case.found_of(how.of)
         if how.ordered:
             found = tuple(sorted(found, key=lambda one: one.numbers.factor.low))
-        rows = [(one.check, one.subject.name, *row) for one in found for row in how.rows(one.numbers)]
+        rows = [(one.check, *_subject(one.subject).values(), *row) for one in found for row in how.rows(one.numbers)]
         if rows:
             yield Table.of(
-                (words("check"), words(_subject(found[0].subject.kind)), *how.columns),
+                (words("check"), *map(words, _subject(found[0].subject)), *how.columns),
                 rows,
                 key=key,
                 caption=f"{how.caption}{_beside(case) if key == 'walls' else ''}",
@@ -187,10 +201,7 @@ def mode_records(case: LoadCaseResult) -> dict[str, list[dict[str, Any]]]:
         Without kinds of which nothing was found.
     """
     return {
-        key: [
-            {"check": one.check, _subject(one.subject.kind): one.subject.name} | how.entries(one.numbers)
-            for one in found
-        ]
+        key: [{"check": one.check} | _subject(one.subject) | how.entries(one.numbers) for one in found]
         for key, how in KINDS.items()
         if (found := case.found_of(how.of))
     }

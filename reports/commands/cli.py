@@ -3,14 +3,13 @@
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from alula.reports.commands import options
 from alula.reports.commands.ending import progress, run
 from alula.reports.commands.frequencies import app as frequencies
-from alula.reports.commands.level import checked_names, run_level
 from alula.reports.commands.materials import app as materials
 from alula.reports.commands.open import app as opening
 from alula.reports.commands.size import app as size
@@ -18,6 +17,9 @@ from alula.reports.commands.starters import app as starters
 from alula.reports.commands.study import app as study
 from alula.reports.commands.telling import begun, tell, write
 from alula.reports.commands.tolerance import app as tolerance
+
+if TYPE_CHECKING:
+    from alula.loads.case.case import Case
 
 app = typer.Typer(
     name="alula",
@@ -96,6 +98,7 @@ def check(
     from alula.geometry.keeping.kept import keeping
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
+    from alula.reports.level.folder import checked_names
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
@@ -105,7 +108,7 @@ def check(
         told = progress if output is None or threads == 1 else _solving
         if has_tests(parsed):
             given = {"fidelity": fidelity, "threads": threads, "effort": effort, "progress": told}
-            raise SystemExit(run_level(parsed, case, given, output, json=json, second_opinion=second_opinion))
+            raise SystemExit(_check_tests(parsed, case, given, output, json=json, second_opinion=second_opinion))
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=told)
         if result.kept[0]:
             found, asked = result.kept
@@ -130,6 +133,30 @@ def check(
             if not json:
                 print(f"Report: {output / 'report.html'}")
     raise SystemExit(result.verdict.exit_status)
+
+
+def _check_tests(
+    case: "Case", name: str, options: dict[str, Any], output: Path | None, *, json: bool, second_opinion: bool
+) -> int:
+    """Check all tests of a case, tell what they say and write their reports; return the exit status of the worst."""
+    from alula.fea.check.level import check_level
+    from alula.fea.findings.of_check import with_findings
+    from alula.geometry.base.errors import CaseError
+    from alula.reports.level.folder import write_level
+    from alula.reports.level.page import level_sections
+    from alula.reports.level.tests import level_record, print_level
+
+    if second_opinion:
+        first = next(iter(case.level.tests)) if case.level else ""
+        raise CaseError(f'--second-opinion: it is on one test; choose one with --set level.test="{first}"')
+    result = check_level(case, name=name, **options).of_each(with_findings)
+    sections = level_sections(result)
+    tell(sections, json=json, record=partial(level_record, result, sections), show=partial(print_level, result))
+    if output is not None:
+        write_level(result, output, progress=progress)
+        if not json:
+            print(f"Level: {output / 'level.html'}")
+    return result.worst.exit_status
 
 
 @app.command()

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from alula.fea.check.level import LevelResult
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.attachment import Attachment
-from alula.loads.records.level import Level
+from alula.loads.stated.level_spec import LevelSpec
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.plot import Axes
 from alula.reports.figures.sheet.style import GROUND, INK, LINK, WIDTH
@@ -81,7 +81,7 @@ def _lines(result: LevelResult) -> list[tuple[Real, list[str]]]:
     return found
 
 
-def _place(level: Level, pose: Pose, link: str, point: str) -> Real:
+def _place(level: LevelSpec, pose: Pose, link: str, point: str) -> Real:
     """Return where a point of a link lies (3,) in the axes of the standard."""
     at = np.array([*pose.position(link, point), pose.linkage.heights.get(link, 0.0)])
     return np.asarray(level.axes @ (at - np.array(level.origin)))

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from alula.fea.check.level import LevelResult
+from alula.fea.check.level import LevelResult, has_tests
 from alula.fea.outcomes.result import CheckResult
 from alula.loads.case.case import Case
 from alula.reports.check.folder import PICTURES, fill_report, report_names
@@ -15,28 +15,24 @@ from alula.reports.renderers.page import as_page
 from alula.reports.renderers.record import as_json
 
 
-def level_names(case: Case) -> set[str]:
-    """Return the names of all files that the reports of a level can contain.
+def checked_names(case: Case) -> set[str]:
+    """Return the names of all files that a check of a case can write: of one report, or of a level and all its tests.
 
     Parameters
     ----------
     case : Case
-        With a level of which no test is chosen.
 
     Returns
     -------
     set of str
     """
-    assert case.level is not None
+    if case.level is None or not has_tests(case):
+        return report_names(case)
     variants = {f"{TESTS}/{name}": case.with_values({"level.test": name}) for name in case.level.tests}
     if not case.tests_alone:
         variants[OWN] = case
-    return {
-        MARK,
-        PAGE,
-        f"{PICTURES}/{SET_UP}.png",
-        *(f"{folder}/{name}" for folder, one in variants.items() for name in report_names(one)),
-    }
+    own = {f"{folder}/{name}" for folder, one in variants.items() for name in report_names(one)}
+    return own | {MARK, PAGE, f"{PICTURES}/{SET_UP}.png"}
 
 
 def write_level(result: LevelResult, target: Path, *, progress: Callable[[str], None] = lambda message: None) -> None:

@@ -93,19 +93,15 @@ def _asked(test: TestResult) -> Iterator[Statement]:
 
 def _stands_on(result: LevelResult) -> Section:
     """Return what all numbers stand on, and what no check looks at."""
-    case, level = result.case, result.level
-    leaves = "is held by the ground" if level.leaves is None else f"leaves {level.leaves.link} at {level.leaves.at}"
+    case = result.case
     rubs = [f"{name} {plain(joint.friction)}" for name, joint in case.joints.items() if joint.friction]
-    assumed = (
-        "Sockets, liners, covers and other soft parts are not modelled.",
-        f"Each load line enters {level.enters.link} at {level.enters.at} and {leaves}, over levers that do not give.",
-        f"Coefficients of friction: {joined(rubs)}; other joints have none." if rubs else "No joint states friction.",
-        *case.assumptions,
+    friction = (
+        f"Coefficients of friction: {joined(rubs)}; other joints have none." if rubs else "No joint states friction."
     )
     besides_it = _shared(result, lambda test: [(str(one.heading), caveat(one)) for one in test.result.caveats])
     limits = _shared(result, lambda test: [one for part in check_sections(test.result) for one in part.not_covered])
     warnings = _shared(result, lambda test: [("warning", _plain(test, one)) for one in test.result.warnings])
-    parts: list[Part] = [Items(assumed), Items(besides_it)]
+    parts: list[Part] = [Items(besides_it), Items((friction, *case.assumptions))]
     if warnings:
         parts.append(Items(tuple(f"{title}: {text}" for title, text in warnings), "warnings"))
     parts += [Text("What no check looks at:"), Items(limits, "columns2")]

@@ -19,12 +19,12 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import EXAMPLES, parse
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_case, read_companion, validate
-from alula.loads.case.part_points import KINDS
 from alula.loads.exchange.exchange import case_of_linkage
 from alula.loads.sources.claim import Claim, read_printed
 from alula.loads.sources.expression import Path as NamePath
 from alula.loads.sources.expression import evaluate
 from alula.loads.sources.quantity import Value
+from alula.loads.stated.part_points import KINDS
 from alula.loads.text.entries import known_keys
 from alula.loads.text.explain import sentence
 

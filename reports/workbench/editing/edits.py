@@ -8,7 +8,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
-from alula.loads.case.part_points import KINDS
+from alula.loads.stated.part_points import KINDS
 from alula.loads.text.nesting import refuse_deep
 from alula.reports.workbench.editing.moves import lengthen, move, turn
 from alula.reports.workbench.editing.plane import SAME, Plane, Point, loose_positions, told

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from alula.geometry.base.errors import CaseError
-from alula.loads.case.part_points import KINDS
+from alula.loads.stated.part_points import KINDS
 from alula.reports.workbench.editing.plane import SAME, Frame, Plane, Point, size, told
 from alula.reports.workbench.editing.toml_text import Path, TomlText, value_at
 

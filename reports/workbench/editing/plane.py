@@ -16,7 +16,7 @@ from alula.geometry.base.units import parse
 from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.linkage import Link, Linkage
 from alula.geometry.linkage.pose import Pose, nearest_pose
-from alula.loads.case.part_points import KINDS
+from alula.loads.stated.part_points import KINDS
 from alula.loads.text.explain import sentence
 from alula.reports.workbench.editing.toml_text import Path, value_at
 

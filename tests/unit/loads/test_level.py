@@ -11,7 +11,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.case.level_case import Demand, demanded, level_caveats
 from alula.loads.compose.stated_case import StatedCase
-from alula.loads.records.level import Level
+from alula.loads.stated.level_spec import LevelSpec
 from alula.reports.sentences.caveats import caveat
 
 
@@ -74,7 +74,7 @@ def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
 def test_axes_of_the_standard_lie_as_the_case_says(changed, top):
     case = validate(pylon(level=changed))
     assert line(case, "proof")[0] == pytest.approx(top)
-    level = Level.model_validate(pylon(level=changed)["level"])
+    level = LevelSpec.model_validate(pylon(level=changed)["level"])
     forward, outward, up = level.axes
     if "outward" not in changed:
         assert np.cross(forward, outward) == pytest.approx(up)
@@ -94,6 +94,12 @@ def test_a_file_beside_the_case_states_the_tests(tmp_path):
     (tmp_path / "other").mkdir()
     StatedCase.read(path).to_toml(tmp_path / "other" / "copy.toml")
     assert read_case(str(tmp_path / "other" / "copy.toml")).level == case.level
+
+
+def test_a_force_may_be_a_share_of_the_body_weight():
+    test = {"tests": {"proof": {**PROOF, "steps": [{"force": "2 body_weight"}]}}}
+    case = validate(pylon(level=test, body_mass="100 kg"))
+    assert case.load_cases["proof"].load_lines[0].force == pytest.approx(2.0 * 980.665)
 
 
 def written(folder, level, *, encoding="utf-8", newline="\n", **placed):
@@ -134,6 +140,7 @@ SECOND = "level.tests.second"
         (with_test(PROOF, steps=[]), f"{SECOND}.steps (it is []): it has 0, but at least 1"),
         (with_test(PROOF, steps=[{"duration": "30 s"}]), f"{SECOND}.steps.0.force: this entry is missing"),
         (with_test(PROOF, steps=[{"force": 1000}]), f"{SECOND}.steps.0.force (it is 1000): "),
+        (with_test(PROOF, steps=[{"force": "1.1 body_weight"}]), "no body is stated that weighs so much"),
         (with_test(PROOF, steps=[{"force": "nan N"}]), f"{SECOND}.steps.0.force (it is 'nan N'): "),
         (with_test(PROOF, steps=[{"force": "-5 N"}]), f"{SECOND}.steps.0.force (it is '-5 N'): it must be greater"),
         (with_test(PROOF, elastic=False), f"{SECOND}: it asks for nothing; write elastic = true"),

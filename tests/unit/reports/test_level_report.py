@@ -57,6 +57,8 @@ def test_each_test_is_judged_by_itself_and_the_worst_is_the_levels(checked):
 def test_the_worst_test_counts_wherever_it_stands(checked, order):
     pair = [("proof", checked.tests["proof"]), ("often", checked.tests["often"])]
     assert replace(checked, tests=dict(pair[::order])).verdict is Verdict.UNDECIDED
+    found = replace(checked, tests=dict(pair[:1]), own=checked.tests["hard"].result)
+    assert (found.verdict, found.worst) == (Verdict.PASS, Verdict.FAIL)
 
 
 def test_a_test_is_the_case_that_a_user_could_type():

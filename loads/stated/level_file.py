@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from alula.geometry.base.errors import CaseError
-from alula.loads.records.level import IN_FILE
+from alula.loads.stated.level_spec import IN_FILE
 from alula.loads.text.entries import alike
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import file_text

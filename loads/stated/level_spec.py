@@ -30,7 +30,7 @@ class Offsets(CaseModel):
         return np.array([self.forward, self.outward, self.up])
 
 
-class Step(CaseModel):
+class LevelStep(CaseModel):
     """A step of a test: a force that settles or holds for a while, or that comes and goes."""
 
     force: Annotated[Force, POSITIVE]
@@ -74,7 +74,7 @@ class LevelTest(CaseModel):
     """Where the load line begins, at its upper end."""
     bottom: Offsets
     """Where it ends, at its lower end."""
-    steps: Annotated[tuple[Step, ...], Field(min_length=1, max_length=100)]
+    steps: Annotated[tuple[LevelStep, ...], Field(min_length=1, max_length=100)]
     """What is done one after the other, such as settling and holding. The step with the largest force decides."""
     elastic: bool = False
     """True: nothing may yield."""
@@ -86,7 +86,7 @@ class LevelTest(CaseModel):
     """True: nothing may fail by fatigue before the end of the cycles."""
 
     @property
-    def decisive(self) -> Step:
+    def decisive(self) -> LevelStep:
         """The step with the largest force; of equal ones the last, of which those before are a part."""
         return max(reversed(self.steps), key=lambda step: step.force)
 
@@ -119,13 +119,13 @@ class LevelTest(CaseModel):
             )
         if cyclic and self.decisive is not cyclic[0]:
             raise refusal(
-                f"a step of {self.decisive.force:g} N is held besides cycles up to {cyclic[0].force:g} N; state it in a "
-                "test of its own with the same top and bottom"
+                f"a step of {self.decisive.force:g} N is held besides cycles up to {cyclic[0].force:g} N; state it in "
+                "a test of its own with the same top and bottom"
             )
         return self
 
 
-class Level(CaseModel):
+class LevelSpec(CaseModel):
     """Tests of a level of a standard: what is done to the case one after the other, and what it must bear.
 
     The entries from ``standard`` to ``tests`` may stand in a file beside the case instead, which ``file`` names.
