@@ -59,6 +59,7 @@ def set_up_drawing(result: LevelResult) -> Canvas:
         for number, (ends, _) in enumerate(lines):
             _line(sheet, axes, ends, [_entry(places, level.enters), _entry(places, level.leaves)], number, k)
     bottom = _ABOVE + tall + _BELOW
+    rows: list[tuple[str, tuple[float, float] | None, str]]
     rows = [(_COLOURS[number % len(_COLOURS)], None, ", ".join(names)) for number, (_, names) in enumerate(lines)]
     rows += [(INK, (2.0, 2.0), "rigid levers to where the load line enters and leaves"), (LINK, None, "links")]
     for number, (colour, dashes, text) in enumerate(rows):
