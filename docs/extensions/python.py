@@ -55,7 +55,8 @@ def _return_names(tree: ast.Module) -> Iterator[str]:
     """Yield the names in the return types of the public functions."""
     for node in tree.body:
         if isinstance(node, ast.FunctionDef) and node.name in alula.__all__ and node.returns is not None:
-            yield str(node.returns.value) if isinstance(node.returns, ast.Constant) else ast.unparse(node.returns)
+            stated = str(node.returns.value) if isinstance(node.returns, ast.Constant) else ast.unparse(node.returns)
+            yield from stated.split(" | ")
 
 
 def _title(text: str, line: str) -> str:
