@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -106,6 +107,33 @@ def changed(before: np.ndarray, after: np.ndarray) -> float:
 def sheets(pdf: bytes) -> int:
     """Return the number of pages of a PDF that Chromium wrote."""
     return len(re.findall(rb"/Type\s*/Page\b", pdf))
+
+
+def texts(pdf: bytes) -> list[str]:
+    """Return what stands on each page of a PDF that Chromium wrote, in the order in which it is drawn."""
+    found = {int(number): body for number, body in re.findall(rb"(?s)\n(\d+) 0 obj\n(.*?)\nendobj", pdf)}
+
+    def stream(number: int) -> str:
+        head, _, content = found[number].partition(b"stream\n")
+        return (zlib.decompressobj().decompress(content) if b"FlateDecode" in head else content).decode("latin-1")
+
+    def signs(font: int) -> dict[int, str]:
+        cmap = stream(int(re.search(rb"/ToUnicode (\d+)", found[font])[1]))
+        one = {int(glyph, 16): chr(int(sign, 16)) for glyph, sign in re.findall(r"^<(\w+)> <(\w+)>$", cmap, re.M)}
+        for first, last, sign in re.findall(r"^<(\w+)> <(\w+)> <(\w+)>$", cmap, re.M):
+            one |= {k: chr(int(sign, 16) + k - int(first, 16)) for k in range(int(first, 16), int(last, 16) + 1)}
+        return one
+
+    def page(body: bytes) -> str:
+        fonts = {name.decode(): signs(int(number)) for name, number in re.findall(rb"/(F\d+) (\d+) 0 R", body)}
+        told, font = "", dict[int, str]()
+        content = stream(int(re.search(rb"/Contents (\d+)", body)[1]))
+        for name, glyphs in re.findall(r"/(F\d+) [\d.]+ Tf|<(\w+)> Tj", content):
+            font = fonts[name] if name else font
+            told += "".join(font.get(int(glyphs[k : k + 4], 16), "?") for k in range(0, len(glyphs), 4))
+        return told
+
+    return [page(body) for body in found.values() if re.search(rb"/Type\s*/Page\b", body)]
 
 
 @contextmanager

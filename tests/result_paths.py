@@ -19,6 +19,9 @@ NAMED = {
     "link_bores",
     "link_slots",
     "linkage",
+    "provenance.libraries",
+    "provenance.files",
+    "provenance.changes",
     "clearance.heights",
     "play.clearances",
     "play.points",
@@ -39,8 +42,16 @@ TYPES = {
 def documented(command: str) -> dict[str, set[str]]:
     """Return path -> types of the section ``## alula COMMAND``."""
     text = DOCUMENT.read_text(encoding="utf-8")
-    section = re.split(r"^## ", text.split(f"\n## alula {command}\n")[1], flags=re.MULTILINE)[0]
-    found = {}
+    return _rows(re.split(r"^## ", text.split(f"\n## alula {command}\n")[1], flags=re.MULTILINE)[0])
+
+
+def common() -> dict[str, set[str]]:
+    """Return path -> types of what stands above all commands."""
+    return _rows(re.split(r"^## ", DOCUMENT.read_text(encoding="utf-8"), flags=re.MULTILINE)[0])
+
+
+def _rows(section: str) -> dict[str, set[str]]:
+    found: dict[str, set[str]] = {}
     for keys, kind in re.findall(r"^\| (`[^|]+`) \| ([^|]+) \|", section, flags=re.MULTILINE):
         for key in re.findall(r"`([^`]+)`", keys):
             parts = [re.split(r", ", part) for part in re.split(r"\{([^}]+)\}", key)]
@@ -69,7 +80,8 @@ def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any, str | None]]:
 
 def compare(command: str, *records: Mapping[str, Any]) -> None:
     """Assert that the records together hold what the document says, each value of a type that it names."""
-    told, met = documented(command), set()
+    own, met = documented(command), set()
+    told = common() | own
     for path, value, shape in (leaf for record in records for leaf in leaves(record)):
         assert path in told, f"{path} is not described"
         met.add(path)
@@ -78,5 +90,5 @@ def compare(command: str, *records: Mapping[str, Any]) -> None:
         else:
             fits = shape in told[path] or any(isinstance(value, TYPES[k]) for k in told[path] if k in TYPES)
         assert fits, f"{path} is {value!r}, described as {' or '.join(sorted(told[path]))}"
-    tables = {path for path, kinds in told.items() if "object" in kinds}
-    assert set(told) - met - tables == set(), "described, but in none of the records"
+    tables = {path for path, kinds in own.items() if "object" in kinds}
+    assert set(own) - met - tables == set(), "described, but in none of the records"

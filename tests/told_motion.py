@@ -37,7 +37,7 @@ def rows(moved, file):
 
 def pictures(moved):
     found = motion_findings(moved)
-    return drawn_pictures(motion_page(found, "", motion_sections(found)))
+    return drawn_pictures(motion_page(found, motion_sections(found)))
 
 
 def printed(moved, width=200):

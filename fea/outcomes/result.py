@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from functools import cached_property
 from typing import Any, ClassVar, TypeVar
 
@@ -391,6 +392,8 @@ class CheckResult:
     harmonic : Reason or None
         Which harmonic of the drive comes nearest to a natural frequency that no check asks for, as
         ``alula.fea.vibration.harmonics.nearest_harmonic`` says.
+    date : datetime
+        When it was found, in UTC.
     """
 
     name: str
@@ -412,6 +415,7 @@ class CheckResult:
     motion: Motion | None = None
     in_air: AirRange | None = None
     harmonic: Reason | None = None
+    date: datetime = field(default_factory=lambda: datetime.now(UTC), compare=False)
 
     @cached_property
     def caveats(self) -> tuple[Caveat, ...]:

@@ -7,6 +7,7 @@ from typing import Any
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
+from alula.geometry.imported.files_read import note_read
 from alula.geometry.keeping.kept import kept
 
 LARGEST_FILE = 200_000_000
@@ -125,7 +126,7 @@ def file_digest(path: Path, *, mesh: bool = False) -> str:
             raise CaseError(f"'{path}' is no mesh file by its name, which must end with {ends}; export the part as one")
         with path.open("rb") as stream:
             if mesh:
-                return hashlib.file_digest(stream, "sha256").hexdigest()
+                return note_read(path, hashlib.file_digest(stream, "sha256").hexdigest())
             start = stream.read(_TAIL).removeprefix(b"\xef\xbb\xbf").lstrip()
             stream.seek(max(0, size - _TAIL))
             end = stream.read()
@@ -135,6 +136,6 @@ def file_digest(path: Path, *, mesh: bool = False) -> str:
             if _LAST not in end:
                 raise CaseError(f"'{path}' is cut off: it does not end with {_LAST.decode()}; export the part anew")
             stream.seek(0)
-            return hashlib.file_digest(stream, "sha256").hexdigest()
+            return note_read(path, hashlib.file_digest(stream, "sha256").hexdigest())
     except OSError as error:
         raise CaseError(f"'{path}' cannot be read ({error.strerror}); check its permissions") from None

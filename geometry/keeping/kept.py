@@ -266,14 +266,37 @@ def surroundings() -> str:
     -------
     str
     """
+    versions = [" ".join(one) for one in library_versions().items()]
+    return digest([sources_digest(), versions, sys.version, sys.platform, platform.machine()])
+
+
+@functools.cache
+def sources_digest() -> str:
+    """Return the SHA-256 of the names and contents of all sources of alula that compute.
+
+    Returns
+    -------
+    str
+        In hexadecimal.
+    """
     found = hashlib.sha256()
     root = Path(__file__).parents[2]
     for package in ("geometry", "loads", "fea"):
         for path in sorted((root / package).rglob("*")):
             if path.suffix in (".py", ".toml"):
-                found.update(f"{path.relative_to(root)}\n".encode() + path.read_bytes())
-    versions = []
+                found.update(f"{path.relative_to(root).as_posix()}\n".encode() + path.read_bytes())
+    return found.hexdigest()
+
+
+def library_versions() -> dict[str, str]:
+    """Return the version of every library that meshes, solves or makes records, as far as it is installed.
+
+    Returns
+    -------
+    dict of str to str
+    """
+    found = {}
     for name in LIBRARIES:
         with suppress(metadata.PackageNotFoundError):
-            versions.append(f"{name} {metadata.version(name)}")
-    return digest([found.hexdigest(), versions, sys.version, sys.platform, platform.machine()])
+            found[name] = metadata.version(name)
+    return found

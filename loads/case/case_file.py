@@ -1,6 +1,8 @@
 """Reading a case: a TOML file or a built-in name, overrides, and errors in one sentence each."""
 
+import hashlib
 import json
+import os
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -8,6 +10,7 @@ from copy import deepcopy
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
@@ -15,6 +18,7 @@ from pydantic import ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
+from alula.geometry.imported.files_read import files_read, note_read
 from alula.loads.case.case import Case
 from alula.loads.stated.level_file import in_level_file, with_level_file
 from alula.loads.stated.part_points import with_part_points
@@ -59,7 +63,9 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
-    return changed_case(read_tables(name_or_path), stated_changes(overrides), name_or_path, folder_of(name_or_path))
+    with files_read() as read:
+        tables = read_tables(name_or_path)
+    return changed_case(tables, stated_changes(overrides), name_or_path, folder_of(name_or_path), read)
 
 
 def read_tables(name_or_path: str) -> dict[str, Any]:
@@ -202,7 +208,13 @@ def _made(tables: Mapping[str, Any], changes: Sequence[Change]) -> tuple[dict[st
     return data, made
 
 
-def changed_case(tables: dict[str, Any], changes: Sequence[Change], name: str, folder: str) -> Case:
+def changed_case(
+    tables: dict[str, Any],
+    changes: Sequence[Change],
+    name: str,
+    folder: str,
+    read: Mapping[str, str] = MappingProxyType({}),
+) -> Case:
     """Return the case that tables state after some changes, which later ones can be added to.
 
     Parameters
@@ -215,6 +227,8 @@ def changed_case(tables: dict[str, Any], changes: Sequence[Change], name: str, f
         Path or built-in name that they were read from; "" where they were put together in Python.
     folder : str
         Where the files of parts are sought.
+    read : mapping of str to str, optional
+        Files that the tables were read from: path, or built-in name -> SHA-256.
 
     Returns
     -------
@@ -225,13 +239,26 @@ def changed_case(tables: dict[str, Any], changes: Sequence[Change], name: str, f
     CaseError
         As ``changed_tables`` and ``validate``.
     """
-    return validate(changed_tables(tables, changes), folder).read_from(
+    with files_read() as found:
+        case = validate(changed_tables(tables, changes), folder)
+    of_tables = hashlib.sha256(json.dumps(tables, sort_keys=True, default=str).encode()).hexdigest()
+    return case.read_from(
         Origin(
             name=name,
-            revise=partial(_revised, tables, tuple(changes), name, folder),
+            revise=partial(_revised, tables, tuple(changes), name, folder, dict(read)),
             changes=tuple((change.path, _as_stated(change.value)) for change in changes),
+            digest=read.get(name, of_tables),
+            files={_from(folder, path): own for path, own in {**read, **found}.items() if path != name},
         )
     )
+
+
+def _from(folder: str, path: str) -> str:
+    """Return the path of a file from a folder, with slashes; its name alone where there is none."""
+    try:
+        return Path(os.path.relpath(path, folder or ".")).as_posix()
+    except ValueError:  # on another drive
+        return Path(path).name
 
 
 def _as_stated(value: object) -> str:
@@ -239,10 +266,15 @@ def _as_stated(value: object) -> str:
 
 
 def _revised(
-    tables: dict[str, Any], changes: Sequence[Change], name: str, folder: str, values: Mapping[str, object]
+    tables: dict[str, Any],
+    changes: Sequence[Change],
+    name: str,
+    folder: str,
+    read: Mapping[str, str],
+    values: Mapping[str, object],
 ) -> Case:
     more = (Change(path, value, "with_values") for path, value in values.items())
-    return changed_case(tables, [*changes, *more], name, folder)
+    return changed_case(tables, [*changes, *more], name, folder, read)
 
 
 def read_text(name_or_path: str) -> tuple[str, str]:
@@ -264,7 +296,9 @@ def read_text(name_or_path: str) -> tuple[str, str]:
         For a file that is missing, too large, unreadable, empty or no text.
     """
     if name_or_path in built_in_cases():
-        return files("alula.loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
+        content = files("alula.loads.cases").joinpath(f"{name_or_path}.toml").read_bytes()
+        note_read(name_or_path, hashlib.sha256(content).hexdigest())
+        return content.decode("utf-8"), name_or_path
     text = file_text(
         name_or_path,
         "case",
@@ -301,7 +335,10 @@ def read_companion(case_path: str, name: str) -> str:
     source = files("alula.loads.cases").joinpath(name) if built_in else Path(case_path).parent / name
     try:
         if source.is_file() and (built_in or Path(str(source)).stat().st_size <= LARGEST_FILE):
-            return source.read_text(encoding="utf-8-sig")
+            content = source.read_bytes()
+            text = content.decode("utf-8-sig").replace("\r\n", "\n")
+            note_read(str(source), hashlib.sha256(content).hexdigest())
+            return text
     except (OSError, ValueError):  # no permission, a name too long, not UTF-8
         pass
     raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")

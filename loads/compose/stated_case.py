@@ -21,6 +21,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.units import BODY_WEIGHT
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
+from alula.geometry.imported.files_read import files_read
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import (
     Change,
@@ -91,16 +92,19 @@ class StatedCase:
     _changes: tuple[Change, ...]
     _folder: str
     _name: str
+    _read: Mapping[str, str]
 
     def __init__(self, title: str | None = None, *, folder: "str | PathLike[str]" = "", **entries: object) -> None:
         tables = {"schema_version": CASE_SCHEMA_VERSION}
-        self.__dict__.update(_tables=tables, _changes=(), _folder=_absolute(folder), _name="")
+        self.__dict__.update(_tables=tables, _changes=(), _folder=_absolute(folder), _name="", _read={})
         self.__dict__.update(_tables=self.with_entries(title=title, **entries)._tables)
 
     @classmethod
-    def _of(cls, tables: Tables, changes: tuple[Change, ...], folder: str, name: str) -> Self:
+    def _of(
+        cls, tables: Tables, changes: tuple[Change, ...], folder: str, name: str, read: Mapping[str, str] | None = None
+    ) -> Self:
         made = cls.__new__(cls)
-        made.__dict__.update(_tables=tables, _changes=changes, _folder=folder, _name=name)
+        made.__dict__.update(_tables=tables, _changes=changes, _folder=folder, _name=name, _read=read or {})
         return made
 
     @classmethod
@@ -123,7 +127,9 @@ class StatedCase:
             With one sentence for whatever is wrong.
         """
         name = path_text(name_or_path, "case")
-        found = cls._of(read_tables(name), (), _absolute(folder_of(name)), name)
+        with files_read() as read:
+            tables = read_tables(name)
+        found = cls._of(tables, (), _absolute(folder_of(name)), name, read)
         _ = found.record
         return found
 
@@ -161,7 +167,7 @@ class StatedCase:
         CaseError
             With one sentence for what is missing, and for names that do not fit together.
         """
-        return changed_case(self._tables, self._changes, self._name, self._folder)
+        return changed_case(self._tables, self._changes, self._name, self._folder, self._read)
 
     def with_values(self, values: Mapping[str, object]) -> Self:
         """Return the case with other values for some entries.
@@ -194,7 +200,7 @@ class StatedCase:
             Change(text_of(path, "with_values", "path of an entry"), plain(value, path), "with_values")
             for path, value in mapping_of(values, "with_values", "entries and their values").items()
         )
-        found = self._of(self._tables, (*self._changes, *changes), self._folder, self._name)
+        found = self._of(self._tables, (*self._changes, *changes), self._folder, self._name, self._read)
         _ = found.record
         return found
 

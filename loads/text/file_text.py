@@ -1,9 +1,11 @@
 """A text file that a user names: a regular one, of at most 1 MiB, in UTF-8."""
 
+import hashlib
 import os
 from pathlib import Path
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.imported.files_read import note_read
 from alula.loads.text.explain import printable
 
 LARGEST_FILE = 1 << 20
@@ -46,11 +48,13 @@ def file_text(path: str, what: str, *, missing: str, empty: str, mark: bool = Fa
     try:
         if file.stat().st_size > LARGEST_FILE:
             raise CaseError(f"{shown}: the file is larger than 1 MiB, the limit; check that it is a {what} file")
-        text = file.read_bytes().decode("utf-8" if mark else "utf-8-sig")  # Windows editors put a byte order mark
+        content = file.read_bytes()
+        text = content.decode("utf-8" if mark else "utf-8-sig")  # Windows editors put a byte order mark
     except OSError as error:
         raise CaseError(f"{shown}: it cannot be read ({error.strerror}); check its permissions") from None
     except UnicodeDecodeError:
         raise CaseError(f"{shown}: it is not UTF-8 text; save it as UTF-8") from None
     if not text.strip():
         raise CaseError(f"{shown}: {empty}")
+    note_read(path, hashlib.sha256(content).hexdigest())
     return text

@@ -22,11 +22,18 @@ class Origin:
         Reads it once more, with other values for some entries; None where that cannot be.
     changes : tuple of tuple of (str, str)
         Entries that were changed beside the file, as ``--set`` states them.
+    digest : str
+        SHA-256 of the case file as it was read; of its tables as JSON with sorted keys, where no file was; "" of a case
+        that was changed in Python afterwards.
+    files : mapping of str to str
+        Other files that were read for it, by their paths from its folder -> SHA-256.
     """
 
     name: str = field(default="", compare=False)
     revise: Callable[[Mapping[str, object]], Any] | None = field(default=None, compare=False)
     changes: tuple[tuple[str, str], ...] = field(default=(), compare=False)
+    digest: str = field(default="", compare=False)
+    files: Mapping[str, str] = field(default_factory=dict, compare=False)
 
 
 class Revisable(CaseModel):
@@ -43,6 +50,16 @@ class Revisable(CaseModel):
     def changes(self) -> tuple[tuple[str, str], ...]:
         """Path and value of the entries that were changed beside the file, as ``--set`` states them."""
         return self._origin.changes
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of what it was read from, as ``Origin`` says."""
+        return self._origin.digest
+
+    @property
+    def files(self) -> Mapping[str, str]:
+        """Other files that were read for it, by their paths from its folder -> SHA-256."""
+        return self._origin.files
 
     def read_from(self, origin: Origin) -> Self:
         """Return a copy with an origin.

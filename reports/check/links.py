@@ -65,9 +65,9 @@ def _summary(result: CheckResult, names: Sequence[str]) -> Iterator[Part]:
     cases = result.load_cases.values()
     open_cases = [case.name for case in cases if case.large_displacement.unfollowed]
     lost = [case.name for case in cases if case.gives_way and case.name not in open_cases]
-    for how, names in (("gives way", lost), ("was not followed to its load", open_cases)):
-        if names:
-            under = f" under {joined(names)}" if len(cases) > 1 else ""
+    for how, where in (("gives way", lost), ("was not followed to its load", open_cases)):
+        if where:
+            under = f" under {joined(where)}" if len(cases) > 1 else ""
             yield Text(
                 f"The linkage {how}{under}, so no link passes: numbers of the links are those of the undeformed pose, "
                 "which is no equilibrium.",

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from alula.fea.claims.audit import ClaimResult, Finding
 from alula.fea.outcomes.result import CheckResult
+from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.markdown import cell, table_lines
 from alula.reports.renderers.page import Page, as_page
-from alula.reports.sections.markup import code, link
+from alula.reports.sections.markup import link
 from alula.reports.sections.published import WORDS, claims_section, count, note_of, statics_count, statics_section
 from alula.reports.sections.table import Table, words
 
@@ -49,8 +50,7 @@ def published_page(result: CheckResult, found: Sequence[ClaimResult], report: st
         kind="Published figures, re-derived",
         heading=result.case.title,
         lead=(f"{link('The report of the check', report)} stands in the same folder.",),
-        sections=tuple(sections),
-        footer=(f"Case {code(result.name)}.",),
+        sections=(*sections, provenance_section(result.case, result.date)),
     )
     return as_page(page), " ".join(told)
 

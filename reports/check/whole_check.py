@@ -5,7 +5,6 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from alula.fea.outcomes.result import CheckResult
-from alula.geometry.base.version import alula_version
 from alula.reports.check.changes import changes_section, first_change
 from alula.reports.check.displacement import displacement_section
 from alula.reports.check.linkage import governing_load_cases, linkage_picture, linkage_section
@@ -16,6 +15,7 @@ from alula.reports.check.pins import pins_left_out
 from alula.reports.check.plastic_collapse import collapse_section, governing_collapses
 from alula.reports.check.stated import audit_section, case_section, hand_section, limits_section, materials_section
 from alula.reports.check.statics import ground_section, statics_section
+from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
 from alula.reports.renderers.record import as_json, as_record
 from alula.reports.sections.air import air_section, flapping_section
@@ -43,7 +43,8 @@ def check_sections(result: CheckResult, published: str = "") -> tuple[Section, .
     Returns
     -------
     tuple of Section
-        What would change it first, as it stands above the contents of the page; what is not covered last.
+        What would change it first, as it stands above the contents of the page; last what is not covered, and with
+        what it was made.
     """
     sections = (
         changes_section(result),
@@ -68,7 +69,7 @@ def check_sections(result: CheckResult, published: str = "") -> tuple[Section, .
         design_section(result.case),
         materials_section(result),
     )
-    return (*sections, limits_section(sections))
+    return (*sections, limits_section(sections), provenance_section(result.case, result.date))
 
 
 def _model(result: CheckResult) -> Section:
@@ -134,7 +135,6 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
     change, command = first_change(sections, said=" ".join(told_first))
     alone = len(sections[0].data["changes"]) <= 1 and not command  # then the first lines say all of it
     picture = linkage_picture(result, governing_load_cases(result)[0])
-    case = f" Case {code(result.name)}." if result.name else ""
     times = ", ".join(f"{stage} {fixed(seconds, 1)} s" for stage, seconds in result.timings.items())
     if result.kept[0]:
         times += f"; {result.kept[0]} of {result.kept[1]} meshes and solutions were kept from earlier checks"
@@ -151,7 +151,7 @@ def check_page(result: CheckResult, sections: Sequence[Section]) -> Page:
         opening=() if alone else (sections[0],),
         sections=tuple(sections[1:]),
         footer=(
-            f"alula {alula_version()}.{case} Time: {times}.",
+            f"Time: {times}.",
             f"Units: mm, N, N·mm, MPa, degrees. All numbers as data: {code('result.json')} in the same folder.",
         ),
     )

@@ -98,7 +98,7 @@ def check(
     from alula.geometry.keeping.kept import keeping
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
-    from alula.reports.level.tests import checked_names
+    from alula.reports.level.folder import checked_names
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
@@ -142,18 +142,20 @@ def _check_tests(
     from alula.fea.check.level import check_level
     from alula.fea.findings.of_check import with_findings
     from alula.geometry.base.errors import CaseError
-    from alula.reports.level.tests import level_record, level_section, print_level, write_level
+    from alula.reports.level.folder import write_level
+    from alula.reports.level.page import level_sections
+    from alula.reports.level.tests import level_record, print_level
 
     if second_opinion:
         first = next(iter(case.level.tests)) if case.level else ""
         raise CaseError(f'--second-opinion: it is on one test; choose one with --set level.test="{first}"')
     result = check_level(case, name=name, **options).of_each(with_findings)
-    sections = (level_section(result),)
+    sections = level_sections(result)
     tell(sections, json=json, record=partial(level_record, result, sections), show=partial(print_level, result))
     if output is not None:
         write_level(result, output, progress=progress)
         if not json:
-            print(f"Reports: {output / 'tests'}")
+            print(f"Level: {output / 'level.html'}")
     return result.worst.exit_status
 
 

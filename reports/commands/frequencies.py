@@ -32,6 +32,7 @@ def frequencies(
     """Natural frequencies over the motion and of each link, and the harmonics of the drive that meet them."""
     from alula.fea.asked.at_temperature import require_stiffness
     from alula.fea.vibration.over_motion import case_frequencies
+    from alula.reports.page.provenance import provenance_section
     from alula.reports.renderers.folder import write_sections
     from alula.reports.renderers.page import Page, page_footer
     from alula.reports.renderers.record import as_brief_record
@@ -40,19 +41,19 @@ def frequencies(
     with begun("frequencies", case, overrides, output, threads=threads) as parsed:
         require_stiffness(parsed)
         found = case_frequencies(parsed, poses=poses, count=count, solid=solid, threads=threads)
-    section = frequencies_section(found, alone=True)
+    sections = frequencies_section(found, alone=True), provenance_section(parsed)
     page = Page(
         title=f"Natural frequencies: {parsed.title}",
         kind="Natural frequencies of a planar linkage",
         heading=parsed.title,
-        sections=(section,),
-        footer=page_footer(case, "frequencies.csv"),
+        sections=sections,
+        footer=page_footer("frequencies.csv"),
     )
 
     def fill(folder: Path) -> None:
         progress("Drawing shapes and diagrams ...")
         write_sections(page, folder, PAGE)
 
-    record = partial(as_brief_record, [section], case=case, title=parsed.title, units=UNITS)
-    tell([section], json=json, record=record, title=parsed.title)
+    record = partial(as_brief_record, sections, case=case, title=parsed.title, units=UNITS)
+    tell(sections, json=json, record=record, title=parsed.title)
     write("frequencies", output, record, fill, what="\nPage, tables and pictures", json=json)

@@ -50,7 +50,7 @@ def tell_motion(found: MotionFindings, name: str, output: Path | None = None, *,
         progress("Drawing figures and the animation ...")
         draw_animation(found.moved.motion, folder / ANIMATION)
         write_sections(
-            motion_page(found, name, sections),
+            motion_page(found, sections),
             folder,
             MOTION,
             pictures={LINKAGE: (folder / ANIMATION).read_bytes()},

@@ -10,6 +10,7 @@ from alula.fea.standing.case_statics import CaseStatics, with_ends
 from alula.fea.standing.thrust import thrusts
 from alula.loads.statics.statics import Reactions
 from alula.loads.statics.system import System
+from alula.reports.page.provenance import provenance_section
 from alula.reports.sections.data import data
 from alula.reports.sections.play import play_parts, play_record
 from alula.reports.sections.reactions import friction_record, pose_tables, reaction_parts, reaction_records
@@ -19,8 +20,8 @@ from alula.reports.sections.springs import standing_record
 UNITS = {"length": "mm", "force": "N", "moment": "N*mm", "angle": "deg"}
 
 
-def statics_sections(statics: CaseStatics, *, matrix: bool) -> tuple[Section, Section]:
-    """Return pose and joint forces of every load case.
+def statics_sections(statics: CaseStatics, *, matrix: bool) -> tuple[Section, ...]:
+    """Return pose, joint forces of every load case, and with what they were found.
 
     Parameters
     ----------
@@ -30,7 +31,7 @@ def statics_sections(statics: CaseStatics, *, matrix: bool) -> tuple[Section, Se
 
     Returns
     -------
-    tuple of 2 Section
+    tuple of Section
     """
     pose = statics.pose
     closed = say(
@@ -55,6 +56,7 @@ def statics_sections(statics: CaseStatics, *, matrix: bool) -> tuple[Section, Se
             ),
             data={"load_cases": {name: _record(statics, name, matrix=matrix) for name in statics.reactions}},
         ),
+        provenance_section(statics.case),
     )
 
 

@@ -1,4 +1,1 @@
-"""The check of a level of tests, test by test.
-
-Hands on sections, records and the folder of reports.
-"""
+"""What do the tests of a level say? Their sections, the page of a level, and the folder with a report of each."""

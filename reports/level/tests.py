@@ -1,19 +1,14 @@
 """A level of tests: what each test says, on the console, in ``result.json`` and in the folder of its reports."""
 
-from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from alula.fea.check.level import LevelResult, Statement, TestResult, has_tests
+from alula.fea.check.level import LevelResult, Statement, TestResult
 from alula.fea.common.verdict import Verdict
-from alula.fea.outcomes.result import CheckResult
-from alula.loads.case.case import Case
 from alula.loads.case.level_case import Demand
 from alula.loads.text.caveat import Caveat
-from alula.reports.check.folder import fill_report, report_names
-from alula.reports.page.output import MARK, write_folder
 from alula.reports.renderers.console import print_parts, verdict_line
-from alula.reports.renderers.record import as_json, as_record
+from alula.reports.renderers.record import as_record
 from alula.reports.sections.checks import JUDGED, against, check_records
 from alula.reports.sections.data import data, entries
 from alula.reports.sections.section import Part, Section, Table, Text
@@ -178,58 +173,3 @@ def level_record(result: LevelResult, sections: Sequence[Section]) -> dict[str, 
     """
     head = {"case": result.name, "title": result.case.title, "source": result.case.source}
     return as_record(sections, **head, verdict=result.worst.value)
-
-
-def checked_names(case: Case) -> set[str]:
-    """Return the names of all files that a check of a case can write: of one report, or of those of all its tests.
-
-    Parameters
-    ----------
-    case : Case
-
-    Returns
-    -------
-    set of str
-    """
-    if case.level is None or not has_tests(case):
-        return report_names(case)
-    variants = {f"{TESTS}/{name}": case.with_values({"level.test": name}) for name in case.level.tests}
-    if not case.tests_alone:
-        variants[OWN] = case
-    return {MARK, *(f"{folder}/{name}" for folder, one in variants.items() for name in report_names(one))}
-
-
-def write_level(result: LevelResult, target: Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
-    """Write a report for each test, in a folder of its name, and ``result.json`` of the level; or nothing.
-
-    Parameters
-    ----------
-    result : LevelResult
-        With what ``alula.fea.findings.of_check`` finds besides.
-    target : Path
-        The output folder.
-    progress : callable, optional
-        Receives messages.
-
-    Raises
-    ------
-    CaseError, CannotRunError
-        As ``write_folder``.
-    """
-
-    def fill(folder: Path) -> None:
-        for place, found in _reports(result):
-            (folder / place).mkdir(parents=True)
-            fill_report(found, folder / place, progress=progress)
-        record = level_record(result, (level_section(result),))
-        (folder / MARK).write_text(as_json(record) + "\n", encoding="utf-8")
-
-    write_folder(target, "check", fill)
-
-
-def _reports(result: LevelResult) -> Iterator[tuple[str, CheckResult]]:
-    """Yield the folder of each report, and what it is of."""
-    for name, test in result.tests.items():
-        yield f"{TESTS}/{name}", test.result
-    if result.own is not None:
-        yield OWN, result.own

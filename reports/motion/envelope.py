@@ -15,6 +15,7 @@ from alula.reports.check.links import solver_record
 from alula.reports.motion.friction import friction_over_motion, friction_texts
 from alula.reports.motion.linkage import linkage_over_motion, linkage_text
 from alula.reports.motion.whole_motion import model_section
+from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page, page_footer
 from alula.reports.renderers.record import as_brief_record
 from alula.reports.sections.checks import checks_section
@@ -63,6 +64,7 @@ def envelope_sections(result: EnvelopeResult) -> tuple[Section, ...]:
         _fatigue(result),
         _linkage(result),
         _limits(result),
+        provenance_section(result.case),
     )
 
 
@@ -120,7 +122,7 @@ def envelope_page(result: EnvelopeResult, sections: tuple[Section, ...]) -> Page
         verdict=result.verdict.value,
         lead=envelope_headline(result),
         sections=sections,
-        footer=page_footer(result.name, "envelope.csv"),
+        footer=page_footer("envelope.csv"),
     )
 
 

@@ -11,6 +11,7 @@ from alula.reports.motion.play import play_section
 from alula.reports.motion.poses import motion_section
 from alula.reports.motion.rates import rates_section
 from alula.reports.motion.series import motion_series
+from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page, page_footer
 from alula.reports.renderers.record import as_brief_record
 from alula.reports.sections.air import flapping_parts, motion_air_record
@@ -55,6 +56,7 @@ def motion_sections(found: MotionFindings) -> tuple[Section, ...]:
         design_section(moved.case),
         rates_section(moved, rates),
         motion_series(found, rates, own),
+        provenance_section(moved.case),
     )
 
 
@@ -125,14 +127,12 @@ def motion_record(found: MotionFindings, name: str, sections: tuple[Section, ...
     return as_brief_record(sections, units=UNITS, case=name, title=found.moved.case.title)
 
 
-def motion_page(found: MotionFindings, name: str, sections: tuple[Section, ...]) -> Page:
+def motion_page(found: MotionFindings, sections: tuple[Section, ...]) -> Page:
     """Return the page of a motion.
 
     Parameters
     ----------
     found : MotionFindings
-    name : str
-        Of the case, as the command was given it.
     sections : tuple of Section
         As ``motion_sections``.
 
@@ -146,5 +146,5 @@ def motion_page(found: MotionFindings, name: str, sections: tuple[Section, ...])
         kind="Motion of a planar linkage",
         heading=case.title,
         sections=sections,
-        footer=page_footer(name, "*.csv"),
+        footer=page_footer("*.csv"),
     )

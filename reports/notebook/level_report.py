@@ -7,7 +7,8 @@ from pathlib import Path
 
 from alula.fea.check.level import LevelResult
 from alula.fea.common.verdict import Verdict
-from alula.reports.level.tests import level_section, write_level
+from alula.reports.level.folder import write_level
+from alula.reports.level.page import level_sections
 from alula.reports.notebook.check_report import CheckReport
 from alula.reports.notebook.shown import ShownTable, Tabled, summary, table_of
 from alula.reports.sections.section import Section
@@ -43,8 +44,8 @@ class LevelReport(Tabled):
 
     @cached_property
     def sections(self) -> tuple[Section, ...]:
-        """What each test says."""
-        return (level_section(self.result),)
+        """All that is told of it, as on the page of ``alula check``."""
+        return level_sections(self.result)
 
     def table(self, of: str = "tests") -> ShownTable:
         """Return a table of the result.

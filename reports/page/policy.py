@@ -2,20 +2,24 @@
 
 import base64
 import hashlib
+import re
 from importlib.resources import files
 
 
-def sealed(*styles: str, script: str = "") -> dict[str, str]:
+def sealed(*styles: str, script: str = "", running: str = "") -> dict[str, str]:
     """Return style, script and Content-Security-Policy of a page, for its template.
 
     The policy allows the style and the script by their SHA-256, and pictures inside of the page. They come from alula's
-    own files, never from the finished page, in which the texts of a case stand.
+    own files, never from the finished page, in which the texts of a case stand; of what runs along the foot of sheets,
+    all signs are escaped that could end a string of CSS.
 
     Parameters
     ----------
     *styles : str
         Names of style sheets among the templates.
     script : str, optional
+    running : str, optional
+        What stands at the foot of every printed sheet, beside its number.
 
     Returns
     -------
@@ -28,6 +32,9 @@ def sealed(*styles: str, script: str = "") -> dict[str, str]:
     W3C, Content Security Policy Level 3.
     """
     style = "".join((files("alula.reports.templates") / name).read_text(encoding="utf-8") for name in styles)
+    if running:
+        content = re.sub(r"[^\w .:·…-]", lambda sign: f"\\{ord(sign[0]):x} ", running)
+        style += f'@page {{ @bottom-left {{ content: "{content}"; }} }}\n'
     rules = {
         "default-src": "'none'",
         "script-src": _allowed(script),

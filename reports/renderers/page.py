@@ -10,7 +10,7 @@ from alula.geometry.base.version import alula_version
 from alula.reports.figures.sheet.drawing import data_uri
 from alula.reports.page.policy import sealed
 from alula.reports.sections.markup import as_html, code
-from alula.reports.sections.section import Beside, Cell, Column, Folded, Group, Mark, Part, Picture, Section, parts_of
+from alula.reports.sections.section import Beside, Cell, Column, Group, Mark, Part, Picture, Section
 from alula.reports.turnable.script import viewer
 
 if TYPE_CHECKING:
@@ -58,24 +58,19 @@ class Page:
         return (*self.first, *self.opening, *self.sections)
 
 
-def page_footer(name: str, tables: str) -> tuple[str, str]:
+def page_footer(tables: str) -> tuple[str, ...]:
     """Return what stands below a page.
 
     Parameters
     ----------
-    name : str
-        Of the case.
     tables : str
         File of the numbers besides ``result.json``.
 
     Returns
     -------
-    tuple of (str, str)
+    tuple of str
     """
-    return (
-        f"alula {alula_version()}. Case {code(name)}.",
-        f"All numbers as data: {code('result.json')} and {code(tables)} in the same folder.",
-    )
+    return (f"All numbers as data: {code('result.json')} and {code(tables)} in the same folder.",)
 
 
 def as_page(
@@ -95,7 +90,7 @@ def as_page(
     -------
     str
     """
-    every = [part for section in page.every for part in parts_of(section.parts)]
+    running = "; ".join(section.running for section in page.every if section.running)
     return (
         _environment()
         .get_template("page.html.jinja")
@@ -104,9 +99,8 @@ def as_page(
             images=pictures,
             models=models,
             contents=list(_contents(page)),
-            folded=any(isinstance(part, Folded) for part in every),
             version=alula_version(),
-            **sealed(*STYLES, script=viewer() if models else ""),
+            **sealed(*STYLES, script=viewer() if models else "", running=running),
         )
     )
 

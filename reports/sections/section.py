@@ -280,6 +280,8 @@ class Section:
         Its tables in files.
     not_covered : tuple of (str, str)
         What it leaves out: title and sentences.
+    running : str
+        What it puts at the foot of every printed sheet.
     """
 
     key: str
@@ -289,6 +291,7 @@ class Section:
     data: Mapping[str, Any] = field(default_factory=dict)
     series: tuple[Series, ...] = ()
     not_covered: tuple[tuple[str, str], ...] = ()
+    running: str = ""
 
 
 def parts_of(parts: Iterable[Part]) -> Iterator[Part]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from alula.fea.common.band import Band
 from alula.fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
+from alula.reports.page.provenance import provenance_section
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Cell, Column, Number, Section, Table, Text, say, words
 from alula.reports.sentences import told
@@ -61,6 +62,7 @@ def tolerance_sections(result: ToleranceResult) -> tuple[Section, ...]:
         Section(key="passes", title="Probability", short="Probability", parts=tuple(_passes(result))),
         Section(key="causes", title="What matters", short="What matters", parts=tuple(_causes(result))),
         Section(key="notes", title="Not covered", short="Not covered", parts=tuple(_notes(result))),
+        provenance_section(result.nominal.case),
     )
 
 

@@ -1,6 +1,7 @@
 """The model of a link in a page, as a reader meets it: drawn, turned, asked for its stress, printed."""
 
 import re
+from unicodedata import normalize
 
 import chromium
 import numpy as np
@@ -208,8 +209,8 @@ def test_on_a_phone_nothing_runs_over_the_edge(browser, file):
         assert hit[3], control.text
 
 
-def test_paper_has_the_picture_in_place_of_the_model(shown):
-    """All pictures of the page are there, whole, and no canvas."""
+def test_paper_has_the_picture_in_place_of_the_model(shown, page):
+    """All pictures of the page are there, whole, and no canvas; lists are open, and each sheet tells of what it is."""
     shown.command("Emulation.setEmulatedMedia", media="print")
     try:
         assert not shown.element(f"{FIGURE} .model").is_displayed()
@@ -220,7 +221,16 @@ def test_paper_has_the_picture_in_place_of_the_model(shown):
         shown.command("Emulation.setEmulatedMedia", media="")
     printed = shown.pdf()
     assert printed.count(b"/Subtype /Image") >= len(shown.elements("img, svg image")) >= 1
-    assert chromium.sheets(printed) >= 1
+    sheets, made = chromium.texts(printed), page.record["provenance"]
+    foot = f"{made['date'][:16].replace('T', ' ')} UTC · alula {page.record['version']}"
+    assert len(sheets) == chromium.sheets(printed) >= 2
+    assert all(text.startswith(f"{k} / {len(sheets)}") for k, text in enumerate(sheets, 1))
+    assert all(foot in text[:120] for text in sheets)
+    assert made["sources"] in sheets[-1]
+    rows = shown.run("return [...document.querySelectorAll('details:not([open]) tr')].map((row) => row.textContent)")
+    printed = "".join(normalize("NFKC", "".join(sheets)).split())
+    assert len(rows) > 5
+    assert all("".join(normalize("NFKC", row).split()) in printed for row in rows)
 
 
 @pytest.mark.usefixtures("browser")

@@ -19,4 +19,4 @@ def test_it_can_be_mailed_printed_and_turned(browser, tmp_path):
         name = figure.get_attribute("data-name")
         browser.wait(f"document.querySelector('figure[data-name={name}]').dataset.turnable === 'ready'")
     assert browser.messages() == []
-    assert chromium.sheets(browser.pdf()) <= 12
+    assert chromium.sheets(browser.pdf()) <= 13

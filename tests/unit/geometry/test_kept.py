@@ -80,6 +80,7 @@ def test_other_code_or_libraries_find_nothing(folder, monkeypatch):
 
 def test_surroundings_are_of_all_sources(tmp_path, monkeypatch):
     def told():
+        module.sources_digest.cache_clear()
         module.surroundings.cache_clear()
         return module.surroundings()
 

@@ -20,7 +20,7 @@ from alula.loads.case.level_case import Demand
 from alula.loads.compose.stated_case import StatedCase
 from alula.reports.check.folder import REPORT
 from alula.reports.commands.cli import app
-from alula.reports.level import tests
+from alula.reports.level import folder
 from alula.reports.level.tests import level_section, statement_words
 
 COARSE = Effort(max_unknowns=1000)
@@ -120,7 +120,7 @@ def test_the_section_has_a_row_for_each_thing_that_is_asked(checked):
 
 def test_the_command_writes_a_report_for_each_test(tmp_path, monkeypatch):
     """Load cases of the case's own are checked besides; the reports themselves have tests of their own."""
-    monkeypatch.setattr(tests, "fill_report", lambda found, folder, **_: (folder / REPORT).write_text(found.verdict))
+    monkeypatch.setattr(folder, "fill_report", lambda found, into, **_: (into / REPORT).write_text(found.verdict))
     own = {"push": {"forces": [{"link": "pylon", "at": "T", "force": ["20 kN", "0 N"]}]}}
     case = {**PYLON, "level": {"file": "level.toml", **PLACED}, "load_cases": own, "checks": {}}
     case["checks"] = {"strength": {"type": "safety-factor"}}
@@ -137,7 +137,9 @@ def test_the_command_writes_a_report_for_each_test(tmp_path, monkeypatch):
         "own/report.html",
     }
     record = json.loads((out / "result.json").read_text(encoding="utf-8"))
-    assert record["level"]["read_from"].startswith("level.toml, SHA-256 ")
+    assert record["level"]["read_from"] == f"level.toml, SHA-256 {record['provenance']['files']['level.toml']}"
+    assert 'href="own/report.html"' in (out / "level.html").read_text(encoding="utf-8")
+    assert (out / "pictures" / "set-up.png").is_file()
     assert (out / "tests/proof/report.html").read_text(encoding="utf-8") == "undecided"
     refused = CliRunner().invoke(app, ["check", path, "--second-opinion"])
     assert 'choose one with --set level.test="proof"' in str(refused.exception)

@@ -30,7 +30,7 @@ CASES = (
 def test_every_number_of_a_motion_is_told_alike(name, overrides):
     moved = rubbed_motion(edited(name, overrides, fits=name != "flapping-wing-chosen"))  # the others have play
     sections = told_motion.sections(moved)
-    page = as_page(motion_page(motion_findings(moved), name, sections))
+    page = as_page(motion_page(motion_findings(moved), sections))
     page = flat(unescape(re.sub("<[^>]+>", " ", page)))
     console = flat(told_motion.printed(moved, width=400).replace("\u00a0", " "))
     known = {f"{value:.9g}" for value in values_of(json.loads(json.dumps(told_motion.record(moved, name))))} | {"0"}

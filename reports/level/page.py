@@ -1,0 +1,209 @@
+"""``level.html``: one page for all tests of a level, what they stand on first, as it is printed and signed."""
+
+from collections.abc import Callable, Iterable, Iterator
+from urllib.parse import quote
+
+from alula.fea.check.level import LevelResult, Statement, TestResult
+from alula.fea.common.reason import Reason
+from alula.fea.common.verdict import Verdict
+from alula.loads.case.level_case import Demand
+from alula.reports.check.folder import REPORT
+from alula.reports.check.stated import materials_section
+from alula.reports.check.whole_check import check_sections
+from alula.reports.figures.set_up import set_up_drawing
+from alula.reports.level.tests import OWN, TESTS, level_caveats, level_section, statement_words
+from alula.reports.page.provenance import provenance_section
+from alula.reports.renderers.page import Page
+from alula.reports.sections.checks import JUDGED, against
+from alula.reports.sections.data import entries
+from alula.reports.sections.markup import code, headed, link
+from alula.reports.sections.section import Group, Items, Part, Picture, Section, Text
+from alula.reports.sections.table import Cell, Column, Mark, Number, Table, words
+from alula.reports.sentences import told
+from alula.reports.sentences.caveats import caveat
+from alula.reports.sentences.verdicts import besides
+from alula.reports.words.numbers import joined, plain, sentence
+
+PAGE = "level.html"
+SET_UP = "set-up"
+_AXES = ("forward", "outward", "up")
+_SIGN = ("Calculated by", "Checked by", "Released by")
+
+
+def level_sections(result: LevelResult) -> tuple[Section, ...]:
+    """Return all that is told of a level.
+
+    Parameters
+    ----------
+    result : LevelResult
+
+    Returns
+    -------
+    tuple of Section
+        What each test says first, as consoles and ``result.json`` have it; with what it was made last.
+    """
+    date = max(test.result.date for test in result.tests.values())
+    return (
+        level_section(result),
+        _stands_on(result),
+        materials_section(next(iter(result.tests.values())).result),
+        _set_up(result),
+        _tests(result),
+        _signatures(),
+        provenance_section(result.case, date),
+    )
+
+
+def level_page(result: LevelResult, sections: tuple[Section, ...]) -> Page:
+    """Return the page of a level.
+
+    Parameters
+    ----------
+    result : LevelResult
+    sections : tuple of Section
+        As ``level_sections``.
+
+    Returns
+    -------
+    Page
+    """
+    each = [
+        f"{name}: {test.verdict}; {', '.join(statement_words(test, one) for one in _asked(test))}"
+        for name, test in result.tests.items()
+    ]
+    if result.own is not None:
+        each.append(f"Load cases of the case itself, of no test: {result.own.verdict}, {link(OWN, f'{OWN}/{REPORT}')}.")
+    return Page(
+        title=f"{result.verdict.value.capitalize()}: {result.case.title}",
+        kind=f"Tests of a level: {result.level.title}",
+        heading=result.case.title,
+        verdict=result.verdict.value,
+        lead=(f"{result.level.title}: {result.verdict}.", *map(headed, each), besides(level_caveats(result))),
+        sections=sections[1:],
+        footer=(f"Units: mm, N, N·mm, MPa, s. All numbers as data: {code('result.json')} in the same folder.",),
+    )
+
+
+def _asked(test: TestResult) -> Iterator[Statement]:
+    """Yield the statements of a test, without what passes unasked."""
+    for one in test.statements:
+        if one.demand is not Demand.BESIDES or one.verdict is not Verdict.PASS:
+            yield one
+
+
+def _stands_on(result: LevelResult) -> Section:
+    """Return what all numbers stand on, and what no check looks at."""
+    case = result.case
+    rubs = [f"{name} {plain(joint.friction)}" for name, joint in case.joints.items() if joint.friction]
+    friction = (
+        f"Coefficients of friction: {joined(rubs)}; other joints have none." if rubs else "No joint states friction."
+    )
+    besides_it = _shared(result, lambda test: [(str(one.heading), caveat(one)) for one in test.result.caveats])
+    limits = _shared(result, lambda test: [one for part in check_sections(test.result) for one in part.not_covered])
+    warnings = _shared(result, lambda test: [("warning", _plain(test, one)) for one in test.result.warnings])
+    parts: list[Part] = [Items(besides_it), Items((friction, *case.assumptions))]
+    if warnings:
+        parts.append(Items(tuple(f"{title}: {text}" for title, text in warnings), "warnings"))
+    parts += [Text("What no check looks at:"), Items(limits, "columns2")]
+    return Section(key="assumptions", title="What all numbers stand on", short="Assumptions", parts=tuple(parts))
+
+
+def _shared(
+    result: LevelResult, told_of: Callable[[TestResult], Iterable[tuple[str, str]]]
+) -> tuple[tuple[str, str], ...]:
+    """Return what is told of all tests under titles, each once; with the names of its tests where not all have it."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for name, test in result.tests.items():
+        for one in dict.fromkeys(told_of(test)):
+            found.setdefault(one, []).append(name)
+    texts: dict[str, list[str]] = {}
+    for (title, text), names in found.items():
+        of = "" if len(names) == len(result.tests) else f" ({joined(names)})"
+        texts.setdefault(f"{title[:1].upper()}{title[1:]}{of}", []).append(sentence(text))
+    return tuple((title, " ".join(own)) for title, own in texts.items())
+
+
+def _plain(test: TestResult, warning: Reason | str) -> str:
+    """Return a warning without the load case that it is of, which has the name of the test."""
+    return told(warning).removeprefix(f"load case {test.name}: ")
+
+
+def _set_up(result: LevelResult) -> Section:
+    """Return the load lines of all tests, drawn and as they are stated."""
+    rows = list[tuple[Cell, ...]]()
+    for name, test in result.tests.items():
+        ends = (getattr(end, axis) for end in (test.spec.top, test.spec.bottom) for axis in _AXES)
+        rows.append((name, *(Number(value, stated=True) for value in ends)))
+    columns = [Column(f"{end} {axis}", "mm") for end in ("top", "bottom") for axis in _AXES]
+    table = Table(
+        columns=(words("test"), *columns),
+        rows=tuple(rows),
+        caption="Load lines, from the origin of the standard's axes",
+    )
+    picture = Picture(
+        name=SET_UP,
+        alt="The load lines of all tests about the links, from the side and from the front",
+        caption="Arrows show the force; tests with one load line share a colour.",
+        draw=lambda: set_up_drawing(result),
+    )
+    return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table))
+
+
+def _tests(result: LevelResult) -> Section:
+    """Return test by test its steps, what it asks for, and what was found."""
+    records = {
+        name: {
+            "steps": [entries(step, "force least cycles duration") for step in test.spec.steps],
+            "offsets": {end: entries(getattr(test.spec, end), " ".join(_AXES)) for end in ("top", "bottom")},
+        }
+        for name, test in result.tests.items()
+    }
+    return Section(
+        key="tests",
+        title="Test by test",
+        short="Tests",
+        parts=tuple(_test(result, name, test) for name, test in result.tests.items()),
+        data={"level": {"tests": records}},
+    )
+
+
+def _test(result: LevelResult, name: str, test: TestResult) -> Group:
+    """Return one test; the places of its numbers lead into its own report."""
+    steps = Table.by_columns(
+        {
+            words("step"): [str(k) for k in range(1, len(test.spec.steps) + 1)],
+            Column("force", "N"): [Number(step.force, stated=True) for step in test.spec.steps],
+            Column("least force", "N"): [Number(step.least, stated=True) for step in test.spec.steps],
+            Column("cycles"): [Number(step.cycles, digits=3) for step in test.spec.steps],
+            Column("held for", "s"): [Number(step.duration, stated=True) for step in test.spec.steps],
+        }
+    )
+    rows, below = list[tuple[Cell, ...]](), dict[int, str]()
+    for one in _asked(test):
+        decides, mark = one.decides, Mark(one.verdict.value, one.verdict.value)
+        if decides is None:
+            rows.append((statement_words(test, one), "nothing to judge it by", "–", "–", mark, ""))
+            continue
+        if one.verdict is not Verdict.PASS:
+            below[len(rows)] = sentence(told(decides.reason))
+        place = f"#link-{quote(decides.link)}" if decides.link in result.case.links else ""
+        where = link(decides.link, f"{TESTS}/{quote(name)}/{REPORT}{place}")
+        rows.append((statement_words(test, one), str(decides.quantity), *against(decides), mark, where))
+    columns = (words("says", role="what", wraps=True), words("by", wraps=True), *JUDGED, words("where"))
+    return Group(
+        f"Test {name}",
+        (
+            Text(f"Source of its numbers: {test.spec.source or result.level.source}.", "note"),
+            steps,
+            Table(columns=columns, rows=tuple(rows), below=below, kind="keep"),
+        ),
+        key=f"test-{name}",
+        remark=f"{test.verdict}{f'; {test.spec.title}' if test.spec.title else ''}",
+    )
+
+
+def _signatures() -> Section:
+    """Return lines to sign on."""
+    columns = (words(""), *map(words, ("name", "date", "signature")))
+    table = Table(columns=columns, rows=tuple((who, "", "", "") for who in _SIGN), kind="signs")
+    return Section(key="signatures", title="Signatures", parts=(table,))
