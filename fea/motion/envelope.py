@@ -177,7 +177,7 @@ class _Envelope:
             histories=self.loaded[link],
             evaluated=self.evaluated,
             stated=case.torque_transfer,
-            returns=self.moved.motion.returns,
+            returns=self.moved.motion.returns or self.moved.motion.instants is not None,
             layers=layers_of(case, link),
         )
 

@@ -81,9 +81,10 @@ def when(moved: CaseMotion, pose: int) -> Reason:
     -------
     Reason
     """
-    coordinate = moved.motion.coordinate
-    at = float(coordinate.measure.told(moved.motion.angles[pose]))
-    return reason("pose_of_motion", coordinate=coordinate.name, value=at, unit=coordinate.measure.unit)
+    motion, at = moved.motion, float(moved.motion.progress[pose])
+    if motion.instants is not None:
+        return reason("instant_of_cycle", value=at)
+    return reason("pose_of_motion", coordinate=motion.coordinate.name, value=at, unit=motion.coordinate.measure.unit)
 
 
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:

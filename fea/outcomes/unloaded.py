@@ -186,6 +186,8 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
 def stated_size(case: Case, title: str) -> float:
     """Return ``load_size`` of what a load case states, whatever the pose, and of springs in the stated one.
 
+    Of loads that change over a cycle it is the largest.
+
     Parameters
     ----------
     case : Case
@@ -197,5 +199,6 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    springs = loads_of(lasting(case), case.stated_pose.placement)
-    return load_size((*stated_loads(case, case.load_cases[title]), *springs), case.linkage.longest)
+    springs, load_case = loads_of(lasting(case), case.stated_pose.placement), case.load_cases[title]
+    every = (stated_loads(case, one) for one in (load_case, *load_case.rows))
+    return max(load_size((*loads, *springs), case.linkage.longest) for loads in every)

@@ -9,10 +9,10 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.continuation import follow
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
-from alula.geometry.linkage.motion_record import BLOCK, Motion
+from alula.geometry.linkage.motion_record import BLOCK, Instants, Motion
 from alula.geometry.linkage.pose_record import Pose
 
-__all__ = ["Motion", "refuse_slot_ends", "solve_motion"]
+__all__ = ["Instants", "Motion", "ends_of", "refuse_slot_ends", "solve_motion"]
 
 Real = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None 
     links = pose.linkage.links
     if not any(link.slots for link in links.values()):
         return
-    fine = np.linspace(values[0], values[-1], max(len(values), _POSES))
+    fine = np.linspace(*ends_of(values), max(len(values), _POSES))
     try:
         motion = solve_motion(pose, fine, coordinate=coordinate)
     except CaseError:
@@ -122,6 +122,25 @@ def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None 
     for link, record in links.items():
         for point, slot in record.slots.items():
             _refuse(motion, link, point, (slot.first, slot.last))
+
+
+def ends_of(values: Real) -> tuple[float, float]:
+    """Return the ends of the way that a coordinate goes.
+
+    Parameters
+    ----------
+    values : array (n,)
+        Of the coordinate, pose by pose [rad, mm].
+
+    Returns
+    -------
+    tuple of float
+        The first and the last; where it turns back on the way, the least and the largest.
+    """
+    steps = np.sign(np.diff(values))
+    if len(steps) and abs(steps.sum()) < len(steps):
+        return float(values.min()), float(values.max())
+    return float(values[0]), float(values[-1])
 
 
 def _refuse(motion: Motion, link: str, point: str, ends: tuple[float, float]) -> None:

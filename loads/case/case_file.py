@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
+from alula.loads.case.cycle import read_cycle
 from alula.loads.case.part_points import with_part_points
 from alula.loads.text.entries import alike, names_tables
 from alula.loads.text.explain import printable, sentence
@@ -342,12 +343,14 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     """
     refuse_deep(data, "case")
     _check_version(data)
-    context = {"folder": folder}
-    tables = with_part_points(data, context)
+    cycle = read_cycle(data, folder)
+    context = {"folder": folder, "cycle": cycle}
+    tables = with_part_points(data if cycle is None else cycle.tables, context)
     try:
         return Case.model_validate(tables, context=context)
     except ValidationError as error:
-        raise CaseError(sentence(error, Case)) from None
+        wrong = CaseError(sentence(error, Case))
+        raise (wrong if cycle is None else cycle.explained(wrong)) from None
 
 
 def _check_version(data: Mapping[str, Any]) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.motion import Motion, refuse_slot_ends, solve_motion
+from alula.geometry.linkage.motion import Instants, Motion, refuse_slot_ends, solve_motion
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import loads_of
 from alula.loads.acting.weight import Weight
@@ -97,8 +97,8 @@ class CaseMotion:
         -------
         DriveWork
         """
-        way, without = self.rubbing[load_case].way, self.frictionless[load_case]
-        return drive_work(self.motion, self.drive, way, without, self.torque[load_case])
+        rubbing, without = self.rubbing[load_case], self.frictionless[load_case]
+        return drive_work(self.motion, self.drive, (rubbing.way, rubbing.sense), without, self.torque[load_case])
 
     def drive_power(self, load_case: str) -> Real:
         """Return the power of the drive.
@@ -224,6 +224,8 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
     speed, acceleration = drive_speeds(case, angles)
     refuse_slot_ends(pose, angles, coordinate=coordinate)
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
+    if (states := spec.states) is not None:
+        motion = replace(motion, instants=Instants(percent=states.percent, times=states.times))
     refuse_turning_bonds(motion.virtual)
     refuse_stops(case, motion)
     masses = part_masses(case) if _weighed(case) else {}
@@ -308,7 +310,7 @@ def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:
 
 
 def drive_angles(case: Case, pose: Pose) -> Real:
-    """Return the values of the motion's coordinate: over its range, or a full turn from the stated pose.
+    """Return the values of the motion's coordinate: of a cycle, over its range, or a full turn from the stated pose.
 
     Parameters
     ----------
@@ -323,6 +325,8 @@ def drive_angles(case: Case, pose: Pose) -> Real:
     """
     spec = case.motion
     assert spec is not None
+    if spec.states is not None:
+        return spec.states.values
     if spec.ends is not None:
         return np.linspace(*spec.ends, spec.poses)
     start = pose.angles[case.motion_coordinate.name]
@@ -332,7 +336,8 @@ def drive_angles(case: Case, pose: Pose) -> Real:
 def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
     """Return speed and acceleration of the motion's coordinate.
 
-    The acceleration is constant: speed² = first speed² + 2 acceleration (angle - first angle).
+    Those of a cycle are in its states. Else the acceleration is constant:
+    speed² = first speed² + 2 acceleration (angle - first angle).
 
     Parameters
     ----------
@@ -352,6 +357,8 @@ def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
     """
     spec = case.motion
     assert spec is not None
+    if spec.states is not None:
+        return spec.states.speed, spec.states.acceleration
     sense, first, rate = math.copysign(1.0, angles[-1] - angles[0]), abs(spec.rate[0]), spec.rate[1]
     square = first**2 + 2.0 * rate * np.abs(angles - angles[0])
     if square.min() < 0.0:
@@ -384,6 +391,8 @@ def step_caveats(case: Case) -> Iterator[Caveat]:
         return
     first, last = motion.range or (0.0, math.tau)
     step = abs(last - first) / (motion.poses - 1)
+    if motion.states is not None:
+        step = float(np.abs(np.diff(motion.states.values)).max())
     if step > COARSE:
         yield Caveat(
             topic=Topic.MOTION,
@@ -406,7 +415,7 @@ def inertia_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     Caveat
     """
     motion = case.motion
-    if motion is None or motion.rate == (0.0, 0.0):
+    if motion is None or not motion.moves:
         return
     if motion.inertia is False:
         yield Caveat(topic=Topic.INERTIA, what=reason("inertia"), why=reason("inertia_is_false"))
