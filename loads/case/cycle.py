@@ -304,8 +304,8 @@ def _body_mass(data: Mapping[str, Any], table: NumberTable, references: tuple[Re
         return 1.0
     if "body_mass" not in data:
         raise CaseError(
-            f"{per[0].entry}: column {printable(per[0].column)} is in {printable(table.units[per[0].column])}, per body "
-            'mass, which the case does not state; add body_mass, for example body_mass = "80 kg"'
+            f"{per[0].entry}: column {printable(per[0].column)} is in {printable(table.units[per[0].column])}, per "
+            'mass of the body, which the case does not state; add body_mass, for example body_mass = "80 kg"'
         )
     try:
         return 1000.0 * parse(data["body_mass"], "mass")

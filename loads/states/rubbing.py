@@ -143,7 +143,7 @@ def friction_at(
     place: Placement,
     drive: Drive | None,
     loads: Sequence[Load],
-    sense: float,
+    sense: Real | float,
     presses: Presses = NOTHING_MORE,
 ) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
     """Return the friction at one pose or at n as loads, and where it locks the linkage.
@@ -157,7 +157,7 @@ def friction_at(
     drive : Drive or None
     loads : sequence of Load
         All else that acts.
-    sense : float
+    sense : float or array (...)
         1 where the coordinate grows, -1 where it falls.
     presses : mapping of str to array (...), optional
         As for ``solve_friction``.
