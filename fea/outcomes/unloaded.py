@@ -17,6 +17,7 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.loads.acting.acting import loads_of
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from alula.loads.records.check_spec import SafetyFactorCheck
@@ -184,7 +185,7 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
 
 
 def stated_size(case: Case, title: str) -> float:
-    """Return ``load_size`` of what a load case states, whatever the pose, and of springs in the stated one.
+    """Return ``load_size`` of what a load case states, and of springs and load lines in the stated pose.
 
     Of loads that change over a cycle it is the largest.
 
@@ -199,6 +200,8 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    springs, load_case = loads_of(lasting(case), case.stated_pose.placement), case.load_cases[title]
-    every = (stated_loads(case, one) for one in (load_case, *load_case.rows))
-    return max(load_size((*loads, *springs), case.linkage.longest) for loads in every)
+    load_case, place, found = case.load_cases[title], case.stated_pose.placement, list[float]()
+    for one in (load_case, *load_case.rows):
+        posed = loads_of((*map(ForceOnLine, one.load_lines), *lasting(case)), place)
+        found.append(load_size((*stated_loads(case, one), *posed), case.linkage.longest))
+    return max(found)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
 from alula.loads.case.cycle import read_cycle
@@ -344,7 +345,7 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     refuse_deep(data, "case")
     _check_version(data)
     cycle = read_cycle(data, folder)
-    context = {"folder": folder, "cycle": cycle}
+    context = {"folder": folder, "cycle": cycle, BODY_WEIGHT: weight_of(data.get("body_mass"))}
     tables = with_part_points(data if cycle is None else cycle.tables, context)
     try:
         return Case.model_validate(tables, context=context)

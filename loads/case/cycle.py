@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.units import as_text, parse
+from alula.geometry.base.units import BODY_WEIGHT, as_text, parse, weight_of
 from alula.loads.records.cycle_spec import CycleSpec, States, states
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.settings import PoseSpec
@@ -338,9 +338,9 @@ def _row(
     data: Mapping[str, Any], name: str, own: tuple[Reference, ...], table: NumberTable, row: int, mass: float
 ) -> LoadCase:
     """Return a load case as it is at a row."""
-    only = {"load_cases": {name: data["load_cases"][name]}}
+    only, context = {"load_cases": {name: data["load_cases"][name]}}, {BODY_WEIGHT: weight_of(data.get("body_mass"))}
     try:
-        return LoadCase.model_validate(_stated(only, own, table, row, mass)["load_cases"][name])
+        return LoadCase.model_validate(_stated(only, own, table, row, mass)["load_cases"][name], context=context)
     except ValidationError as error:
         told = f"load_cases.{name}.{sentence(error, LoadCase)}"
         raise CaseError(f"'{table.name}', row {table.rows[row]}: {told}") from None

@@ -4,24 +4,37 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PlainValidator, PrivateAttr, WithJsonSchema
+from pydantic import Field, PlainValidator, PrivateAttr, ValidationInfo, WithJsonSchema, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Stress, parse
+from alula.geometry.base.units import (
+    NOT_NEGATIVE,
+    Acceleration,
+    Angle,
+    AngularSpeed,
+    Force,
+    Length,
+    Stress,
+    parse,
+    weight_in,
+)
 from alula.loads.records.aero import AirLoad
+from alula.loads.records.attachment import Attachment
 from alula.loads.records.flapping import Flapping
 from alula.loads.text.shares import LoadScatter
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
+Place = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]
 
 
-def _moment(stated: object) -> tuple[float, float, float]:
+def _moment(stated: object, info: ValidationInfo) -> tuple[float, float, float]:
+    weight = weight_in(info)
     if not isinstance(stated, list | tuple):
-        return 0.0, 0.0, parse(stated, "moment")
+        return 0.0, 0.0, parse(stated, "moment", weight)
     if len(stated) != 3:
         raise refusal('it must be one moment about z or three about x, y and z; write for example "130 N*mm"')
-    x, y, z = (parse(component, "moment") for component in stated)
+    x, y, z = (parse(component, "moment", weight) for component in stated)
     return x, y, z
 
 
@@ -91,6 +104,43 @@ class SpreadForce(CaseModel):
     the linkage deforms in a pose, the force keeps its direction either way."""
 
 
+_SHORTEST = 1e-9
+"""Length of a load line over its largest coordinate below which its direction is but rounding."""
+
+
+class LoadLine(CaseModel):
+    """A force along a line through two points in space, which enters a link over a rigid lever."""
+
+    from_: Place = Field(alias="from")
+    """Where the force begins, x, y and z; the rigid lever to the link starts here. Without z both ends lie in the
+    mid-planes of the links that they load."""
+    to: Place
+    """The point that it goes towards, with as many coordinates."""
+    force: Force
+    """Its size; a negative one goes from ``to`` towards ``from``."""
+    link: Name
+    """The link that it enters."""
+    at: Name
+    """The point of that link at which the lever is fastened."""
+    axes: Axes = "global"
+    """Axes of both points: global, so that the line stays in space while the linkage moves, or those of ``link``, so
+    that it moves with this link. While the linkage deforms in a pose, the levers move along and the force keeps its
+    direction either way."""
+    leaves: Attachment | None = None
+    """Where the opposite force enters, over a rigid lever that starts at ``to``; the ground bears it where left out."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> "LoadLine":
+        if len(self.from_) != len(self.to):
+            raise refusal("one of from and to has no z; state two coordinates for both, or three")
+        start, end = vector3(self.from_), vector3(self.to)
+        if np.linalg.norm(end - start) <= _SHORTEST * max(np.abs([start, end]).max(), 1.0):
+            raise refusal("from and to are the same point, which gives the force no direction; state two points")
+        if self.leaves is not None and (self.leaves.link, self.leaves.at) == (self.link, self.at):
+            raise refusal("its force enters and leaves at one point, so that nothing is left of it; name another point")
+        return self
+
+
 class LoadCase(CaseModel):
     """One set of loads that act at the same time."""
 
@@ -124,6 +174,8 @@ class LoadCase(CaseModel):
     """Pressures on named faces of imported parts."""
     spread: tuple[SpreadForce, ...] = ()
     """Forces spread along links."""
+    load_lines: tuple[LoadLine, ...] = ()
+    """Forces along lines in space, which enter links over rigid levers, as testing machines bring them in."""
     air: tuple[AirLoad, ...] = ()
     """Lift and drag of streams."""
     flapping: Flapping | None = None

@@ -13,6 +13,7 @@ from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import Acting, loads_of
 from alula.loads.acting.dead_load import DeadLoad
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.acting.row_load import RowLoad
 from alula.loads.acting.sprung import Sprung
 from alula.loads.acting.stop import Bound
@@ -154,7 +155,7 @@ def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *
     Returns
     -------
     tuple of Acting
-        Stated loads first, then weights, wings that flap, springs and tendons.
+        Load lines first, then other stated loads, weights, wings that flap, springs and tendons.
     """
     found: list[Acting] = _stated(case, load_case)
     if load_case.own_weight or inert:
@@ -170,7 +171,7 @@ def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *
 
 def _stated(case: Case, load_case: LoadCase) -> list[Acting]:
     """Return what a load case states of itself, with what it is at every row of a cycle."""
-    now: list[Acting] = [DeadLoad(load) for load in stated_loads(case, load_case)]
+    now: list[Acting] = [*map(ForceOnLine, load_case.load_lines), *map(DeadLoad, stated_loads(case, load_case))]
     every = [_stated(case, row) for row in load_case.rows]
     return [RowLoad(*same) for same in zip(now, *every, strict=True)] if every else now
 
@@ -198,7 +199,7 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
 
 
 def stated_loads(case: Case, load_case: LoadCase) -> tuple[PointLoad | LineLoad, ...]:
-    """Return the forces, moments, spread loads and air of a load case, the same at every pose.
+    """Return the forces, moments, spread loads and air of a load case, the same at every pose: all but load lines.
 
     Parameters
     ----------
