@@ -155,6 +155,26 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
     )
 
 
+def of_cycle(table: str, stated: object) -> bool:
+    """Return True for a table of a case that its cycle completes.
+
+    Parameters
+    ----------
+    table : str
+        Its name.
+    stated : object
+        What stands in it.
+
+    Returns
+    -------
+    bool
+        Of load cases that name columns, and of a motion that says no more than ``OF_MOTION``.
+    """
+    if table == "load_cases":
+        return next(_references(stated, (table,)), None) is not None
+    return table == "motion" and isinstance(stated, dict) and bool(stated) and set(stated) <= set(OF_MOTION)
+
+
 _CYCLE, _TIME = "cycle", "time"
 
 

@@ -31,6 +31,7 @@ from alula.loads.case.case_file import (
     read_tables,
     stated_tables,
 )
+from alula.loads.case.cycle import of_cycle
 from alula.loads.case.part_points import FROM_PART
 from alula.loads.compose.case_text import case_text, name_files, write_case
 from alula.loads.compose.plain import mapping_of, path_text, plain, text_of
@@ -692,6 +693,8 @@ def _check(tables: Tables, folder: str) -> None:
     [table] = tables
     if table == "links" and isinstance(tables[table], dict):  # an imported part gives its link the points
         tables = {table: {name: _with_any_points(link) for name, link in tables[table].items()}}
+    if of_cycle(table, tables[table]):  # only the file of the cycle tells what it is
+        return
     try:
         _model_of(table).model_validate(tables, context={"folder": folder, BODY_WEIGHT: 1.0})  # of any body
     except ValidationError as error:
