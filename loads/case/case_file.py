@@ -350,8 +350,7 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     try:
         return Case.model_validate(tables, context=context)
     except ValidationError as error:
-        wrong = CaseError(sentence(error, Case))
-        raise (wrong if cycle is None else cycle.explained(wrong)) from None
+        raise CaseError(sentence(error, Case)) from None
 
 
 def _check_version(data: Mapping[str, Any]) -> None:

@@ -42,7 +42,7 @@ class Reference(NamedTuple):
     @property
     def entry(self) -> str:
         """The path as sentences have it."""
-        return printable(".".join(map(str, self.path)))
+        return ".".join(map(str, self.path))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,8 +53,6 @@ class Cycle:
     ----------
     tables : dict
         The case at the instant at which it is checked.
-    references : tuple of Reference
-        Entries of load cases that name columns.
     rows : mapping of str to tuple of LoadCase
         Load case that names a column -> as it is at every instant.
     states : States or None
@@ -64,28 +62,9 @@ class Cycle:
     """
 
     tables: dict[str, Any]
-    references: tuple[Reference, ...]
     rows: Mapping[str, tuple[LoadCase, ...]]
     states: States | None
     entered: float | None
-
-    def explained(self, error: CaseError) -> CaseError:
-        """Return an error with the column that the entry it is about comes from.
-
-        Parameters
-        ----------
-        error : CaseError
-
-        Returns
-        -------
-        CaseError
-        """
-        for one in self.references:
-            if re.match(rf"{re.escape('.'.join(map(str, one.path)))}\b", str(error)) or re.match(
-                rf"{re.escape('.'.join(map(str, one.path[:-1])))}\b(?!\.)", str(error)
-            ):
-                return CaseError(f"{error} (it is from column {printable(one.column)} of the cycle)")
-        return error
 
 
 def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
@@ -146,7 +125,6 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
         every[name] = tuple(_row(data, name, own, table, i, mass) for i in range(len(percent)))
     return Cycle(
         tables=tables,
-        references=references,
         rows=every,
         states=states(percent, values, period, periodic=spec.periodic) if moves else None,
         entered=(pose.angle if pose.travel is None else pose.travel)
@@ -363,7 +341,13 @@ def _row(
         return LoadCase.model_validate(_stated(only, own, table, row, mass)["load_cases"][name], context=context)
     except ValidationError as error:
         told = f"load_cases.{name}.{sentence(error, LoadCase)}"
-        raise CaseError(f"'{table.name}', row {table.rows[row]}: {told}") from None
+        of = next((one for one in own if told.startswith((one.entry, f"{_above(one)} "))), None)
+        raise (CaseError(told) if of is None else table.wrong(table.rows[row], of.column, told)) from None
+
+
+def _above(reference: Reference) -> str:
+    """Return the entry of a list in which a reference stands."""
+    return reference.entry.rpartition(".")[0]
 
 
 def _moved(data: Mapping[str, Any], pose: PoseSpec, values: Real, at: float) -> dict[str, Any]:
