@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.continuation import follow
+from alula.geometry.linkage.continuation import Track, follow
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.motion_record import BLOCK, Instants, Motion
 from alula.geometry.linkage.pose_record import Pose
 
-__all__ = ["Instants", "Motion", "ends_of", "refuse_slot_ends", "solve_motion"]
+__all__ = ["Instants", "Motion", "ends_of", "refuse_slot_ends", "solve_motion", "still_motion"]
 
 Real = NDArray[np.float64]
 
@@ -89,6 +89,40 @@ def solve_motion(
             float(np.max(np.abs(driven.gaps(q[i : i + BLOCK])), initial=0.0)) for i in range(0, len(q), BLOCK)
         ),
         track=track,
+    )
+
+
+def still_motion(pose: Pose, instants: Instants) -> Motion:
+    """Return a structure at the instants of a cycle, at each of which it stands in its one pose.
+
+    Parameters
+    ----------
+    pose : Pose
+        Of a structure, without a coordinate.
+    instants : Instants
+
+    Returns
+    -------
+    Motion
+        Told by the direction of the first of its links.
+    """
+    count, coordinate = len(instants.percent), Coordinate(pose.linkage.moving[0])
+    q, none = np.tile(pose.q, (count, 1)), np.zeros((count, len(pose.q)))
+    still = Track(
+        driven=DrivenClosure(pose.closure, coordinate), angles=q[:1, 0], q=q[:1], first=none[:1], second=none[:1]
+    )
+    return Motion(
+        linkage=pose.linkage,
+        coordinate=coordinate,
+        angles=q[:, 0],
+        speed=none[:, 0],
+        acceleration=none[:, 0],
+        q=q,
+        first=none,
+        second=none,
+        residual=pose.residual,
+        track=still,
+        instants=instants,
     )
 
 

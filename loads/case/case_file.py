@@ -15,8 +15,8 @@ from pydantic import ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
+from alula.loads.acting.cycle import read_cycle
 from alula.loads.case.case import Case
-from alula.loads.case.cycle import read_cycle
 from alula.loads.case.part_points import with_part_points
 from alula.loads.text.entries import alike, names_tables
 from alula.loads.text.explain import printable, sentence

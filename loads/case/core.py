@@ -21,9 +21,9 @@ from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
 from alula.geometry.placement.fit import Wanted
 from alula.geometry.placement.placed_body import faces_of, placed_body
+from alula.loads.acting.cycle import Cycle
 from alula.loads.acting.springs import Spring, Tendon
 from alula.loads.acting.stop import Stop
-from alula.loads.case.cycle import Cycle
 from alula.loads.case.eyes import with_eye
 from alula.loads.case.heights import heights
 from alula.loads.records.aero import AirForces, air_forces
@@ -130,8 +130,8 @@ class CoreCase(Revisable):
         super().model_post_init(context)
         cycle = context.get("cycle") if isinstance(context, dict) else None
         if isinstance(cycle, Cycle):
-            self.__dict__["pose"] = self.pose.entered_at(cycle.entered if cycle.states is not None else None)
-            if self.motion is not None and cycle.states is not None:
+            self.__dict__["pose"] = self.pose.entered_at(cycle.entered if self.pose.coordinate is not None else None)
+            if self.motion is not None:
                 self.__dict__["motion"] = self.motion.through(cycle.states)
             self.__dict__["load_cases"] = {x: one.over(cycle.rows.get(x, ())) for x, one in self.load_cases.items()}
         self.__dict__["load_cases"] = {name: self._filled(one) for name, one in self.load_cases.items()}
@@ -149,7 +149,7 @@ class CoreCase(Revisable):
     def inert(self) -> bool:
         """True where the speed of the motion means inertia, in load cases that state none: unless the case says no."""
         motion, masses = self.motion, bool(self.checked_links or self.carried)
-        if motion is None or not motion.moves or self.pose.equilibrium:
+        if motion is None or not motion.moves or self.pose.equilibrium or not self.sweeps:
             return False
         return masses if motion.inertia is None else motion.inertia
 

@@ -21,6 +21,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.units import BODY_WEIGHT
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
+from alula.loads.acting.cycle import of_cycle
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import (
     Change,
@@ -31,7 +32,6 @@ from alula.loads.case.case_file import (
     read_tables,
     stated_tables,
 )
-from alula.loads.case.cycle import of_cycle
 from alula.loads.case.part_points import FROM_PART
 from alula.loads.compose.case_text import case_text, name_files, write_case
 from alula.loads.compose.plain import mapping_of, path_text, plain, text_of

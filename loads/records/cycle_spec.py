@@ -57,7 +57,7 @@ class CycleSpec(CaseModel):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class States:
+class CycleMotion:
     """The motion of a cycle, instant by instant; the last of a periodic one is the first again.
 
     Attributes
@@ -83,7 +83,7 @@ class States:
     sense: Real
 
 
-def states(percent: Real, values: Real, period: float | None, *, periodic: bool) -> States:
+def states(percent: Real, values: Real, period: float | None, *, periodic: bool) -> CycleMotion:
     """Return the motion of a coordinate by differences between rows.
 
     Speed and acceleration are those of the parabola through three neighbouring rows, with steps a before and b after:
@@ -105,7 +105,7 @@ def states(percent: Real, values: Real, period: float | None, *, periodic: bool)
 
     Returns
     -------
-    States
+    CycleMotion
     """
     f, t = values, percent
     if periodic:
@@ -123,7 +123,7 @@ def states(percent: Real, values: Real, period: float | None, *, periodic: bool)
     last = last if periodic else np.maximum(last, 0)
     sense = np.sign(speed[moves[last]]) if len(moves) else np.ones(len(speed))
     rate = 0.0 if period is None else 100.0 / period
-    return States(
+    return CycleMotion(
         percent=percent,
         times=None if period is None else (percent - percent[0]) / rate,
         values=values,

@@ -7,7 +7,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, refusal
 from alula.geometry.base.units import Acceleration, Angle, AngularAcceleration, AngularSpeed, Length, Speed
-from alula.loads.records.cycle_spec import States
+from alula.loads.records.cycle_spec import CycleMotion
 
 
 class MotionSpec(CaseModel):
@@ -35,19 +35,19 @@ class MotionSpec(CaseModel):
     inertia: bool | None = None
     """Whether the inertia of the links' parts and of what they carry loads the joints: where a speed or an acceleration
     is stated, unless this is false."""
-    _states: States | None = PrivateAttr(None)
+    _states: CycleMotion | None = PrivateAttr(None)
 
     @property
-    def states(self) -> States | None:
+    def states(self) -> CycleMotion | None:
         """What a cycle's table says of the motion, in place of range and speed; None without one."""
         return self._states
 
-    def through(self, states: States | None) -> "MotionSpec":
+    def through(self, states: CycleMotion | None) -> "MotionSpec":
         """Return the motion that goes from state to state.
 
         Parameters
         ----------
-        states : States or None
+        states : CycleMotion or None
             None for the way between its ends, once and evenly.
 
         Returns

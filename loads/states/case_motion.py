@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.motion import Instants, Motion, refuse_slot_ends, solve_motion
+from alula.geometry.linkage.motion import Instants, Motion, refuse_slot_ends, solve_motion, still_motion
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import loads_of
 from alula.loads.acting.weight import Weight
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, PartMass
+from alula.loads.records.cycle_spec import CycleMotion
 from alula.loads.records.load_case import LoadCase
 from alula.loads.states.actions import acting_loads, acting_on, needs_masses, refuse_turning_bonds
 from alula.loads.states.drive_work import DriveWork, drive_work
@@ -26,6 +27,7 @@ from alula.loads.states.kinetostatics import (
     is_determinate,
     relative_motion,
     solve_kinetostatics,
+    structure_over,
     torque_by_virtual_work,
 )
 from alula.loads.states.masses import laden_masses, part_masses
@@ -50,7 +52,8 @@ class CaseMotion:
     case : Case
     motion : Motion
         The n poses of its linkage.
-    drive : Drive
+    held : Drive or None
+        None for a structure, which stays where it is under the loads of a cycle.
     moved : mapping of str to Motion
         Load case -> the same poses at its own speed, where it states one.
     masses : mapping of str to PartMass
@@ -74,7 +77,7 @@ class CaseMotion:
 
     case: Case
     motion: Motion
-    drive: Drive
+    held: Drive | None
     moved: Mapping[str, Motion]
     masses: Mapping[str, PartMass]
     loads: Mapping[str, tuple[Load, ...]]
@@ -84,6 +87,13 @@ class CaseMotion:
     dead_points: tuple[float, ...]
     rubbing: Mapping[str, Rubbing]
     frictionless: Mapping[str, Real]
+
+    @property
+    def drive(self) -> Drive:
+        """What drives the linkage; raises ``CaseError`` for a structure."""
+        if self.held is None:
+            raise CaseError("motion: the linkage cannot move, so nothing is to be told of it; look at its envelope")
+        return self.held
 
     def work(self, load_case: str) -> DriveWork:
         """Return what the drive does with and without friction.
@@ -141,6 +151,8 @@ class CaseMotion:
 
         The drive's joint, where the ground is one of its links, else the global origin, which has no name.
         """
+        if self.held is None:
+            return None, 0j
         ground, name = self.case.linkage.ground, self.drive.joint
         if ground not in self.case.linkage.joints[name].links:
             return None, 0j
@@ -214,8 +226,10 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
         Where the motion meets a dead point, or the case states no motion, drive or masses.
     """
     case = each_direction(case, moving=True)
-    coordinate = case.motion_coordinate
     spec, drive = case.motion, case.pinned_drive
+    if spec is not None and spec.states is not None and case.pose.coordinate is None:
+        return _standing(case, spec.states)
+    coordinate = case.motion_coordinate
     assert spec is not None
     if drive is None:
         raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
@@ -255,7 +269,7 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
     return CaseMotion(
         case=case,
         motion=motion,
-        drive=drive,
+        held=drive,
         moved=moved,
         masses=masses,
         loads=loads,
@@ -265,6 +279,34 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
         dead_points=dead_points(motion, drive),
         rubbing=rubbing,
         frictionless=frictionless,
+    )
+
+
+def _standing(case: Case, states: CycleMotion) -> CaseMotion:
+    """Return a structure over a cycle of loads: the same pose at every instant, and no drive."""
+    pose, instants = case.solve_pose(), Instants(percent=states.percent, times=states.times)
+    motion, none = still_motion(pose, instants), np.zeros(len(states.percent))
+    masses, place = part_masses(case) if needs_masses(case) else {}, motion.placement.at_rest
+    loads = {name: acting_loads(case, one, place, masses) for name, one in case.load_cases.items()}
+    power = Power(kinetic=none, kinetic_rate=none, potential=none, potential_rate=none, applied=none)
+    if case.linkage.borne != 3 * len(case.linkage.moving):
+        raise CaseError(
+            "cycle: the structure is redundant, so that its joint forces do not follow from equilibrium alone; check "
+            "single instants by cycle.instant"
+        )
+    return CaseMotion(
+        case=case,
+        motion=motion,
+        held=None,
+        moved=dict.fromkeys(loads, motion),
+        masses=masses,
+        loads=loads,
+        power=dict.fromkeys(loads, power),
+        forces={name: structure_over(motion, acting, power) for name, acting in loads.items()},
+        torque=dict.fromkeys(loads, none),
+        dead_points=(),
+        rubbing={},
+        frictionless={},
     )
 
 

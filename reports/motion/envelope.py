@@ -131,7 +131,8 @@ def _motion(result: EnvelopeResult) -> Section:
     ends = np.degrees(ends_of(result.angles))
     first, last = (Number(float(end), stated=True) for end in ends)
     told_range = (
-        f"From {motion.coordinate} = {{first}}° to {{last}}°, driven at {result.drive.link}; "
+        f"From {motion.coordinate} = {{first}}° to {{last}}°, "
+        f"{'standing still' if result.drive is None else f'driven at {result.drive.link}'}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated"
     )
     if (cycle := result.case.cycle) is not None:
@@ -155,7 +156,7 @@ def _motion(result: EnvelopeResult) -> Section:
                 "evaluated": int(result.evaluated.sum()),
                 "returns_to_start": motion.returns,
                 **({} if motion.instants is None else {"cycle": motion.progress.tolist()}),
-                "drive": entries(result.drive, "link joint"),
+                "drive": None if result.drive is None else entries(result.drive, "link joint"),
                 "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
             },
             "idle_links": list(result.idle),
@@ -172,7 +173,8 @@ def _links(result: EnvelopeResult) -> Section:
 
         return envelope_figure(result)
 
-    coordinate, drive = result.moved.motion.coordinate.name, result.drive.link
+    coordinate = result.moved.motion.coordinate.name
+    drive = coordinate if result.drive is None else result.drive.link
     cycle = result.moved.motion.instants is not None
     columns = (
         words("link"),
@@ -220,7 +222,7 @@ def _series(result: EnvelopeResult) -> Series:
     angles = {} if motion.instants is None else {motion.progress_title: motion.progress}
     angles |= {
         f"{motion.coordinate} angle [deg]": np.degrees(result.angles),
-        f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
+        **({} if result.drive is None else {f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles)}),
     }
     columns: dict[str, dict[str, ArrayLike]] = {name: dict(angles) for name in result.case.load_cases}
     for name, of in columns.items():

@@ -122,7 +122,7 @@ def abscissa(result: EnvelopeResult) -> tuple[Real, str]:
         drive reverses its direction; and the label.
     """
     motion = result.moved.motion
-    if motion.instants is not None:
+    if motion.instants is not None or result.drive is None:
         return motion.progress, motion.progress_title
     steps = np.diff(result.drive_angles)
     if np.all(steps > 0.0) or np.all(steps < 0.0):

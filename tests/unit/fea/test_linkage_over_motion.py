@@ -62,7 +62,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
             instants=None,
         ),
         loads={"push": ()},
-        drive=None,
+        held=object(),
     )
     [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
     assert "at crank = 20 deg" in told(found.reason)

@@ -8,8 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+import told_motion
 
+from alula.fea.elements.space import displacement_space
+from alula.fea.findings.of_motion import motion_findings
+from alula.fea.motion.envelope import _Envelope
+from alula.fea.motion.layered import with_couples
 from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.linkage_history import when
 from alula.fea.outcomes.fatigue import closed_history, repeated_cycles
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.study.evaluate import evaluate
@@ -17,6 +23,7 @@ from alula.fea.study.study import task_of
 from alula.fea.whole.motor import motor_outcomes
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.motion import ends_of
+from alula.geometry.meshing.mesh import COARSE, mesh_body
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_text, validate
 from alula.loads.plans.plan import plan_of
@@ -24,6 +31,8 @@ from alula.loads.plans.variants import Variants
 from alula.loads.records.cycle_spec import states
 from alula.loads.states.case_motion import solve_case_motion, step_caveats
 from alula.loads.states.clearance import way_of
+from alula.reports.figures.motion.motion_figures import torque_figure
+from alula.reports.sentences import told as sentence_of
 
 GAIT = """cycle [%];flexion [deg];Fy [N];M [N*m]
 0;10;300;-6
@@ -327,3 +336,73 @@ def test_a_study_varies_the_instant_and_the_body(tmp_path):
     for instant in ("0 %", "50 %"):
         assert torque[instant, "80 kg"] == pytest.approx(torque[instant, "60 kg"] * 8.0 / 6.0)
     assert torque["0 %", "80 kg"] != pytest.approx(torque["50 %", "80 kg"], rel=0.1)
+
+
+WALK = "cycle [%],F [N],ahead [mm]\n0,50,0\n15,1000,-20\n30,400,10\n45,800,40\n60,50,0\n"
+
+
+def pylon(folder: Path, table: str = WALK, **cycle: Any) -> Case:
+    """Return a tube clamped on the ground, upright, under a load line whose place and size change over a cycle."""
+    (folder / "walk.csv").write_text(table, encoding="utf-8")
+    line = {"from": ["column ahead", "400 mm", "30 mm"], "to": ["column ahead", "-80 mm", "-20 mm"]}
+    tube = {"shape": "tube", "material": "aluminium-6061-t6", "outer_diameter": "30 mm", "inner_diameter": "24 mm"}
+    points = {"O": ["0 mm", "0 mm"], "T": ["300 mm", "0 mm"]}
+    data = {
+        "schema_version": 1,
+        "title": "A pylon over a stride",
+        "links": {
+            "ground": {"ground": True, "points": {"O": ["0 mm", "0 mm"]}},
+            "pylon": {"part": "tube", "points": points, "end_patch": "40 mm"},
+        },
+        "joints": {"O": {"links": ["ground", "pylon"], "clamped": True, "clamp_length": "40 mm", "angle": "90 deg"}},
+        "parts": {"tube": tube | {"fillet_radius": "1 mm"}},
+        "cycle": {"file": "walk.csv"} | cycle,
+        "load_cases": {"walk": {"load_lines": [line | {"force": "column F", "link": "pylon", "at": "T"}]}},
+        "conditions": {"cycles": 1e6},
+    }
+    return validate(data, str(folder))
+
+
+def test_a_structure_bears_a_cycle_of_oblique_loads(tmp_path):
+    """It stays in its pose; all six components at its clamp are those of the case at that instant, and r x F."""
+    found = solve_case_motion(pylon(tmp_path, period="1.1 s"))
+    moved = with_couples(found, np.ones(6, dtype=bool)).moved
+    wrench, forces = moved.forces["walk"].joints["O"].wrench, [50.0, 1000.0, 400.0, 800.0, 50.0, 50.0]
+    for row, (percent, ahead) in enumerate(zip((0, 15, 30, 45, 60, 100), (0, -20, 10, 40, 0, 0), strict=True)):
+        at = solve_case_statics(pylon(tmp_path, instant=f"{percent} %")).reactions["walk"].joints["O"].wrench
+        assert wrench[row] == pytest.approx(at, abs=1e-6 * np.abs(at).max())
+        along = np.array([0.0, -480.0, -50.0])
+        force = forces[row] * along / np.linalg.norm(along)
+        assert wrench[row] == pytest.approx(-np.r_[force, np.cross([ahead, 400.0, 30.0], force)], abs=1e-3)
+    assert not moved.case.inert
+    [history] = link_histories(moved, "pylon")
+    assert history.size(300.0)[[0, 4, 5]] == pytest.approx([history.size(300.0)[0]] * 3)
+    with pytest.raises(CaseError, match="the linkage cannot move"):
+        motion_findings(found)
+
+
+def test_two_peaks_of_a_cycle_are_two_cycles_of_stress(tmp_path):
+    """By hand: of 50-1000-400-800-50 N straight down one cycle of 950 N and one of 400 N, not two as there and back."""
+    line = WALK.replace("-20", "0").replace(",10\n", ",0\n").replace(",40\n", ",0\n")
+    moved = solve_case_motion(pylon(tmp_path, line, periodic=False))
+    n = len(moved.motion.angles)
+    over = _Envelope(moved, np.ones(n, dtype=bool), 1, lambda told: None)
+    space = displacement_space(mesh_body(moved.case.body("pylon"), COARSE.scaled(3.0)))
+    fatigue = over._motion("pylon", space).envelope(repetitions=1e6).load_cases["walk"].fatigue
+    sizes, means, counts = np.transpose(fatigue.life.cycles)
+    assert counts.tolist() == [1.0, 1.0]
+    assert sizes / sizes[0] == pytest.approx([1.0, 400.0 / 950.0])
+    assert means[1] / means[0] == pytest.approx(600.0 / 525.0)
+
+
+def test_reports_tell_where_in_the_cycle(tmp_path):
+    moved = solve_case_motion(knee(tmp_path))
+    told = told_motion.record(moved)
+    assert told["motion"]["cycle"] == moved.motion.progress.tolist()
+    assert told["load_cases"]["stride"]["drive_torque"]["largest_at"] == 12.0
+    assert [float(row["cycle [%]"]) for row in told_motion.rows(moved, "torque.csv")] == told["motion"]["cycle"]
+    axes = torque_figure(moved).axes[0]
+    assert axes.get_xlabel() == "cycle [%]"
+    assert axes.get_xlim() == (0.0, 100.0)
+    assert axes.lines[0].get_xdata() == pytest.approx(moved.motion.progress)
+    assert sentence_of(when(moved, 3)) == "48 % of the cycle"

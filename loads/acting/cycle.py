@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import BODY_WEIGHT, as_text, parse, weight_of
-from alula.loads.records.cycle_spec import CycleSpec, States, states
+from alula.loads.records.cycle_spec import CycleMotion, CycleSpec, states
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.settings import PoseSpec
 from alula.loads.text.explain import printable, sentence
@@ -32,7 +32,7 @@ _SAME = 1e-9
 """Share of a column's span, or of the cycle, that is rounding."""
 
 
-class Reference(NamedTuple):
+class ColumnReference(NamedTuple):
     """An entry that names a column: where it stands, the sign before it and the column."""
 
     path: Path
@@ -55,15 +55,15 @@ class Cycle:
         The case at the instant at which it is checked.
     rows : mapping of str to tuple of LoadCase
         Load case that names a column -> as it is at every instant.
-    states : States or None
-        The motion; None for a structure, which has no coordinate.
+    states : CycleMotion
+        The motion; a structure stays where it is.
     entered : float or None
         Value of the coordinate at which ``pose.near`` chooses the branch [rad, mm]; None where the pose states none.
     """
 
     tables: dict[str, Any]
     rows: Mapping[str, tuple[LoadCase, ...]]
-    states: States | None
+    states: CycleMotion
     entered: float | None
 
 
@@ -115,10 +115,7 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
     now = table.between(_CYCLE, np.array([_instant(spec, percent)]))
     mass = _body_mass(data, table, references)
     tables = _stated(data, references, now, 0, mass)
-    moves = pose.coordinate is not None
-    if moves:
-        at = float(np.interp(now.values[_CYCLE][0], percent, values))
-        tables |= _moved(data, pose, values, at)
+    tables |= _moved(data, pose, values, float(np.interp(now.values[_CYCLE][0], percent, values)))
     every: dict[str, tuple[LoadCase, ...]] = {}
     for name in dict.fromkeys(str(one.path[1]) for one in references):
         own = tuple(one for one in references if one.path[1] == name)
@@ -126,7 +123,7 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
     return Cycle(
         tables=tables,
         rows=every,
-        states=states(percent, values, period, periodic=spec.periodic) if moves else None,
+        states=states(percent, values, period, periodic=spec.periodic),
         entered=(pose.angle if pose.travel is None else pose.travel)
         if {"angle", "travel"} & pose.model_fields_set
         else None,
@@ -156,7 +153,7 @@ def of_cycle(table: str, stated: object) -> bool:
 _CYCLE, _TIME = "cycle", "time"
 
 
-def _references(value: object, path: Path) -> Iterator[Reference]:
+def _references(value: object, path: Path) -> Iterator[ColumnReference]:
     """Yield the entries of load cases that name a column."""
     items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, inner in items:
@@ -164,7 +161,7 @@ def _references(value: object, path: Path) -> Iterator[Reference]:
         if isinstance(inner, dict | list):
             yield from _references(inner, here)
         elif isinstance(inner, str) and (match := _COLUMN.fullmatch(inner)) and _entry(here) in ENTRIES:
-            yield Reference(here, -1.0 if match[1] in ("-", "−") else 1.0, match[2])
+            yield ColumnReference(here, -1.0 if match[1] in ("-", "−") else 1.0, match[2])
 
 
 def _entry(path: Path) -> str:
@@ -295,7 +292,7 @@ def _instant(spec: CycleSpec, percent: Real) -> float:
     return at
 
 
-def _body_mass(data: Mapping[str, Any], table: NumberTable, references: tuple[Reference, ...]) -> float:
+def _body_mass(data: Mapping[str, Any], table: NumberTable, references: tuple[ColumnReference, ...]) -> float:
     """Return the mass of the body [kg], where a column that is used is per kilogram of it."""
     per = [one for one in references if table.units[one.column].endswith("/kg")]
     if not per:
@@ -311,7 +308,7 @@ def _body_mass(data: Mapping[str, Any], table: NumberTable, references: tuple[Re
         raise CaseError(f"body_mass: {error.message()}") from None
 
 
-def _text(reference: Reference, table: NumberTable, row: int, mass: float) -> str:
+def _text(reference: ColumnReference, table: NumberTable, row: int, mass: float) -> str:
     """Return what stands for a reference at a row."""
     unit, value = table.units[reference.column], reference.sign * float(table.values[reference.column][row])
     if unit.endswith("/kg"):
@@ -320,7 +317,7 @@ def _text(reference: Reference, table: NumberTable, row: int, mass: float) -> st
 
 
 def _stated(
-    data: Mapping[str, Any], references: tuple[Reference, ...], table: NumberTable, row: int, mass: float
+    data: Mapping[str, Any], references: tuple[ColumnReference, ...], table: NumberTable, row: int, mass: float
 ) -> dict[str, Any]:
     """Return tables with the values of a row in place of the columns' names."""
     found = {**data, "load_cases": deepcopy(data["load_cases"])} if references else dict(data)
@@ -333,7 +330,7 @@ def _stated(
 
 
 def _row(
-    data: Mapping[str, Any], name: str, own: tuple[Reference, ...], table: NumberTable, row: int, mass: float
+    data: Mapping[str, Any], name: str, own: tuple[ColumnReference, ...], table: NumberTable, row: int, mass: float
 ) -> LoadCase:
     """Return a load case as it is at a row."""
     only, context = {"load_cases": {name: data["load_cases"][name]}}, {BODY_WEIGHT: weight_of(data.get("body_mass"))}
@@ -345,7 +342,7 @@ def _row(
         raise (CaseError(told) if of is None else table.wrong(table.rows[row], of.column, told)) from None
 
 
-def _above(reference: Reference) -> str:
+def _above(reference: ColumnReference) -> str:
     """Return the entry of a list in which a reference stands."""
     return reference.entry.rpartition(".")[0]
 
@@ -364,6 +361,8 @@ def _moved(data: Mapping[str, Any], pose: PoseSpec, values: Real, at: float) -> 
             f"motion.coordinate: the cycle moves the coordinate of the pose, '{pose.coordinate}'; leave it out, or "
             "name the same"
         )
+    if pose.coordinate is None:
+        return {"motion": {**stated, "poses": len(values)}}
     slides = pose.travel is not None
     dimension = "length" if slides else "angle"
 
