@@ -443,6 +443,22 @@ def step_caveats(case: Case) -> Iterator[Caveat]:
         )
 
 
+def cycle_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield that a check of one instant leaves out the rest of its cycle.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    if case.cycle is not None:
+        what = reason("rest_of_cycle", percent=case.cycle.instant)
+        yield Caveat(topic=Topic.MOTION, what=what, why=reason("envelope_has_cycle"))
+
+
 def inertia_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     """Yield inertia that a stated speed would give, and that the case leaves out or no single pose has.
 

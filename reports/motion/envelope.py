@@ -150,8 +150,8 @@ def _motion(result: EnvelopeResult) -> Section:
         data={
             "motion": {
                 "coordinate": motion.coordinate.name,
-                "first": first.value,
-                "last": last.value,
+                "first": float(np.degrees(result.angles[0])),
+                "last": float(np.degrees(result.angles[-1])),
                 "poses": len(result.angles),
                 "evaluated": int(result.evaluated.sum()),
                 "returns_to_start": motion.returns,
