@@ -27,7 +27,7 @@ def _share(stated: object) -> float:
 Percent = Annotated[
     float,
     PlainValidator(_share),
-    WithJsonSchema({"type": "string", "format": "share", "examples": ["45 %"]}),
+    WithJsonSchema({"type": "string", "format": "percentage", "examples": ["45 %"]}),
 ]
 
 

@@ -155,7 +155,7 @@ def _motion(result: EnvelopeResult) -> Section:
                 "poses": len(result.angles),
                 "evaluated": int(result.evaluated.sum()),
                 "returns_to_start": motion.returns,
-                **({} if motion.instants is None else {"cycle": motion.progress.tolist()}),
+                "cycle": None if motion.instants is None else motion.progress.tolist(),
                 "drive": None if result.drive is None else entries(result.drive, "link joint"),
                 "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
             },
@@ -194,7 +194,7 @@ def _links(result: EnvelopeResult) -> Section:
     for link, found in sorted(every, key=lambda row: row[1].severity):
         at, life = _place(result, found), None if found.fatigue is None else found.fatigue.repetitions
         factor, stress = Number(found.safety_factor), Number(found.stress.value, "", 3)
-        angles = (Number(at.get(key), decimals=1) for key in ("cycle", "coordinate", "drive"))
+        angles = (Number(at[key], decimals=1) for key in ("cycle", "coordinate", "drive"))
         place = ", ".join(fixed(x, 1) for x in at["location"])
         repetitions = Number(None if life is None else life.value)
         rows.append((link.link, found.name, factor, link.measure, stress, *angles, place, repetitions))
@@ -345,7 +345,7 @@ def _place(result: EnvelopeResult, found: LoadCaseEnvelope) -> dict[str, Any]:
     motion = result.moved.motion
     return {
         "pose": found.pose,
-        **({} if motion.instants is None else {"cycle": float(motion.progress[found.pose])}),
+        "cycle": None if motion.instants is None else float(motion.progress[found.pose]),
         "coordinate": math.degrees(result.angles[found.pose]),
         "drive": math.degrees(result.drive_angles[found.pose]),
         "location": found.location.tolist(),

@@ -136,7 +136,7 @@ def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
         "duration": None if motion.times is None else float(motion.times[-1]),
         "closure_residual": motion.residual,
         "returns_to_start": motion.returns,
-        **({} if motion.instants is None else {"cycle": motion.progress.tolist()}),
+        "cycle": None if motion.instants is None else motion.progress.tolist(),
         "inertia": moved.case.inert,
         "links": {
             link: _directions(motion, link) | rates(links.get(link, {}), "angular_speed", "angular_acceleration")
