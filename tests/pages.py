@@ -94,8 +94,11 @@ def edited(file: str, lines: str) -> str:
     """Return a TOML file with lines changed, or added under their headings, as with an editor.
 
     A line takes the place of the one with its key under the same heading; a heading that is not there goes to the end.
+    What a comment ``# remove [...], [...]`` names goes first.
     """
     sections = _sections(file)
+    for gone in re.findall(r"\[[^\]]+\]", "".join(re.findall(r"^# remove (.+)$", lines, re.M))):
+        del sections[gone]
     for heading, block in _sections(lines).items():
         here = sections.setdefault(heading, [])
         for line in block:

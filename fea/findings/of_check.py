@@ -10,8 +10,8 @@ from alula.fea.sizing.changes import changes
 from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.fea.whole.air_range import motion_in_air
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.motion import Motion, solve_motion
-from alula.loads.states.case_motion import drive_angles
+from alula.geometry.linkage.motion import Motion
+from alula.loads.states.clearance import way_of
 
 
 def with_findings(result: CheckResult) -> CheckResult:
@@ -50,9 +50,9 @@ def _motion(result: CheckResult) -> Motion | None:
     case = result.case
     if result.clearance is not None and result.clearance.motion is not None:
         return result.clearance.motion
-    if case.motion is None:
+    if not case.sweeps:
         return None
     try:
-        return solve_motion(result.pose, drive_angles(case, result.pose), coordinate=case.motion_coordinate)
+        return way_of(case, result.pose)
     except CaseError:
         return None

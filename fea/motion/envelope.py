@@ -177,7 +177,7 @@ class _Envelope:
             histories=self.loaded[link],
             evaluated=self.evaluated,
             stated=case.torque_transfer,
-            returns=self.moved.motion.returns,
+            returns=self.moved.motion.returns or self.moved.motion.instants is not None,
             layers=layers_of(case, link),
         )
 
@@ -266,9 +266,9 @@ def envelope_case(
         name=name,
         case=case,
         moved=moved,
-        drive=moved.drive,
+        drive=moved.held,
         angles=moved.motion.angles,
-        drive_angles=moved.motion.angle(moved.drive.link),
+        drive_angles=moved.motion.angles if moved.held is None else moved.motion.angle(moved.held.link),
         evaluated=evaluated,
         links=links,
         idle=tuple(link for link in case.checked_links if link not in over.loaded),

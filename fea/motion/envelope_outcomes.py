@@ -228,7 +228,8 @@ def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked) -> tuple[int, Ch
     reaction, sizes = solved.joints[joint], np.linalg.norm(solved.forces[joint], axis=1)
     turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
     twists = [twist_of(case, joint, *of) for of in zip(reaction.wrench[:, 5], turning, strict=True)]
-    if case.linkage.rise(joint) == 0.0 and not any(twist.high > 0.0 for twist in twists):
+    spatial = case.linkage.rise(joint) != 0.0 or bool(reaction.wrench[evaluated][:, 2:5].any())
+    if not spatial and not any(twist.high > 0.0 for twist in twists):
         pose = first_largest(np.where(evaluated, sizes, -np.inf))
         return pose, pin_outcome(case, load_case, one, stress_of(case, joint, float(sizes[pose])), growth)
     at_poses = [solved.at(i).joints[joint] for i in range(len(evaluated))]

@@ -233,7 +233,8 @@ class EnvelopeResult:
         What the case was called on the command line.
     case : Case
     moved : CaseMotion
-    drive : Drive
+    drive : Drive or None
+        None for a structure under a cycle of loads.
     angles, drive_angles : ndarray, shape (n,)
         Of the motion's coordinate, and of the driven link [rad].
     evaluated : ndarray of bool, shape (n,)
@@ -260,7 +261,7 @@ class EnvelopeResult:
     name: str
     case: Case
     moved: CaseMotion
-    drive: Drive
+    drive: Drive | None
     angles: Real
     drive_angles: Real
     evaluated: NDArray[np.bool_]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.doubts.force_doubt import sharing_answers
+from alula.fea.frame.linkage_frame import out_of_plane
 from alula.fea.standing.joint_forces import JointForces, joint_forces, solved_frame, stood
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.ties import first_largest
@@ -42,7 +43,7 @@ class LayeredMotion:
 
 
 def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMotion:
-    """Return a motion with the couples between layers.
+    """Return a motion with the couples between layers, or a structure with what loads out of its plane make.
 
     Parameters
     ----------
@@ -60,7 +61,8 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         Where the frame of a pose moves without strain.
     """
     case = moved.case
-    if not case.layered or not moved.forces:
+    spatial = moved.held is None and any(map(out_of_plane, moved.loads.values()))
+    if not (case.layered or spatial) or not moved.forces:
         return LayeredMotion(moved=moved)
     forces: dict[str, Kinetostatics] = {}
     ways: dict[tuple[str, str], LinkAnswers] = {}
@@ -71,7 +73,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
     for i in map(int, np.flatnonzero(evaluated)):
         stands = pose_at(moved.motion, i)
         for name in moved.forces:  # pose by pose: all load cases have one factorisation
-            frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.drive)
+            frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.held)
             found, _ = stood(case, frame, solution)
             for joint, wrench in wrenches[name].items():
                 wrench[i, 2:5] = found.joints[joint].wrench[2:5]

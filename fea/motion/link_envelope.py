@@ -77,7 +77,7 @@ class LinkMotion:
     stated : Transfer
         How the drive torque enters, by the case; the other way stands in the band.
     returns : bool
-        True where the last pose is the first again; else the motion goes there and back.
+        True where the last pose is the first again, or goes on to it; else the motion goes there and back.
     layers : Layers, optional
         Of a printed part.
 

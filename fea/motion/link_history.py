@@ -30,7 +30,7 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
     CannotRunError
         Where the joint forces do not follow from equilibrium.
     CaseError
-        For loads out of the linkage's plane.
+        For loads out of the plane of a linkage that moves.
     """
     case = moved.case
     if not moved.forces:
@@ -39,7 +39,7 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
             "remove redundant joints or links, or check single poses with alula check"
         )
     for name, loads in moved.loads.items():
-        if out_of_plane([load for load in loads if load.link == link]):
+        if moved.held is not None and out_of_plane([load for load in loads if load.link == link]):
             raise CaseError(
                 f"load_cases.{name}: a load on link '{link}' acts out of the linkage's plane, which an envelope over "
                 "a motion does not follow; leave it out, or check single poses with alula check"

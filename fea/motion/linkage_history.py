@@ -81,9 +81,10 @@ def when(moved: CaseMotion, pose: int) -> Reason:
     -------
     Reason
     """
-    coordinate = moved.motion.coordinate
-    at = float(coordinate.measure.told(moved.motion.angles[pose]))
-    return reason("pose_of_motion", coordinate=coordinate.name, value=at, unit=coordinate.measure.unit)
+    motion, at = moved.motion, float(moved.motion.progress[pose])
+    if motion.instants is not None:
+        return reason("instant_of_cycle", value=at)
+    return reason("pose_of_motion", coordinate=motion.coordinate.name, value=at, unit=motion.coordinate.measure.unit)
 
 
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
@@ -112,7 +113,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
             pose = pose_at(motion, i)
             try:
                 loads = [chosen(load, i) for load in acting]
-                frame = build_frame(case, pose, loads, held=moved.drive)
+                frame = build_frame(case, pose, loads, held=moved.held)
                 factor, solution = linkage_factor(frame), solve_frame(frame.model)
                 eyes = Scatter() if blind else compliance_range(case, frame, solution)
                 found.append((min(factor, dead_point_factor(frame, solution)), factor, i, eyes))
@@ -234,11 +235,19 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
 
 
 def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[int]:
-    """Numbers of the pose next to a dead point of the driven link and of that with the largest torque."""
-    counted = [int(i) for i in np.flatnonzero(evaluated)]
-    distances = [moved.drive.dead_point_distance(pose_at(moved.motion, i)) for i in counted]
-    torques = np.abs(moved.torque[load_case][counted])
-    return list(dict.fromkeys((counted[first_least(distances)], counted[first_largest(torques)])))
+    """Numbers of the pose next to a dead point of the driven link and of that with the largest torque.
+
+    Of a cycle, whose loads change, that of the largest joint forces too.
+    """
+    counted, found = [int(i) for i in np.flatnonzero(evaluated)], list[int]()
+    if moved.held is not None:
+        distances = [moved.held.dead_point_distance(pose_at(moved.motion, i)) for i in counted]
+        torques = np.abs(moved.torque[load_case][counted])
+        found = [counted[first_least(distances)], counted[first_largest(torques)]]
+    if moved.motion.instants is not None:
+        forces = [np.linalg.norm(one[counted], axis=1) for one in moved.forces[load_case].forces.values()]
+        found.append(counted[first_largest(np.sum(forces, axis=0))])
+    return list(dict.fromkeys(found))
 
 
 def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, Reason | str]:

@@ -80,11 +80,11 @@ def _refuse_dead_points(loose: LooseMotion, evaluated: NDArray[np.bool_]) -> Non
     through = np.flatnonzero(loose.passes & evaluated)
     if through.size:
         motion, drive = loose.moved.motion, loose.moved.drive
-        at = f"{float(motion.told(motion.angles[through[0]])):.5g} {motion.unit}"
+        at = motion.at_progress(float(motion.progress[through[0]]))
         joint = max(loose.clearances, key=lambda name: loose.clearances[name])
         raise CaseError(
             f"joints.{joint}.clearance: with {loose.clearances[joint]:g} mm play may take the linkage through a dead "
-            f"point of the driven link {drive.link} at {motion.coordinate} = {at}, where joint forces have no end; "
+            f"point of the driven link {drive.link} at {at}, where joint forces have no end; "
             "state less play, shorten the motion, or allow less growth of the drive torque"
         )
 

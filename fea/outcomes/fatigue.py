@@ -67,20 +67,20 @@ def signed_stress(stress: Real, *, brittle: bool) -> Real:
 
 
 def closed_history(history: Real, *, returns: bool) -> Real:
-    """Return one repetition of a motion's history: a full turn, or there and back.
+    """Return one repetition of a motion's history: a full turn or a cycle, or there and back.
 
     Parameters
     ----------
     history : ndarray, shape (n,)
         At the poses of the motion.
     returns : bool
-        True where the last pose is the first again.
+        True where the last pose is the first again, or goes on to it.
 
     Returns
     -------
     ndarray, shape (k,)
     """
-    return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
+    return history if returns else np.concatenate([history, history[-2:0:-1]])
 
 
 def not_closed(evaluated: NDArray[np.bool_]) -> Reason | None:

@@ -27,7 +27,7 @@ from alula.loads.records.check_spec import (
     SafetyFactorCheck,
     SustainedCheck,
 )
-from alula.loads.states.case_motion import inertia_caveats, step_caveats
+from alula.loads.states.case_motion import cycle_caveats, inertia_caveats, step_caveats
 from alula.loads.states.clearance import collision_caveats
 from alula.loads.states.extent import size_caveats
 from alula.loads.states.standing import drive_caveats
@@ -55,7 +55,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: Reason | None = 
         *mass_caveats(case),
         *size_caveats(case),
         *inertia_caveats(case, over_motion=over_motion),
-        *(step_caveats(case) if over_motion else ()),
+        *(step_caveats(case) if over_motion else cycle_caveats(case)),
         *load_caveats(case),
         *level_caveats(case),
         *_vibration(case, harmonic),

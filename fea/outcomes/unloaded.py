@@ -187,6 +187,8 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
 def stated_size(case: Case, title: str) -> float:
     """Return ``load_size`` of what a load case states, and of springs and load lines in the stated pose.
 
+    Of loads that change over a cycle it is the largest.
+
     Parameters
     ----------
     case : Case
@@ -198,6 +200,8 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    load_case = case.load_cases[title]
-    posed = loads_of((*map(ForceOnLine, load_case.load_lines), *lasting(case)), case.stated_pose.placement)
-    return load_size((*stated_loads(case, load_case), *posed), case.linkage.longest)
+    load_case, place, found = case.load_cases[title], case.stated_pose.placement, list[float]()
+    for one in (load_case, *load_case.rows):
+        posed = loads_of((*map(ForceOnLine, one.load_lines), *lasting(case)), place)
+        found.append(load_size((*stated_loads(case, one), *posed), case.linkage.longest))
+    return max(found)

@@ -86,7 +86,7 @@ def solve_case_statics(case: Case, name: str = "", end: End = "stated") -> CaseS
         For a pose that cannot be assembled or has no single equilibrium.
     """
     case = at_end(each_direction(case), end)
-    if case.motion is not None:
+    if case.sweeps:
         stated = case.solve_pose()
         refuse_slot_ends(stated, drive_angles(case, stated), coordinate=case.motion_coordinate)
     masses = part_masses(case) if needs_masses(case) else {}

@@ -116,7 +116,7 @@ def case_frequencies(
     case = _smooth(case)
     masses = part_masses(case)
     with bounded(1):  # matrices are small, and threads would wait for one another
-        histories = _moving(case, masses, poses, count) if case.motion is not None else _standing(case, masses, count)
+        histories = _moving(case, masses, poses, count) if case.sweeps else _standing(case, masses, count)
     own = threads if solid else 1
     links = {x: link_modes(case, x, count=count, solid=solid, threads=own) for x in case.checked_links}
     return CaseFrequencies(case=case, histories=histories, links=links)
@@ -169,7 +169,8 @@ def _standing(case: Case, masses: Mapping[str, PartMass], count: int) -> dict[st
 def _moving(case: Case, masses: Mapping[str, PartMass], poses: int, count: int) -> dict[str, FrequencyHistory]:
     assert case.motion is not None
     fine = (poses - 1) * FINE + 1
-    moved = solve_case_motion(case.model_copy(update={"motion": case.motion.model_copy(update={"poses": fine})}))
+    motion = case.motion.through(None).model_copy(update={"poses": fine})  # of a cycle, over its range once
+    moved = solve_case_motion(case.model_copy(update={"motion": motion}))
     return {name: _over(moved, name, masses, count) for name in moved.loads}
 
 

@@ -131,7 +131,8 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
     dict of str to tuple of CheckOutcome
         Load case -> power first, then speed and torque as far as the motor states them.
     """
-    moving = {title: load_case for title, load_case in case.load_cases.items() if load_case.speed != 0.0}
+    timed = case.motion is not None and case.motion.states is not None and case.motion.moves
+    moving = {title: load_case for title, load_case in case.load_cases.items() if timed or load_case.speed != 0.0}
     empty_cases = {title: load_case.model_copy(update={"carried": False}) for title, load_case in moving.items()}
     laden = rubbed_motion(case.model_copy(update={"load_cases": moving}))
     empty = rubbed_motion(case.model_copy(update={"load_cases": empty_cases})) if case.carried else laden

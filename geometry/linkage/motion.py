@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.continuation import follow
+from alula.geometry.linkage.continuation import Track, follow
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
-from alula.geometry.linkage.motion_record import BLOCK, Motion
+from alula.geometry.linkage.motion_record import BLOCK, Instants, Motion
 from alula.geometry.linkage.pose_record import Pose
 
-__all__ = ["Motion", "refuse_slot_ends", "solve_motion"]
+__all__ = ["Instants", "Motion", "ends_of", "refuse_slot_ends", "solve_motion", "still_motion"]
 
 Real = NDArray[np.float64]
 
@@ -92,6 +92,40 @@ def solve_motion(
     )
 
 
+def still_motion(pose: Pose, instants: Instants) -> Motion:
+    """Return a structure at the instants of a cycle, at each of which it stands in its one pose.
+
+    Parameters
+    ----------
+    pose : Pose
+        Of a structure, without a coordinate.
+    instants : Instants
+
+    Returns
+    -------
+    Motion
+        Told by the direction of the first of its links.
+    """
+    count, coordinate = len(instants.percent), Coordinate(pose.linkage.moving[0])
+    q, none = np.tile(pose.q, (count, 1)), np.zeros((count, len(pose.q)))
+    still = Track(
+        driven=DrivenClosure(pose.closure, coordinate), angles=q[:1, 0], q=q[:1], first=none[:1], second=none[:1]
+    )
+    return Motion(
+        linkage=pose.linkage,
+        coordinate=coordinate,
+        angles=q[:, 0],
+        speed=none[:, 0],
+        acceleration=none[:, 0],
+        q=q,
+        first=none,
+        second=none,
+        residual=pose.residual,
+        track=still,
+        instants=instants,
+    )
+
+
 def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None = None) -> None:
     """Refuse a motion that takes a pin out of its slot.
 
@@ -114,7 +148,7 @@ def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None 
     links = pose.linkage.links
     if not any(link.slots for link in links.values()):
         return
-    fine = np.linspace(values[0], values[-1], max(len(values), _POSES))
+    fine = np.linspace(*ends_of(values), max(len(values), _POSES))
     try:
         motion = solve_motion(pose, fine, coordinate=coordinate)
     except CaseError:
@@ -122,6 +156,25 @@ def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None 
     for link, record in links.items():
         for point, slot in record.slots.items():
             _refuse(motion, link, point, (slot.first, slot.last))
+
+
+def ends_of(values: Real) -> tuple[float, float]:
+    """Return the ends of the way that a coordinate goes.
+
+    Parameters
+    ----------
+    values : array (n,)
+        Of the coordinate, pose by pose [rad, mm].
+
+    Returns
+    -------
+    tuple of float
+        The first and the last; where it turns back on the way, the least and the largest.
+    """
+    steps = np.sign(np.diff(values))
+    if len(steps) and abs(steps.sum()) < len(steps):
+        return float(values.min()), float(values.max())
+    return float(values[0]), float(values[-1])
 
 
 def _refuse(motion: Motion, link: str, point: str, ends: tuple[float, float]) -> None:

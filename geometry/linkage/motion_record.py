@@ -22,6 +22,22 @@ BLOCK = 1024
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Instants:
+    """When a motion comes to each of its poses, where a table says so.
+
+    Attributes
+    ----------
+    percent : ndarray, shape (n,)
+        Of the cycle [%].
+    times : ndarray, shape (n,), or None
+        Since the first pose [s]; None where the cycle states no period.
+    """
+
+    percent: Real
+    times: Real | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
     """A linkage at n poses of one branch.
 
@@ -47,6 +63,8 @@ class Motion:
         Largest closure residual as a share of the longest link.
     track : Track
         The branch from which the poses were taken.
+    instants : Instants or None
+        Of a cycle, whose angles a table states in any order; None where they run from the first to the last.
     """
 
     linkage: Linkage
@@ -59,6 +77,7 @@ class Motion:
     second: Real
     residual: float
     track: Track
+    instants: Instants | None = None
 
     @cached_property
     def closure(self) -> LoopClosure:
@@ -68,12 +87,66 @@ class Motion:
     @cached_property
     def placement(self) -> Placement:
         """Where the links stand at every pose, and how they move."""
-        return Placement(closure=self.closure, q=self.q, qdot=self.qdot, qddot=self.qddot)
+        return Placement(closure=self.closure, q=self.q, qdot=self.qdot, qddot=self.qddot, rows=self._rows)
 
     @cached_property
     def virtual(self) -> Placement:
         """The poses with derivatives by the coordinate for rates, as virtual work asks for."""
-        return Placement(closure=self.closure, q=self.q, qdot=self.first)
+        return Placement(closure=self.closure, q=self.q, qdot=self.first, rows=self._rows)
+
+    @property
+    def _rows(self) -> NDArray[np.int64] | None:
+        return None if self.instants is None else np.arange(len(self.angles))
+
+    @property
+    def progress(self) -> Real:
+        """What people tell the poses (n,) by, in ``progress_unit``: per cent of the cycle, else the coordinate."""
+        return self.told(self.angles) if self.instants is None else self.instants.percent
+
+    @property
+    def progress_unit(self) -> str:
+        """Unit of ``progress``."""
+        return self.unit if self.instants is None else "%"
+
+    @property
+    def progress_title(self) -> str:
+        """Name of ``progress`` with its unit, for the axis of a plot and the head of a column."""
+        if self.instants is not None:
+            return "cycle [%]"
+        return f"{'travel' if self.coordinate.slides else 'direction'} of {self.coordinate} [{self.unit}]"
+
+    def at_progress(self, progress: float) -> str:
+        """Return where in the motion something is, for people.
+
+        Parameters
+        ----------
+        progress : float
+            As ``progress`` has it.
+
+        Returns
+        -------
+        str
+            Such as "crank = 30 deg" or "45 % of the cycle".
+        """
+        if self.instants is not None:
+            return f"{progress:.5g} % of the cycle"
+        return f"{self.coordinate} = {progress:.5g} {self.unit}"
+
+    def passing(self, value: float) -> NDArray[np.int64]:
+        """Return after which poses the motion passes a value of its coordinate, or stands at it.
+
+        Parameters
+        ----------
+        value : float
+            [rad, mm]
+
+        Returns
+        -------
+        ndarray of int, shape (k,)
+            i where it lies between the poses i and i + 1.
+        """
+        off = np.sign(self.angles - value)
+        return np.flatnonzero(off[1:] * off[:-1] <= 0.0)
 
     @property
     def moves(self) -> bool:
@@ -280,6 +353,8 @@ class Motion:
 
         For constant acceleration: 2 (angle - first angle) / (speed + first speed).
         """
+        if self.instants is not None:
+            return self.instants.times
         mean = 0.5 * (self.speed + self.speed[0])
         if len(mean) < 2 or np.any(mean[1:] == 0.0):
             return None

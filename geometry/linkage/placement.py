@@ -28,12 +28,15 @@ class Placement:
         Angles of the moving links [rad] and travels in the slots [mm].
     qdot, qddot : array (..., unknowns), optional
         Their rates and second rates [1/s, 1/s²]; None at rest.
+    rows : array of int (...), optional
+        Row of the cycle's table in which what acts at each pose is stated; None where that is the same at every pose.
     """
 
     closure: LoopClosure
     q: Real
     qdot: Real | None = None
     qddot: Real | None = None
+    rows: NDArray[np.int64] | None = None
 
     @property
     def linkage(self) -> Linkage:
@@ -63,8 +66,9 @@ class Placement:
         Placement
             At these.
         """
-        rates = (None if rate is None else rate[poses] for rate in (self.qdot, self.qddot))
-        return Placement(closure=self.closure, q=self.q[poses], **dict(zip(("qdot", "qddot"), rates, strict=True)))
+        names = ("qdot", "qddot", "rows")
+        own = {name: None if (value := getattr(self, name)) is None else value[poses] for name in names}
+        return Placement(closure=self.closure, q=self.q[poses], **own)
 
     def _of(self, values: Real | Complex | None, link: str) -> Any:
         """Values of a link from those of the moving links; none for the ground and at rest."""

@@ -307,7 +307,7 @@ class LooseJoints:
                 break
             q = q + np.clip(np.nan_to_num(step), -_LARGEST_STEP, _LARGEST_STEP) * self._sizes
         closed = np.abs(closure.residual(q)).max(axis=-1, initial=0.0) <= CLOSED * place.linkage.longest
-        return Placement(closure=closure, q=q), closed & self._same_branch(closure, q)
+        return Placement(closure=closure, q=q, rows=place.rows), closed & self._same_branch(closure, q)
 
     def _same_branch(self, closure: LoopClosure, q: Real) -> NDArray[np.bool_]:
         """Tell where the determinant has the sign that it has without play: it changes at a dead point."""

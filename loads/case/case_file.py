@@ -19,6 +19,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.geometry.imported.files_read import files_read, note_read
+from alula.loads.acting.cycle import read_cycle
 from alula.loads.case.case import Case
 from alula.loads.stated.level_file import in_level_file, with_level_file
 from alula.loads.stated.part_points import with_part_points
@@ -381,9 +382,10 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     """
     refuse_deep(data, "case")
     _check_version(data)
-    context = {"folder": folder, BODY_WEIGHT: weight_of(data.get("body_mass"))}
     data = with_level_file(data, folder, parse_tables)
-    tables = with_part_points(data, context)
+    cycle = read_cycle(data, folder)
+    context = {"folder": folder, "cycle": cycle, BODY_WEIGHT: weight_of(data.get("body_mass"))}
+    tables = with_part_points(data if cycle is None else cycle.tables, context)
     try:
         return Case.model_validate(tables, context=context)
     except ValidationError as error:

@@ -131,6 +131,8 @@ def check_rules(case: CoreCase) -> None:
         require(f"hand_calculations.{name}.part", hand.part, drawn, "is no part of a shape of alula's own")
     if case.motion is not None:
         _check_motion(case, case.motion)
+    if case.cycle is not None:
+        _check_cycle(case)
     toleranced(case)
 
 
@@ -232,6 +234,8 @@ def _check_slides(case: CoreCase, entry: str, name: str | None) -> None:
 
 
 def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
+    if spec.states is not None and case.pose.coordinate is None:
+        return  # a structure under the loads of a cycle
     name = case.motion_coordinate.name
     if spec.travel is not None:
         _check_slides(case, "motion.coordinate", name)
@@ -242,6 +246,16 @@ def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
         )
     else:
         check_moving(case.linkage, "motion.coordinate", name)
+
+
+def _check_cycle(case: CoreCase) -> None:
+    """Check that no load case has a speed of its own: the table says how fast the linkage moves."""
+    for name, load_case in case.load_cases.items():
+        if load_case.speed != 0.0:
+            raise CaseError(
+                f"load_cases.{name}.speed: the table of the cycle says how fast the linkage moves; leave it out, and "
+                "state cycle.period"
+            )
 
 
 def _check_body(entry: str, body: Body, *, moves: bool) -> None:
@@ -391,7 +405,8 @@ def _check_motor(case: CoreCase, name: str) -> None:
         raise CaseError(f"checks.{name}: a motor needs a motion to drive; add [motion] and [drive]")
     if Drive(link=case.drive.link, joint=case.drive.joint).effort(case.linkage) is DriveEffort.FORCE:
         raise CaseError(f"checks.{name}: a motor turns, but the drive pushes slider '{case.drive.joint}'; remove one")
-    if not any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
+    timed = case.motion.states is not None and case.motion.moves
+    if not timed and not any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
         raise CaseError(
             f"checks.{name}: no load case states the speed at which the motor runs; "
             'add one, for example speed = "150 rpm"'

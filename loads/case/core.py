@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field
 
 from alula.geometry.base.errors import CaseError
@@ -14,11 +15,13 @@ from alula.geometry.bodies.features import FlatFace
 from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Link, Linkage
+from alula.geometry.linkage.motion import solve_motion
 from alula.geometry.linkage.pose import Pose, solve_pose
 from alula.geometry.materials.material import Material, library
 from alula.geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
 from alula.geometry.placement.fit import Wanted
 from alula.geometry.placement.placed_body import faces_of, placed_body
+from alula.loads.acting.cycle import Cycle
 from alula.loads.acting.springs import Spring, Tendon
 from alula.loads.acting.stop import Stop
 from alula.loads.case.eyes import with_eye
@@ -34,6 +37,7 @@ from alula.loads.records.check_spec import (
     SustainedCheck,
 )
 from alula.loads.records.conditions import Conditions, at_temperature, under
+from alula.loads.records.cycle_spec import CycleSpec
 from alula.loads.records.flapping import Wing
 from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
@@ -71,6 +75,8 @@ class CoreCase(Revisable):
     """What holds the pose against the loads; left out for a structure, or where the pose balances by itself."""
     motion: MotionSpec | None = None
     """The motion over which ``alula motion`` and ``alula envelope`` go."""
+    cycle: CycleSpec | None = None
+    """A table of angles and loads, such as a stride, over which they go in place of a range."""
     springs: Annotated[dict[Name, Spring], Field(max_length=100)] = {}
     """Springs between points of two links, or about a revolute joint; they act in every load case."""
     tendons: Annotated[dict[Name, Tendon], Field(max_length=100)] = {}
@@ -123,9 +129,15 @@ class CoreCase(Revisable):
         Parameters
         ----------
         context : object
-            Of pydantic; not used.
+            Of the validation; it holds the cycle that the case was made from, where it has one.
         """
         super().model_post_init(context)
+        cycle = context.get("cycle") if isinstance(context, dict) else None
+        if isinstance(cycle, Cycle):
+            self.__dict__["pose"] = self.pose.entered_at(cycle.entered if self.pose.coordinate is not None else None)
+            if self.motion is not None:
+                self.__dict__["motion"] = self.motion.through(cycle.states)
+            self.__dict__["load_cases"] = {x: one.over(cycle.rows.get(x, ())) for x, one in self.load_cases.items()}
         self.__dict__["load_cases"] = {name: self._filled(one) for name, one in self.load_cases.items()}
 
     def _filled(self, load_case: LoadCase) -> LoadCase:
@@ -162,7 +174,7 @@ class CoreCase(Revisable):
     def inert(self) -> bool:
         """True where the speed of the motion means inertia, in load cases that state none: unless the case says no."""
         motion, masses = self.motion, bool(self.checked_links or self.carried)
-        if motion is None or motion.rate == (0.0, 0.0) or self.pose.equilibrium:
+        if motion is None or not motion.moves or self.pose.equilibrium or not self.sweeps:
             return False
         return masses if motion.inertia is None else motion.inertia
 
@@ -170,7 +182,9 @@ class CoreCase(Revisable):
     def turns_steadily(self) -> bool:
         """True where the motion is at a constant speed of the angle that fixes the pose, so that a pose moves at it."""
         motion, pose = self.motion, self.pose
-        if motion is None or self.drive is None or motion.rate[1] != 0.0 or motion.travel is not None:
+        if motion is None or motion.states is not None or self.drive is None:
+            return False
+        if motion.rate[1] != 0.0 or motion.travel is not None:
             return False
         return pose.travel is None and pose.coordinate is not None and motion.coordinate in (None, pose.coordinate)
 
@@ -538,6 +552,12 @@ class CoreCase(Revisable):
         return Coordinate(name, Measure.ANGLE if self.motion.travel is None else Measure.TRAVEL)
 
     @property
+    def sweeps(self) -> bool:
+        """True where the case states a motion in which its linkage does not stand still, as under a cycle of loads."""
+        states = None if self.motion is None else self.motion.states
+        return self.motion is not None and (states is None or bool(np.ptp(states.values) > 0.0))
+
+    @property
     def moves(self) -> bool:
         """True where the stated pose moves by the rank of its Jacobian, such as a parallelogram with a further link."""
         try:
@@ -570,13 +590,14 @@ class CoreCase(Revisable):
     @cached_property
     def stated_pose(self) -> Pose:
         """The linkage assembled in the stated pose."""
-        return solve_pose(
-            self.linkage,
-            coordinate=self.pose.coordinate,
-            angle=self.pose.angle,
-            near=self.pose.near,
-            travel=self.pose.travel,
-        )
+        stated, entered = self.pose, self.pose.entered
+        angle, travel = stated.angle, stated.travel
+        if entered is not None:
+            angle, travel = (entered, None) if travel is None else (angle, entered)
+        pose = solve_pose(self.linkage, coordinate=stated.coordinate, angle=angle, near=stated.near, travel=travel)
+        if entered is None:
+            return pose
+        return solve_motion(pose, [stated.angle if stated.travel is None else stated.travel]).pose(0)
 
     def solve_pose(self) -> Pose:
         """Return the linkage assembled in the stated pose.

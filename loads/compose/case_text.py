@@ -7,7 +7,7 @@ import tomlkit
 
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.whole_file import write_whole
-from alula.loads.stated.part_points import KINDS
+from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 
 
@@ -27,7 +27,7 @@ def case_text(tables: dict[str, Any]) -> str:
 
 
 def name_files(tables: dict[str, Any], sought: str, folder: Path) -> None:
-    """Name the files of parts from another folder: those below it from there, others by their whole path.
+    """Name the files of a case from another folder: those below it from there, others by their whole path.
 
     Parameters
     ----------
@@ -38,10 +38,8 @@ def name_files(tables: dict[str, Any], sought: str, folder: Path) -> None:
     folder : Path
         Absolute.
     """
-    parts = tables.get("parts")
-    for part in parts.values() if isinstance(parts, dict) else ():
-        if isinstance(part, dict) and part.get("shape") in tuple(KINDS) and isinstance(part.get("file"), str):
-            part["file"] = _named(Path(sought, part["file"]).absolute(), folder)
+    for _, table in named_files(tables):
+        table["file"] = _named(Path(sought, table["file"]).absolute(), folder)
 
 
 def _named(file: Path, folder: Path) -> str:

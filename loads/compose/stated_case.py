@@ -22,6 +22,7 @@ from alula.geometry.base.model import CaseModel
 from alula.geometry.base.units import BODY_WEIGHT
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.geometry.imported.files_read import files_read
+from alula.loads.acting.cycle import of_cycle
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import (
     Change,
@@ -698,6 +699,8 @@ def _check(tables: Tables, folder: str) -> None:
     [table] = tables
     if table == "links" and isinstance(tables[table], dict):  # an imported part gives its link the points
         tables = {table: {name: _with_any_points(link) for name, link in tables[table].items()}}
+    if of_cycle(table, tables[table]):  # only the file of the cycle tells what it is
+        return
     try:
         _model_of(table).model_validate(tables, context={"folder": folder, BODY_WEIGHT: 1.0})  # of any body
     except ValidationError as error:

@@ -13,7 +13,7 @@ from alula.loads.case.case_file import Change, changed_tables, folder_of, read_t
 from alula.loads.plans.derived import derived_value, in_turn
 from alula.loads.plans.plan import StudyPlan, case_name, table_of
 from alula.loads.plans.points import Point, Points
-from alula.loads.stated.part_points import KINDS
+from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable, sentence
 
 LEFT_OUT = ("published_statics", "claims")
@@ -38,7 +38,7 @@ class Variants:
     base : dict
         Tables of the case with what the plan sets, without ``LEFT_OUT``.
     files : dict of str to Path
-        Files of the case's parts, by SHA-256 of their content.
+        Files of the case's parts and of its cycle, by SHA-256 of their content.
 
     Raises
     ------
@@ -63,7 +63,7 @@ class Variants:
         return len(self.points)
 
     def tables(self, point: Point) -> dict[str, Any]:
-        """Return the case at a point, with every part's file named by the digest of its content.
+        """Return the case at a point, with every file named by the digest of its content.
 
         Parameters
         ----------
@@ -89,16 +89,12 @@ class Variants:
             found = changed_tables(found, _changes({path: value}, "link"))
 
         in_turn(self.plan.link, follow)
-        self._name_files(found.get("parts"))
+        for entry, table in named_files(found):
+            table["file"] = self._digest(entry, table["file"])
         return found
 
-    def _name_files(self, parts: object) -> None:
-        for name, part in parts.items() if isinstance(parts, dict) else ():
-            if isinstance(part, dict) and part.get("shape") in tuple(KINDS) and isinstance(part.get("file"), str):
-                part["file"] = self._digest(name, part["file"])
-
-    def _digest(self, part: str, stated: str) -> str:
-        """Return the digest of a part's file with its suffix, which is its name wherever it travels."""
+    def _digest(self, entry: str, stated: str) -> str:
+        """Return the digest of a file with its suffix, which is its name wherever it travels."""
         if stated not in self._digests:
             path = Path("" if self.plan.tables else folder_of(self.name)) / stated
             try:
@@ -106,9 +102,7 @@ class Variants:
                     digest = hashlib.file_digest(stream, "sha256").hexdigest()
             except (OSError, ValueError) as error:
                 why = getattr(error, "strerror", None) or "no such name"
-                raise CaseError(
-                    f"parts.{part}.file: '{printable(stated)}' cannot be read ({why}); correct it"
-                ) from None
+                raise CaseError(f"{entry}: '{printable(stated)}' cannot be read ({why}); correct it") from None
             named = digest + path.suffix.lower()
             self.files[named], self._digests[stated] = path, named
         return self._digests[stated]

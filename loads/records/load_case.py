@@ -4,7 +4,7 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, PrivateAttr, ValidationInfo, WithJsonSchema, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
 from alula.geometry.base.units import (
@@ -183,6 +183,27 @@ class LoadCase(CaseModel):
     """Lift and drag of streams."""
     flapping: Flapping | None = None
     """Air at rest in which the wings flap; without it they meet none."""
+    _rows: tuple["LoadCase", ...] = PrivateAttr(())
+
+    @property
+    def rows(self) -> tuple["LoadCase", ...]:
+        """The load case at every instant of a cycle; empty where none of its loads changes over one."""
+        return self._rows
+
+    def over(self, rows: tuple["LoadCase", ...]) -> "LoadCase":
+        """Return the load case with what it is at every instant of a cycle.
+
+        Parameters
+        ----------
+        rows : tuple of LoadCase
+
+        Returns
+        -------
+        LoadCase
+        """
+        found = self.model_copy()
+        found._rows = rows
+        return found
 
 
 def force_size(load_case: LoadCase) -> float:

@@ -3,10 +3,11 @@
 import math
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, refusal
 from alula.geometry.base.units import Acceleration, Angle, AngularAcceleration, AngularSpeed, Length, Speed
+from alula.loads.records.cycle_spec import CycleMotion
 
 
 class MotionSpec(CaseModel):
@@ -34,6 +35,35 @@ class MotionSpec(CaseModel):
     inertia: bool | None = None
     """Whether the inertia of the links' parts and of what they carry loads the joints: where a speed or an acceleration
     is stated, unless this is false."""
+    _states: CycleMotion | None = PrivateAttr(None)
+
+    @property
+    def states(self) -> CycleMotion | None:
+        """What a cycle's table says of the motion, in place of range and speed; None without one."""
+        return self._states
+
+    def through(self, states: CycleMotion | None) -> "MotionSpec":
+        """Return the motion that goes from state to state.
+
+        Parameters
+        ----------
+        states : CycleMotion or None
+            None for the way between its ends, once and evenly.
+
+        Returns
+        -------
+        MotionSpec
+        """
+        found = self.model_copy()
+        found._states = states
+        return found
+
+    @property
+    def moves(self) -> bool:
+        """True where it has a speed or an acceleration."""
+        if self._states is not None:
+            return self._states.times is not None
+        return self.rate != (0.0, 0.0)
 
     @property
     def ends(self) -> tuple[float, float] | None:
@@ -48,7 +78,9 @@ class MotionSpec(CaseModel):
         return self.travel_speed, self.travel_acceleration
 
     @model_validator(mode="after")
-    def _fits(self) -> "MotionSpec":
+    def _fits(self, info: ValidationInfo) -> "MotionSpec":
+        if (info.context or {}).get("cycle") is not None:
+            return self  # made from the table of a cycle
         slides, (speed, acceleration) = self.travel is not None, self.rate
         angular = (self.speed, self.acceleration) != (0.0, 0.0)
         along = (self.travel_speed, self.travel_acceleration) != (0.0, 0.0)

@@ -26,6 +26,28 @@ class PoseSpec(CaseModel):
     equilibrium: bool = False
     """True: the linkage is let go at the stated angle or travel, and its pose is where springs, tendons, weights and
     loads balance, or where a stop holds it. A drive then drives the motion alone."""
+    _entered: float | None = PrivateAttr(None)
+
+    @property
+    def entered(self) -> float | None:
+        """Angle [rad] or travel [mm] at which ``near`` chooses the branch, where a cycle moves the pose on from it."""
+        return self._entered
+
+    def entered_at(self, value: float | None) -> "PoseSpec":
+        """Return the pose of a cycle's instant, on the branch of a stated one.
+
+        Parameters
+        ----------
+        value : float or None
+            Angle [rad] or travel [mm] of the stated one; None where the pose states none.
+
+        Returns
+        -------
+        PoseSpec
+        """
+        found = self.model_copy()
+        found._entered = value
+        return found
 
 
 class DriveStiffness(NamedTuple):

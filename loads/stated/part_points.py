@@ -5,7 +5,7 @@ A link states its points and the part must agree within its tolerance, or it tak
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -69,6 +69,27 @@ def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> d
                 f'links.{name}.points: "{FROM_PART}" needs a part of shape "step" or "mesh"; state the points'
             )
     return tables | {"links": changed}
+
+
+def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the tables of a case that name a file beside it.
+
+    Parameters
+    ----------
+    tables : mapping
+        The case as nested tables, not validated.
+
+    Yields
+    ------
+    tuple of (str, dict)
+        The entry that names the file, and its table: of imported parts, of a cycle, and of a level.
+    """
+    parts = tables.get("parts")
+    every = {f"parts.{name}": part for name, part in parts.items()} if isinstance(parts, dict) else {}
+    every = {name: part for name, part in every.items() if isinstance(part, dict) and part.get("shape") in tuple(KINDS)}
+    for name, table in (*every.items(), *((name, tables.get(name)) for name in ("cycle", "level"))):
+        if isinstance(table, dict) and isinstance(table.get("file"), str):
+            yield f"{name}.file", table
 
 
 def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> FilePart:

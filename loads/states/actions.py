@@ -14,6 +14,7 @@ from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import Acting, loads_of
 from alula.loads.acting.dead_load import DeadLoad
 from alula.loads.acting.load_line import ForceOnLine
+from alula.loads.acting.row_load import RowLoad
 from alula.loads.acting.sprung import Sprung
 from alula.loads.acting.stop import Bound
 from alula.loads.acting.weight import Weight
@@ -156,7 +157,7 @@ def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *
     tuple of Acting
         Load lines first, then other stated loads, weights, wings that flap, springs and tendons.
     """
-    found: list[Acting] = [*map(ForceOnLine, load_case.load_lines), *map(DeadLoad, stated_loads(case, load_case))]
+    found: list[Acting] = _stated(case, load_case)
     if load_case.own_weight or inert:
         pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
         found += [Weight(link=link, mass=mass, gravity=pull) for link, mass in masses.items()]
@@ -166,6 +167,13 @@ def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *
     if load_case.flapping is not None:
         found.append(FlappingAir(case, load_case))
     return (*found, *lasting(case))
+
+
+def _stated(case: Case, load_case: LoadCase) -> list[Acting]:
+    """Return what a load case states of itself, with what it is at every row of a cycle."""
+    now: list[Acting] = [*map(ForceOnLine, load_case.load_lines), *map(DeadLoad, stated_loads(case, load_case))]
+    every = [_stated(case, row) for row in load_case.rows]
+    return [RowLoad(*same) for same in zip(now, *every, strict=True)] if every else now
 
 
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.linkage.motion import Motion, refuse_slot_ends, solve_motion
+from alula.geometry.linkage.motion import Instants, Motion, refuse_slot_ends, solve_motion, still_motion
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import loads_of
 from alula.loads.acting.weight import Weight
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, PartMass
+from alula.loads.records.cycle_spec import CycleMotion
 from alula.loads.records.load_case import LoadCase
 from alula.loads.states.actions import acting_loads, acting_on, needs_masses, refuse_turning_bonds
 from alula.loads.states.drive_work import DriveWork, drive_work
@@ -26,6 +27,7 @@ from alula.loads.states.kinetostatics import (
     is_determinate,
     relative_motion,
     solve_kinetostatics,
+    structure_over,
     torque_by_virtual_work,
 )
 from alula.loads.states.masses import laden_masses, part_masses
@@ -50,7 +52,8 @@ class CaseMotion:
     case : Case
     motion : Motion
         The n poses of its linkage.
-    drive : Drive
+    held : Drive or None
+        None for a structure, which stays where it is under the loads of a cycle.
     moved : mapping of str to Motion
         Load case -> the same poses at its own speed, where it states one.
     masses : mapping of str to PartMass
@@ -74,7 +77,7 @@ class CaseMotion:
 
     case: Case
     motion: Motion
-    drive: Drive
+    held: Drive | None
     moved: Mapping[str, Motion]
     masses: Mapping[str, PartMass]
     loads: Mapping[str, tuple[Load, ...]]
@@ -84,6 +87,13 @@ class CaseMotion:
     dead_points: tuple[float, ...]
     rubbing: Mapping[str, Rubbing]
     frictionless: Mapping[str, Real]
+
+    @property
+    def drive(self) -> Drive:
+        """What drives the linkage; raises ``CaseError`` for a structure."""
+        if self.held is None:
+            raise CaseError("motion: the linkage cannot move, so nothing is to be told of it; look at its envelope")
+        return self.held
 
     def work(self, load_case: str) -> DriveWork:
         """Return what the drive does with and without friction.
@@ -97,8 +107,8 @@ class CaseMotion:
         -------
         DriveWork
         """
-        way, without = self.rubbing[load_case].way, self.frictionless[load_case]
-        return drive_work(self.motion, self.drive, way, without, self.torque[load_case])
+        rubbing, without = self.rubbing[load_case], self.frictionless[load_case]
+        return drive_work(self.motion, self.drive, (rubbing.way, rubbing.sense), without, self.torque[load_case])
 
     def drive_power(self, load_case: str) -> Real:
         """Return the power of the drive.
@@ -141,6 +151,8 @@ class CaseMotion:
 
         The drive's joint, where the ground is one of its links, else the global origin, which has no name.
         """
+        if self.held is None:
+            return None, 0j
         ground, name = self.case.linkage.ground, self.drive.joint
         if ground not in self.case.linkage.joints[name].links:
             return None, 0j
@@ -214,8 +226,10 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
         Where the motion meets a dead point, or the case states no motion, drive or masses.
     """
     case = each_direction(case, moving=True)
-    coordinate = case.motion_coordinate
     spec, drive = case.motion, case.pinned_drive
+    if spec is not None and spec.states is not None and case.pose.coordinate is None:
+        return _standing(case, spec.states)
+    coordinate = case.motion_coordinate
     assert spec is not None
     if drive is None:
         raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
@@ -224,6 +238,8 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
     speed, acceleration = drive_speeds(case, angles)
     refuse_slot_ends(pose, angles, coordinate=coordinate)
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
+    if (states := spec.states) is not None:
+        motion = replace(motion, instants=Instants(percent=states.percent, times=states.times))
     refuse_turning_bonds(motion.virtual)
     refuse_stops(case, motion)
     masses = part_masses(case) if _weighed(case) else {}
@@ -253,7 +269,7 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
     return CaseMotion(
         case=case,
         motion=motion,
-        drive=drive,
+        held=drive,
         moved=moved,
         masses=masses,
         loads=loads,
@@ -263,6 +279,34 @@ def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) 
         dead_points=dead_points(motion, drive),
         rubbing=rubbing,
         frictionless=frictionless,
+    )
+
+
+def _standing(case: Case, states: CycleMotion) -> CaseMotion:
+    """Return a structure over a cycle of loads: the same pose at every instant, and no drive."""
+    pose, instants = case.solve_pose(), Instants(percent=states.percent, times=states.times)
+    motion, none = still_motion(pose, instants), np.zeros(len(states.percent))
+    masses, place = part_masses(case) if needs_masses(case) else {}, motion.placement.at_rest
+    loads = {name: acting_loads(case, one, place, masses) for name, one in case.load_cases.items()}
+    power = Power(kinetic=none, kinetic_rate=none, potential=none, potential_rate=none, applied=none)
+    if case.linkage.borne != 3 * len(case.linkage.moving):
+        raise CaseError(
+            "cycle: the structure is redundant, so that its joint forces do not follow from equilibrium alone; check "
+            "single instants by cycle.instant"
+        )
+    return CaseMotion(
+        case=case,
+        motion=motion,
+        held=None,
+        moved=dict.fromkeys(loads, motion),
+        masses=masses,
+        loads=loads,
+        power=dict.fromkeys(loads, power),
+        forces={name: structure_over(motion, acting, power) for name, acting in loads.items()},
+        torque=dict.fromkeys(loads, none),
+        dead_points=(),
+        rubbing={},
+        frictionless={},
     )
 
 
@@ -308,7 +352,7 @@ def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:
 
 
 def drive_angles(case: Case, pose: Pose) -> Real:
-    """Return the values of the motion's coordinate: over its range, or a full turn from the stated pose.
+    """Return the values of the motion's coordinate: of a cycle, over its range, or a full turn from the stated pose.
 
     Parameters
     ----------
@@ -323,6 +367,8 @@ def drive_angles(case: Case, pose: Pose) -> Real:
     """
     spec = case.motion
     assert spec is not None
+    if spec.states is not None:
+        return spec.states.values
     if spec.ends is not None:
         return np.linspace(*spec.ends, spec.poses)
     start = pose.angles[case.motion_coordinate.name]
@@ -332,7 +378,8 @@ def drive_angles(case: Case, pose: Pose) -> Real:
 def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
     """Return speed and acceleration of the motion's coordinate.
 
-    The acceleration is constant: speed² = first speed² + 2 acceleration (angle - first angle).
+    Those of a cycle are in its states. Else the acceleration is constant:
+    speed² = first speed² + 2 acceleration (angle - first angle).
 
     Parameters
     ----------
@@ -352,6 +399,8 @@ def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
     """
     spec = case.motion
     assert spec is not None
+    if spec.states is not None:
+        return spec.states.speed, spec.states.acceleration
     sense, first, rate = math.copysign(1.0, angles[-1] - angles[0]), abs(spec.rate[0]), spec.rate[1]
     square = first**2 + 2.0 * rate * np.abs(angles - angles[0])
     if square.min() < 0.0:
@@ -384,12 +433,30 @@ def step_caveats(case: Case) -> Iterator[Caveat]:
         return
     first, last = motion.range or (0.0, math.tau)
     step = abs(last - first) / (motion.poses - 1)
+    if motion.states is not None:
+        step = float(np.abs(np.diff(motion.states.values)).max())
     if step > COARSE:
         yield Caveat(
             topic=Topic.MOTION,
             what=reason("between_poses", poses=motion.poses),
             why=reason("poses_apart", degrees=math.degrees(step)),
         )
+
+
+def cycle_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield that a check of one instant leaves out the rest of its cycle.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    if case.cycle is not None:
+        what = reason("rest_of_cycle", percent=case.cycle.instant)
+        yield Caveat(topic=Topic.MOTION, what=what, why=reason("envelope_has_cycle"))
 
 
 def inertia_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
@@ -406,7 +473,7 @@ def inertia_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     Caveat
     """
     motion = case.motion
-    if motion is None or motion.rate == (0.0, 0.0):
+    if motion is None or not motion.moves:
         return
     if motion.inertia is False:
         yield Caveat(topic=Topic.INERTIA, what=reason("inertia"), why=reason("inertia_is_false"))

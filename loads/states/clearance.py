@@ -12,7 +12,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.base.ties import first_least, ranked
 from alula.geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap
 from alula.geometry.clearance.shape import Shape, link_shape, pin_shape
-from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.motion import Motion, ends_of, solve_motion
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
@@ -220,7 +220,7 @@ def along(motion: Motion) -> Callable[[Real], Placement]:
 
 
 def way_of(case: Case, pose: Pose) -> Motion:
-    """Return the motion that a case states, through a pose.
+    """Return the motion that a case states, through a pose: once over its range, evenly.
 
     Parameters
     ----------
@@ -233,7 +233,8 @@ def way_of(case: Case, pose: Pose) -> Motion:
     Motion
     """
     assert case.motion is not None
-    return solve_motion(pose, drive_angles(case, pose), coordinate=case.motion_coordinate)
+    angles = np.linspace(*ends_of(drive_angles(case, pose)), case.motion.poses)
+    return solve_motion(pose, angles, coordinate=case.motion_coordinate)
 
 
 def start_of(motion: Motion) -> Real:
@@ -246,9 +247,9 @@ def start_of(motion: Motion) -> Real:
     Returns
     -------
     array (181,)
-        From its first pose to its last [rad, mm].
+        From its first pose to its last, or over all that it goes through [rad, mm].
     """
-    return np.linspace(float(motion.angles[0]), float(motion.angles[-1]), _POSES)
+    return np.linspace(*ends_of(motion.angles), _POSES)
 
 
 def collision_caveats(case: Case) -> Iterator[Caveat]:
@@ -294,7 +295,7 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
     for pair, gap in zip(found.pairs, gaps, strict=True):
         if gap.high < 0.0:
             raise CaseError(_through(case, pair, gap))
-    if case.motion is None:
+    if not case.sweeps:
         return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(case, gaps))
     motion = way_of(case, pose)
     longest, start = case.linkage.longest, start_of(motion)

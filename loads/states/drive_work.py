@@ -23,7 +23,7 @@ class DriveWork:
     Attributes
     ----------
     way : str
-        Direction of the motion, "forward" or "backward".
+        Direction of the motion, "forward", "backward" or "cycle".
     without, effort : array (n,)
         Torque [N mm] or force [N] of the drive without friction, and with it.
     power_without, power : array (n,)
@@ -86,7 +86,7 @@ class DriveWork:
         return replace(self, ends=np.array([np.minimum.reduce(known), np.maximum.reduce(known)]))
 
     def _integral(self, power: Real) -> float:
-        return float(np.trapezoid(power, np.abs(self.angles - self.angles[0])))
+        return float(np.trapezoid(power, np.concatenate([[0.0], np.abs(np.diff(self.angles)).cumsum()])))
 
     @property
     def holds_itself(self) -> NDArray[np.bool_]:
@@ -117,7 +117,7 @@ def efficiency(without: Real | float, power: Real | float) -> Real:
         return np.where(out > 0.0, out / given, np.maximum(np.where(out < 0.0, given / out, np.nan), 0.0))
 
 
-def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Real) -> DriveWork:
+def drive_work(motion: Motion, drive: Drive, way: tuple[str, Real | float], without: Real, effort: Real) -> DriveWork:
     """Return what the drive does with and without friction.
 
     Parameters
@@ -125,8 +125,8 @@ def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Re
     motion : Motion
         The n poses.
     drive : Drive
-    way : str
-        "forward" or "backward".
+    way : tuple of (str, float or array (n,))
+        Direction of the motion and its sense, 1 where the coordinate grows and -1 where it falls.
     without, effort : array (n,)
         Torque [N mm] or force [N] of the drive without friction, and with it.
 
@@ -134,9 +134,9 @@ def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Re
     -------
     DriveWork
     """
-    moved = WAYS[way] * relative_motion(motion, drive)
+    moved = way[1] * relative_motion(motion, drive)
     return DriveWork(
-        way=way,
+        way=way[0],
         without=without,
         effort=effort,
         power_without=without * moved,
@@ -165,4 +165,5 @@ def pose_work(case: Case, load_case: str, pose: Pose, without: Reactions, reacti
     drive = case.pinned_drive
     assert drive is not None
     efforts = (np.array([one.drive_torque + one.drive_force]) for one in (without, reactions))
-    return drive_work(at_one_pose(pose), drive, case.load_cases[load_case].direction, *efforts)
+    way = case.load_cases[load_case].direction
+    return drive_work(at_one_pose(pose), drive, (way, WAYS[way]), *efforts)

@@ -9,7 +9,7 @@ import numpy as np
 from alula.geometry.clearance.least import Spot
 from alula.geometry.clearance.reach import Sides, Standing, reaches, reaches_at
 from alula.geometry.clearance.shape import point_shape
-from alula.geometry.linkage.motion import Motion
+from alula.geometry.linkage.motion import Motion, ends_of
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
@@ -71,7 +71,7 @@ class Extent:
         """
         if self.motion is None:
             return self.stated
-        first, last = float(self.motion.angles[0]), float(self.motion.angles[-1])
+        first, last = ends_of(self.motion.angles)
         furthest = [side.at for sides in self.reaches for side in sides if side.at is not None]
         return along(self.motion)(np.array([*np.linspace(first, last, count), *furthest]))
 
@@ -98,7 +98,7 @@ def extent(case: Case, pose: Pose, motion: Motion | None = None) -> Extent:
     """
     found = assembly(case)
     outlines = tuple(_outlines(found))
-    if case.motion is None:
+    if not case.sweeps:
         at_rest = Placement(closure=pose.closure, q=pose.q[None])
         return Extent(assembly=found, pose=pose, motion=None, reaches=reaches_at(outlines, at_rest))
     motion = motion or way_of(case, pose)

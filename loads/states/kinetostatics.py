@@ -166,6 +166,34 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
     )
 
 
+def structure_over(motion: Motion, loads: Sequence[Load], power: Power) -> Kinetostatics:
+    """Solve joint forces of a structure at every instant of a cycle of loads.
+
+    Parameters
+    ----------
+    motion : Motion
+        That stands still.
+    loads : sequence of Load
+    power : Power
+
+    Returns
+    -------
+    Kinetostatics
+        Its leverage is 1: there is no drive that could lose it.
+    """
+    found = balance(motion.placement, None, loads)
+    return Kinetostatics(
+        motion=motion,
+        drive=None,
+        joints=found.joints,
+        drive_torque=found.drive_torque,
+        drive_force=found.drive_force,
+        leverage=np.ones(len(motion.angles)),
+        residual=found.residual,
+        power=power,
+    )
+
+
 def torque_by_virtual_work(motion: Motion, drive: Drive, loads: Sequence[Load]) -> Real:
     """Return the drive torque or force by virtual work.
 

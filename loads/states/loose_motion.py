@@ -129,7 +129,8 @@ class LooseMotion:
         here, sound = play.plain
         found = self._spread(~sound | (here.distance <= play.slack("distance")), True)
         for angle in self.moved.dead_points:
-            found[np.argsort(np.abs(self.moved.motion.angles - angle))[:2]] = True
+            between = self.moved.motion.passing(angle)
+            found[np.concatenate([between, between + 1])] = True
         return found
 
     def slack(self, load_case: str, key: str) -> Real:

@@ -24,7 +24,7 @@ from alula.loads.case.joint_rules import clearances, rubbing_joints
 from alula.loads.records.applied import Load, PartMass
 from alula.loads.states.actions import acting_loads
 from alula.loads.states.kinetostatics import is_determinate
-from alula.loads.states.rubbing import WAYS, friction_at
+from alula.loads.states.rubbing import friction_at, sense_of
 from alula.loads.statics.friction import NOTHING_MORE, Presses
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.statics.statics import Drive, balance
@@ -477,7 +477,7 @@ def _rubbed(
     loads: Sequence[Load],
 ) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
     """Return what friction adds to the loads, and where it finds no balance."""
-    moves, sense = coordinate or case.pose_coordinate, WAYS.get(case.load_cases[load_case].direction)
+    moves, sense = coordinate or case.pose_coordinate, sense_of(case, load_case, place.rows)
     if not rubbing_joints(case) or moves is None or sense is None or not is_determinate(case.linkage):
         return (), np.zeros(place.shape, dtype=np.bool_)
     return friction_at(DrivenClosure(place.closure, moves), place, case.pinned_drive, loads, sense, presses)

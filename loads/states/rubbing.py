@@ -24,6 +24,8 @@ from alula.loads.statics.statics import Drive
 Real = NDArray[np.float64]
 
 WAYS = {"forward": 1.0, "backward": -1.0}
+CYCLE = "cycle"
+"""Direction of a motion that a table states: as its coordinate goes from row to row."""
 _BEYOND = 8.0
 """Share of the friction up to which poses beside a locked one are followed, to find where the locking begins."""
 
@@ -69,8 +71,10 @@ def is_of(name: str, stated: str) -> bool:
 
 
 def _known_way(case: Case, load_case: LoadCase, moving: bool) -> str:
-    """The direction that a speed gives; "" where none is stated."""
+    """The direction that a speed or a cycle gives; "" where none is stated."""
     speed = load_case.speed
+    if moving and case.motion is not None and case.motion.states is not None:
+        return CYCLE
     if speed == 0.0 and moving and case.motion is not None and case.motion.rate != (0.0, 0.0):
         ends = case.motion.ends
         speed = math.copysign(1.0, case.motion.speed) if ends is None else ends[1] - ends[0]
@@ -139,7 +143,7 @@ def friction_at(
     place: Placement,
     drive: Drive | None,
     loads: Sequence[Load],
-    sense: float,
+    sense: Real | float,
     presses: Presses = NOTHING_MORE,
 ) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
     """Return the friction at one pose or at n as loads, and where it locks the linkage.
@@ -153,7 +157,7 @@ def friction_at(
     drive : Drive or None
     loads : sequence of Load
         All else that acts.
-    sense : float
+    sense : float or array (...)
         1 where the coordinate grows, -1 where it falls.
     presses : mapping of str to array (...), optional
         As for ``solve_friction``.
@@ -177,16 +181,19 @@ class Rubbing:
     Attributes
     ----------
     way : str
-        "forward" or "backward".
+        "forward", "backward" or "cycle".
+    sense : float or array (n,)
+        1 where the coordinate grows, -1 where it falls.
     loads : tuple of Load
         Friction at the n poses; NaN where the linkage is locked.
     locked : array of bool (n,)
         Where no drive moves the linkage.
     spans : tuple of (float, float)
-        Stretches of the coordinate [rad, mm] in which it is locked.
+        Stretches in which it is locked, as ``Motion.progress`` tells them.
     """
 
     way: str
+    sense: Real | float
     loads: tuple[Load, ...]
     locked: NDArray[np.bool_]
     spans: tuple[tuple[float, float], ...]
@@ -225,23 +232,50 @@ def motion_friction(
             "that friction depends on do not follow from equilibrium; leave friction out, or check single poses"
         )
     way = case.load_cases[load_case].direction
-    found = solve_friction(motion.virtual, drive, loads, WAYS[way], presses=presses)
+    sense = sense_of(case, load_case, np.arange(len(motion.angles)))
+    assert sense is not None
+    found = solve_friction(motion.virtual, drive, loads, sense, presses=presses)
     locked, lock = found.locked, found.lock.copy()
     beside = np.flatnonzero(~locked & (np.roll(locked, 1) | np.roll(locked, -1)))
     if len(beside):
         acting = [chosen(at_poses(load, locked.shape), beside) for load in loads]
         own = {name: ratio[beside] for name, ratio in presses.items()}
         place = motion.virtual.chosen(beside)
-        lock[beside] = solve_friction(place, drive, acting, WAYS[way], most=_BEYOND, presses=own).lock
-    return Rubbing(way=way, loads=found.loads(motion.virtual), locked=locked, spans=_spans(motion, locked, lock))
+        here = np.broadcast_to(sense, locked.shape)[beside]
+        lock[beside] = solve_friction(place, drive, acting, here, most=_BEYOND, presses=own).lock
+    spans = _spans(motion, locked, lock)
+    return Rubbing(way=way, sense=sense, loads=found.loads(motion.virtual), locked=locked, spans=spans)
+
+
+def sense_of(case: Case, load_case: str, rows: NDArray[np.int64] | None) -> Real | float | None:
+    """Return in which sense the coordinate moves under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    rows : array of int (...) or None
+        Rows of the cycle at which that is asked, where there is one.
+
+    Returns
+    -------
+    float, array (...) or None
+        1 where it grows, -1 where it falls; None where the load case states no direction.
+    """
+    way = case.load_cases[load_case].direction
+    states = None if case.motion is None else case.motion.states
+    if str(way) == CYCLE and states is not None and rows is not None:
+        return np.asarray(states.sense[rows])
+    return WAYS.get(way)
 
 
 def _spans(motion: Motion, locked: NDArray[np.bool_], lock: Real) -> tuple[tuple[float, float], ...]:
-    """Stretches of the coordinate that are locked; their ends lie where the share that locks is one."""
+    """Stretches of the motion that are locked; their ends lie where the share that locks is one."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], locked, [False]]).astype(int)))
     found = []
     for first, end in zip(edges[::2], edges[1::2], strict=True):
-        low, high = float(motion.angles[first]), float(motion.angles[end - 1])
+        low, high = float(motion.progress[first]), float(motion.progress[end - 1])
         if first > 0:
             low = _crossing(motion, lock, first, first - 1)
         if end < len(locked):
@@ -252,7 +286,7 @@ def _spans(motion: Motion, locked: NDArray[np.bool_], lock: Real) -> tuple[tuple
 
 def _crossing(motion: Motion, lock: Real, inside: int, outside: int) -> float:
     """Where the share that locks is one, linear between a locked pose and a free one beside it."""
-    a, b = float(motion.angles[inside]), float(motion.angles[outside])
+    a, b = float(motion.progress[inside]), float(motion.progress[outside])
     if not math.isfinite(lock[outside]):
         return a
     return a + (b - a) * float((1.0 - lock[inside]) / (lock[outside] - lock[inside]))
@@ -274,10 +308,10 @@ def lock_sentence(load_case: str, rubbing: Rubbing, motion: Motion) -> str:
     """
     if not rubbing.spans:
         return ""
-    spans = [tuple(map(float, motion.told(span))) for span in rubbing.spans]
-    where = " and ".join(f"from {low:.4g} to {high:.4g} {motion.unit}" for low, high in spans)
+    where = " and ".join(f"from {low:.4g} to {high:.4g} {motion.progress_unit}" for low, high in rubbing.spans)
+    of = motion.coordinate if motion.instants is None else "the cycle"
     return (
-        f"load case {load_case}: with friction the linkage locks itself {where} of {motion.coordinate}, driven "
+        f"load case {load_case}: with friction the linkage locks itself {where} of {of}, driven "
         f"{told_direction(rubbing.way, motion.coordinate)}; no drive moves it there"
     )
 
@@ -288,7 +322,7 @@ def told_direction(way: str, coordinate: Coordinate) -> str:
     Parameters
     ----------
     way : str
-        "forward" or "backward".
+        "forward", "backward" or "cycle".
     coordinate : Coordinate
         Of the pose or motion.
 
@@ -296,6 +330,8 @@ def told_direction(way: str, coordinate: Coordinate) -> str:
     -------
     str
     """
+    if way == CYCLE:
+        return f"as the cycle goes (friction against {coordinate} at each instant)"
     grows = "grows" if way == "forward" else "falls"
     return f"{way} (the {coordinate.measure.word} of {coordinate} {grows})"
 

@@ -126,7 +126,7 @@ def solve_friction(
     place: Placement,
     drive: Drive | None,
     loads: Sequence[Load],
-    sense: float,
+    sense: Real | float,
     *,
     most: float = 1.0,
     presses: Presses = NOTHING_MORE,
@@ -140,7 +140,7 @@ def solve_friction(
     drive : Drive or None
     loads : sequence of Load
         All else that acts on the links, at these poses.
-    sense : float
+    sense : float or array (n,)
         1 where the coordinate grows, -1 where it falls.
     most : float, optional
         Share of the stated coefficients.
@@ -318,7 +318,7 @@ LAWS: Mapping[Surface, Callable[[_Rubbing], _Law]] = {
 }
 
 
-def _contacts(place: Placement, system: System, sense: float, presses: Presses) -> list[_Contact]:
+def _contacts(place: Placement, system: System, sense: Real | float, presses: Presses) -> list[_Contact]:
     """Return every contact that rubs, with the signed coefficient (n,) that opposes the motion."""
     linkage, found = place.linkage, []
     speeds = [np.abs(place.velocity(n)) ** 2 + (linkage.longest * place.spin(n)) ** 2 for n in linkage.moving]

@@ -59,7 +59,7 @@ def _parts(
     rows = [(f"drive {effort.word} on {moved.drive.link}", effort.unit, record[effort.entry])]
     rows += [("drive power", "W", record["drive_power"])] if "drive_power" in record else []
     rows += [(f"joint {joint}", "N", row) for joint, row in (record["joints"] or {}).items()]
-    yield extremes_table("drive", name, rows, moved.motion.unit, ends=True, known=not moved.dead_points)
+    yield extremes_table("drive", name, rows, moved.motion.progress_unit, ends=True, known=not moved.dead_points)
     if record["joints"] is None:
         yield Text("The linkage is statically indeterminate, so equilibrium alone does not give the joint forces.")
     if "energy_imbalance" in record:

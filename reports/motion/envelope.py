@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from alula.fea.common.verdict import by_nearness
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LoadCaseEnvelope
 from alula.fea.outcomes.unchecked import caveats
+from alula.geometry.linkage.motion import ends_of
 from alula.geometry.materials.material import Material
 from alula.reports.check.links import solver_record
 from alula.reports.motion.friction import friction_over_motion, friction_texts
@@ -128,12 +129,16 @@ def envelope_page(result: EnvelopeResult, sections: tuple[Section, ...]) -> Page
 
 def _motion(result: EnvelopeResult) -> Section:
     """Return which poses were evaluated, and the warnings."""
-    motion, ends = result.moved.motion, np.degrees(result.angles[[0, -1]])
+    motion = result.moved.motion
+    ends = np.degrees(ends_of(result.angles))
     first, last = (Number(float(end), stated=True) for end in ends)
     told_range = (
-        f"From {motion.coordinate} = {{first}}° to {{last}}°, driven at {result.drive.link}; "
+        f"From {motion.coordinate} = {{first}}° to {{last}}°, "
+        f"{'standing still' if result.drive is None else f'driven at {result.drive.link}'}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated"
     )
+    if (cycle := result.case.cycle) is not None:
+        told_range = f"Over the cycle of {cycle.file}: f{told_range[1:]}"
     parts: list[Part] = [say(told_range, first=first, last=last)]
     if result.idle:
         parts.append(Text(f"Links without load: {', '.join(result.idle)}."))
@@ -147,12 +152,13 @@ def _motion(result: EnvelopeResult) -> Section:
         data={
             "motion": {
                 "coordinate": motion.coordinate.name,
-                "first": first.value,
-                "last": last.value,
+                "first": float(np.degrees(result.angles[0])),
+                "last": float(np.degrees(result.angles[-1])),
                 "poses": len(result.angles),
                 "evaluated": int(result.evaluated.sum()),
                 "returns_to_start": motion.returns,
-                "drive": entries(result.drive, "link joint"),
+                "cycle": None if motion.instants is None else motion.progress.tolist(),
+                "drive": None if result.drive is None else entries(result.drive, "link joint"),
                 "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
             },
             "idle_links": list(result.idle),
@@ -169,13 +175,16 @@ def _links(result: EnvelopeResult) -> Section:
 
         return envelope_figure(result)
 
-    coordinate, drive = result.moved.motion.coordinate.name, result.drive.link
+    coordinate = result.moved.motion.coordinate.name
+    drive = coordinate if result.drive is None else result.drive.link
+    cycle = result.moved.motion.instants is not None
     columns = (
         words("link"),
         words("load case"),
         Column("safety factor (band)"),
         words("stress"),
         Column("stress", "MPa"),
+        Column("at", "% of the cycle", hidden=not cycle),
         # of the driven link itself, both have one direction
         Column(f"{coordinate} at", "deg", hidden=coordinate == drive),
         Column(f"at {drive}", "deg"),
@@ -187,7 +196,7 @@ def _links(result: EnvelopeResult) -> Section:
     for link, found in sorted(every, key=lambda row: row[1].severity):
         at, life = _place(result, found), None if found.fatigue is None else found.fatigue.repetitions
         factor, stress = Number(found.safety_factor), Number(found.stress.value, "", 3)
-        angles = (Number(at[key], decimals=1) for key in ("coordinate", "drive"))
+        angles = (Number(at[key], decimals=1) for key in ("cycle", "coordinate", "drive"))
         place = ", ".join(fixed(x, 1) for x in at["location"])
         repetitions = Number(None if life is None else life.value)
         rows.append((link.link, found.name, factor, link.measure, stress, *angles, place, repetitions))
@@ -211,9 +220,11 @@ def _links(result: EnvelopeResult) -> Section:
 
 def _series(result: EnvelopeResult) -> Series:
     """Return the curves over the motion, one load case below the other; omitted poses have nothing."""
-    angles = {
-        f"{result.moved.motion.coordinate} angle [deg]": np.degrees(result.angles),
-        f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
+    motion = result.moved.motion
+    angles = {} if motion.instants is None else {motion.progress_title: motion.progress}
+    angles |= {
+        f"{motion.coordinate} angle [deg]": np.degrees(result.angles),
+        **({} if result.drive is None else {f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles)}),
     }
     columns: dict[str, dict[str, ArrayLike]] = {name: dict(angles) for name in result.case.load_cases}
     for name, of in columns.items():
@@ -333,8 +344,10 @@ def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material:
 
 def _place(result: EnvelopeResult, found: LoadCaseEnvelope) -> dict[str, Any]:
     """Return where and how the worst stress acts, with directions of coordinate and drive [degrees]."""
+    motion = result.moved.motion
     return {
         "pose": found.pose,
+        "cycle": None if motion.instants is None else float(motion.progress[found.pose]),
         "coordinate": math.degrees(result.angles[found.pose]),
         "drive": math.degrees(result.drive_angles[found.pose]),
         "location": found.location.tolist(),

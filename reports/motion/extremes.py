@@ -60,9 +60,9 @@ def with_pose(motion: Motion, what: str, value: float, pose: int) -> dict[str, f
     Returns
     -------
     dict
-        ``what`` and ``what_at``, the value of the coordinate there.
+        ``what`` and ``what_at``, the value of the coordinate there, or per cent of the cycle.
     """
-    return {what: float(value), f"{what}_at": float(motion.told(motion.angles[pose]))}
+    return {what: float(value), f"{what}_at": float(motion.progress[pose])}
 
 
 def stretches(motion: Motion, true: NDArray[np.bool_]) -> list[list[float]]:
@@ -78,7 +78,7 @@ def stretches(motion: Motion, true: NDArray[np.bool_]) -> list[list[float]]:
     list of [first, last]
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(int)))
-    return [motion.told(motion.angles[[first, after - 1]]).tolist() for first, after in edges.reshape(-1, 2)]
+    return [motion.progress[[first, after - 1]].tolist() for first, after in edges.reshape(-1, 2)]
 
 
 def vector_extremes(motion: Motion, values: Values) -> dict[str, Any]:

@@ -30,7 +30,7 @@ def friction_over_motion(moved: CaseMotion, work: DriveWork, load_case: str) -> 
     Returns
     -------
     dict
-        Spans are pairs of values of the coordinate in its unit.
+        Spans are pairs of values of the coordinate in its unit, or of per cent of the cycle.
     """
     rubbing, motion = moved.rubbing[load_case], moved.motion
     shares = work.efficiency[np.isfinite(work.efficiency)]
@@ -42,7 +42,7 @@ def friction_over_motion(moved: CaseMotion, work: DriveWork, load_case: str) -> 
         "efficiency_of_motion": finite_or_none(work.of_cycle),
         "efficiency_smallest": float(shares.min()) if shares.size else None,
         "efficiency_largest": float(shares.max()) if shares.size else None,
-        "locked": [[float(x) for x in motion.told(span)] for span in rubbing.spans],
+        "locked": [[float(x) for x in span] for span in rubbing.spans],
         "holds_itself": stretches(motion, work.holds_itself),
     }
 
@@ -91,7 +91,7 @@ def friction_texts(moved: CaseMotion, work: DriveWork, load_case: str) -> Iterat
         ("locked", "Locks itself", "no drive moves it there"),
     ):
         if record[key]:
-            where = " and ".join(f"from {Number(a)} to {Number(b)} {motion.unit}" for a, b in record[key])
+            where = " and ".join(f"from {Number(a)} to {Number(b)} {motion.progress_unit}" for a, b in record[key])
             yield Text(f"{text} {where}: {why}.")
 
 

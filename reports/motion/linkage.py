@@ -24,7 +24,7 @@ def linkage_over_motion(moved: CaseMotion, over: LinkageOverMotion) -> dict[str,
     """
 
     def told(pose: int) -> float | None:
-        return float(moved.motion.told(moved.motion.angles[pose])) if pose >= 0 else None
+        return float(moved.motion.progress[pose]) if pose >= 0 else None
 
     return {
         "poses": [told(pose) for pose in over.poses],
@@ -49,16 +49,18 @@ def linkage_text(moved: CaseMotion, over: LinkageOverMotion) -> Text:
     -------
     Text
     """
-    record, unit = linkage_over_motion(moved, over), moved.motion.unit
+    record, motion = linkage_over_motion(moved, over), moved.motion
+    of = "" if motion.instants is not None else f"{motion.coordinate} = "
+    unit = motion.progress_unit + (" of the cycle" if motion.instants is not None else "")
     told = f"Linkage in {len(over.poses)} of {len(moved.motion.angles)} poses: least {limit_load(over.limit_load)}"
     facts: dict[str, object] = {}
     if record["limit_load_at"] is not None:
-        told += f" at {moved.motion.coordinate} = {{limit_at}}"
+        told += f" at {of}{{limit_at}}"
         facts["limit_at"] = Number(record["limit_load_at"], unit, 5)
     if not over.displacement.unknowable:
         told += f", largest displacement {{displacement}} ({record['where']})"
         facts["displacement"] = Number(over.displacement, "mm")
         if record["displacement_at"] is not None:
-            told += f" at {moved.motion.coordinate} = {{displacement_at}}"
+            told += f" at {of}{{displacement_at}}"
             facts["displacement_at"] = Number(record["displacement_at"], unit, 5)
     return say(told, **facts)

@@ -71,7 +71,7 @@ def play_record(found: MotionFindings) -> dict[str, Any] | None:
 
 
 def _parts(moved: CaseMotion, record: Mapping[str, Any]) -> Iterator[Part]:
-    unit, drive = moved.motion.unit, moved.drive.link
+    unit, drive = moved.motion.progress_unit, moved.drive.link
     ended = {label: row for label, row in record["points"].items() if 0.0 < row["largest"] < math.inf}
     if ended:
         largest = (Column("to either side, largest", "mm"), Column("largest at", unit))
@@ -113,7 +113,7 @@ def drive_with_play(moved: CaseMotion, record: Mapping[str, Any], load_case: str
     -------
     Text
     """
-    what, unit, at = moved.effort.word, moved.effort.unit, moved.motion.unit
+    what, unit, at = moved.effort.word, moved.effort.unit, moved.motion.progress_unit
     row = record[f"drive_{what}"][load_case]
     if not math.isfinite(row["largest"] - row["smallest"]):
         return Text(f"With play of pins the drive {what} has no end next to a dead point.")

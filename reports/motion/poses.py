@@ -7,7 +7,7 @@ from typing import Any
 from alula.fea.findings.joint_paths import moving_points, path_length
 from alula.fea.findings.of_motion import MotionFindings
 from alula.fea.findings.rates import Rates
-from alula.geometry.linkage.motion import Motion
+from alula.geometry.linkage.motion import Motion, ends_of
 from alula.loads.states.case_motion import CaseMotion
 from alula.reports.motion.charts import chart, figures
 from alula.reports.motion.extremes import every_extreme, finite_or_none
@@ -51,10 +51,12 @@ def range_text(moved: CaseMotion) -> Text:
     Text
     """
     motion = moved.motion
-    first, last = (Number(float(motion.told(motion.angles[i])), stated=True) for i in (0, -1))
+    first, last = (Number(float(motion.told(end)), stated=True) for end in ends_of(motion.angles))
     took = {} if motion.times is None else {"duration": Number(float(motion.times[-1]), "s")}
+    cycle = moved.case.cycle
+    whole = "From" if cycle is None else f"Over the cycle of {cycle.file}: from"
     return say(
-        f"From {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
+        f"{whole} {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
         f"{len(motion.angles)} poses{' and {duration}' if took else ''}; largest gap of a loop {{gap}} of the longest "
         "link",
         first=first,
@@ -134,6 +136,7 @@ def _motion(moved: CaseMotion, own: Rates | None) -> dict[str, Any]:
         "duration": None if motion.times is None else float(motion.times[-1]),
         "closure_residual": motion.residual,
         "returns_to_start": motion.returns,
+        "cycle": None if motion.instants is None else motion.progress.tolist(),
         "inertia": moved.case.inert,
         "links": {
             link: _directions(motion, link) | rates(links.get(link, {}), "angular_speed", "angular_acceleration")

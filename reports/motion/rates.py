@@ -114,7 +114,7 @@ def _links(moved: CaseMotion, load_case: str, rows: Mapping[str, Mapping[str, An
     weighed = any(row["mass"] is not None for row in rows.values())
     columns = [words("link"), Column("mass", "g", hidden=not weighed)]
     for key in _LINK:
-        columns += rate_columns(key, moved.motion.unit, told=weighed or key not in _INERTIAL)
+        columns += rate_columns(key, moved.motion.progress_unit, told=weighed or key not in _INERTIAL)
     cells: list[tuple[Cell, ...]] = [
         (link, Number(row["mass"]), *(cell for key in _LINK for cell in rate_cells(key, row[key])))
         for link, row in rows.items()
@@ -123,7 +123,7 @@ def _links(moved: CaseMotion, load_case: str, rows: Mapping[str, Mapping[str, An
 
 
 def _points(moved: CaseMotion, load_case: str, rows: Mapping[str, Mapping[str, Any]]) -> Table:
-    at = moved.motion.unit
+    at = moved.motion.progress_unit
     columns = [
         Column(f"{key}, largest{more}", unit)
         for key in SIZES[:2]
@@ -144,7 +144,7 @@ def _energy(moved: CaseMotion, load_case: str, record: Mapping[str, Any]) -> Tab
     known = [(key, name) for key, name in _WHOLE.items() if whole[key] is not None]
     rows = ((name.format(about=about), QUANTITIES[key], whole[key]) for key, name in known)
     caption = "The linkage as a whole; of a vector, the largest size"
-    return extremes_table("energy", load_case, rows, moved.motion.unit, ends=False, caption=caption)
+    return extremes_table("energy", load_case, rows, moved.motion.progress_unit, ends=False, caption=caption)
 
 
 def _figures() -> Any:

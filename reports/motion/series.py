@@ -65,7 +65,8 @@ def motion_series(found: MotionFindings, rates: Mapping[str, Rates], own: Rates 
 
 
 def _base(motion: Motion) -> dict[str, Real]:
-    columns = {f"{motion.coordinate} {motion.coordinate.measure.word} [{motion.unit}]": motion.told(motion.angles)}
+    columns = {} if motion.instants is None else {motion.progress_title: motion.progress}
+    columns |= {f"{motion.coordinate} {motion.coordinate.measure.word} [{motion.unit}]": motion.told(motion.angles)}
     return columns if motion.times is None else columns | {"time [s]": motion.times}
 
 

@@ -292,7 +292,7 @@ def motion_air_record(airs: AirRange | None, load_case: str) -> dict[str, Any] |
                 "span": [first, last],
                 "chord": list(chord),
                 "largest_force": float(np.abs(force[largest])),
-                "largest_at": float(moved.told(moved.angles[largest])),
+                "largest_at": float(moved.progress[largest]),
                 "reynolds": wing_reynolds(case, air, wing, moved.placement),
             }
         )

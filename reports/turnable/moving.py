@@ -99,10 +99,13 @@ def envelope_linkage(result: EnvelopeResult) -> dict[str, Any]:
         texts = {}
         for link, found in loaded.items():
             least = found.load_cases[name]
-            at = fixed(math.degrees(float(result.angles[least.pose])), 1)
+            motion = result.moved.motion
+            at = f"{motion.coordinate} = {fixed(math.degrees(float(result.angles[least.pose])), 1)} deg"
+            if motion.instants is not None:
+                at = motion.at_progress(float(motion.progress[least.pose]))
             texts[link] = (
                 f"{found.measure} stress against a strength of {number(found.strength, 3)} MPa; least safety factor "
-                f"{band(least.safety_factor)} at {result.moved.motion.coordinate} = {at} deg"
+                f"{band(least.safety_factor)} at {at}"
             )
         values.append(
             Values(
@@ -159,7 +162,9 @@ def _of_motion(motion: Motion, chosen: NDArray[np.int64]) -> Poses:
     """Return some poses of a motion."""
     return Poses(
         place=Placement(closure=motion.closure, q=motion.q[chosen]),
-        texts=_texts(motion, motion.angles[chosen]),
+        texts=_texts(motion, motion.angles[chosen])
+        if motion.instants is None
+        else [motion.at_progress(float(percent)) for percent in motion.progress[chosen]],
         returns=motion.returns,
     )
 

@@ -45,7 +45,7 @@ def air_figure(airs: AirRange, load_case: str) -> Figure:
     air, kind = result.case.load_cases[load_case].flapping, result.effort
     assert air is not None
     figure, panels = over_angle(result.motion, [f"drive {kind.word} [{kind.unit}]", "drive power [W]"], _SIZE)
-    at, (low, high) = result.motion.told(result.motion.angles), air.ends
+    at, (low, high) = result.motion.progress, air.ends
 
     def effort(one: CaseMotion) -> Real:
         return one.torque[load_case]

@@ -1,4 +1,4 @@
-"""The curve of an envelope: safety factor of every link over the drive angle."""
+"""The curve of an envelope: safety factor of every link over the drive angle, or over the cycle."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -41,7 +41,7 @@ def envelope_figure(result: EnvelopeResult) -> Chart:
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    angles, label = abscissa(result)
+    (angles, label), unit = abscissa(result), "deg" if result.moved.motion.instants is None else "%"
     names = list(result.case.load_cases)
     with rc_context(STYLE), quiet_glyphs():
         rows = (len(result.links) + 1) // 2
@@ -56,7 +56,7 @@ def envelope_figure(result: EnvelopeResult) -> Chart:
                 for c in result.checks
                 if c.subject == Subject.link(name) and c.quantity is Quantity.SAFETY_FACTOR
             }
-            _panel(axes, angles, link, names, limits, handles)
+            _panel(axes, angles, link, names, limits, handles, unit)
         for axes in panels[len(result.links) :]:
             axes.remove()
         for axes in panels[max(0, len(result.links) - 2) : len(result.links)]:
@@ -118,8 +118,12 @@ def abscissa(result: EnvelopeResult) -> tuple[Real, str]:
     Returns
     -------
     tuple
-        Angles (n,) [degrees] of the drive, or of the coordinate if the drive reverses its direction; and the label.
+        Per cent (n,) of the cycle, where there is one; else angles [degrees] of the drive, or of the coordinate if the
+        drive reverses its direction; and the label.
     """
+    motion = result.moved.motion
+    if motion.instants is not None or result.drive is None:
+        return motion.progress, motion.progress_title
     steps = np.diff(result.drive_angles)
     if np.all(steps > 0.0) or np.all(steps < 0.0):
         return np.degrees(result.drive_angles), f"direction of {result.drive.link} (driven) [deg]"
@@ -127,7 +131,13 @@ def abscissa(result: EnvelopeResult) -> tuple[Real, str]:
 
 
 def _panel(
-    axes: Any, angles: Real, link: LinkEnvelope, names: list[str], limits: set[float], handles: dict[str, Any]
+    axes: Any,
+    angles: Real,
+    link: LinkEnvelope,
+    names: list[str],
+    limits: set[float],
+    handles: dict[str, Any],
+    unit: str = "deg",
 ) -> None:
     shown, marks = [], list(limits)
     for name, found in link.load_cases.items():
@@ -167,7 +177,7 @@ def _panel(
     axes.set_axisbelow(True)
     worst_case = link.worst
     at = angles[worst_case.pose]
-    told = f"least {number(worst_case.safety_factor.value, 3)} at {at:.1f} deg"
+    told = f"least {number(worst_case.safety_factor.value, 3)} at {at:.1f} {unit}"
     one_line = f"{link.link}: {told}"
     axes.set_title(
         one_line if len(one_line) <= _TITLE else f"{link.link}:\n{told}",

@@ -94,8 +94,10 @@ def _indexed(frames: list[NDArray[np.uint8]]) -> list[Image.Image]:
 def _angles(motion: Motion) -> Real:
     """Angles of the coordinate at the frames: evenly spread in time (in the angle where there is none)."""
     clock = motion.times if motion.times is not None else np.abs(motion.angles - motion.angles[0])
+    if motion.instants is not None:
+        clock = motion.progress - motion.progress[0]
     last = float(clock[-1])
-    if motion.returns:
+    if motion.returns or motion.instants is not None:
         wanted = np.linspace(0.0, last, FRAMES, endpoint=False)
     else:
         there = np.linspace(0.0, last, FRAMES // 2 + 1)

@@ -82,7 +82,7 @@ def _with_play(axes: Any, result: CaseMotion, play: PlayOverMotion | None) -> No
     """Shade between the ends of the drive torque with play, and where it has none."""
     if play is None:
         return
-    at = result.motion.told(result.motion.angles)
+    at = result.motion.progress
     for i, load_case in enumerate(result.torque):
         ends = [np.where(np.isfinite(end), _broken(result, end), np.nan) for end in play.effort[load_case]]
         label = f"{load_case} with play of pins" if len(result.torque) > 1 else "with play of pins"
@@ -105,7 +105,7 @@ def _without_friction(axes: Any, result: CaseMotion) -> None:
             stated = load_case.removesuffix(f" {result.rubbing[load_case].way}")
             label = f"{stated} without friction"
             values, style = _broken(result, torque), {"color": "0.45", "linestyle": DASHES[1 + len(drawn) % 2]}
-            axes.plot(result.motion.told(result.motion.angles), values, label=label, linewidth=1.3, **style)
+            axes.plot(result.motion.progress, values, label=label, linewidth=1.3, **style)
             drawn.append(torque)
 
 
@@ -116,7 +116,7 @@ def _locked(axes: Any, result: CaseMotion) -> None:
         for i, span in enumerate(sorted(spans)):
             label = f"locked, {way}" if i == 0 else None
             style: dict[str, Any] = {"hatch": "///" if way == "forward" else "\\\\\\", "edgecolor": "0.6"}
-            axes.axvspan(*result.motion.told(span), facecolor="0.92", linewidth=0.0, label=label, zorder=0.5, **style)
+            axes.axvspan(*span, facecolor="0.92", linewidth=0.0, label=label, zorder=0.5, **style)
 
 
 def forces_figure(result: CaseMotion, load_case: str) -> Figure:
@@ -174,9 +174,10 @@ def paths_figure(motion: Motion, play: PlayOverMotion | None = None) -> Figure:
             xy = np.array([motion.position(link, point)[index] for link, point in chain])
             axes.plot(*xy.T, color=colour, linewidth=1.4, marker="o", markersize=3.5, markerfacecolor="white", zorder=3)
     ground(axes, motion)
-    last = f"{motion.told(motion.angles[indices[-1]]):.5g} {motion.unit}"
+    first, last = (f"{motion.progress[i]:.5g} {motion.progress_unit}" for i in (0, indices[-1]))
+    what = motion.coordinate if motion.instants is None else "cycle"
     axes.set_title(
-        f"{motion.coordinate} from {motion.told(motion.angles[0]):.5g} {motion.unit} (light) to {last} (black)",
+        f"{what} from {first} (light) to {last} (black)",
         parse_math=False,
         loc="left",
         fontsize=10,
@@ -281,7 +282,7 @@ def ground(axes: Any, motion: Motion) -> None:
 
 
 def over_angle(motion: Motion, labels: Sequence[str], size: tuple[float, float] = _SIZE) -> tuple[Figure, list[Any]]:
-    """Return a figure with axes below each other over the coordinate of a motion.
+    """Return a figure with axes below each other over the coordinate of a motion, or over the cycle.
 
     Parameters
     ----------
@@ -299,16 +300,15 @@ def over_angle(motion: Motion, labels: Sequence[str], size: tuple[float, float] 
     panels = figure.subplots(len(labels), 1, sharex=True, squeeze=False)[:, 0].tolist()
     for axes, label in zip(panels, labels, strict=True):
         axes.set_ylabel(label, parse_math=False)
-        axes.set_xlim(*motion.told(motion.angles[[0, -1]]))
+        axes.set_xlim(*motion.progress[[0, -1]])
         axes.grid(color="0.9", linewidth=0.8)
-    what = "travel" if motion.coordinate.slides else "direction"
-    panels[-1].set_xlabel(f"{what} of {motion.coordinate} [{motion.unit}]", parse_math=False)
+    panels[-1].set_xlabel(motion.progress_title, parse_math=False)
     return figure, panels
 
 
 def _line(axes: Any, motion: Motion, values: Real, label: str, index: int) -> None:
     style = {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index // len(COLOURS) % len(DASHES)]}
-    axes.plot(motion.told(motion.angles), values, label=label, linewidth=1.8, **style)
+    axes.plot(motion.progress, values, label=label, linewidth=1.8, **style)
 
 
 def _equal(sizes: dict[str, Real]) -> list[list[str]]:
@@ -326,9 +326,11 @@ def _equal(sizes: dict[str, Real]) -> list[list[str]]:
 
 def _broken(result: CaseMotion, values: Real) -> Real:
     """The values with a gap at every dead point, so that no line joins the two sides of a pole."""
-    out = values.copy()
+    out, motion = values.copy(), result.motion
     for angle in result.dead_points:
-        out[int(np.argmin(np.abs(result.motion.angles - angle)))] = np.nan
+        out[int(np.argmin(np.abs(motion.angles - angle)))] = np.nan
+        if motion.instants is not None:
+            out[motion.passing(angle)] = np.nan
     return out
 
 
@@ -343,7 +345,13 @@ def _clip(axes: Any, result: CaseMotion, values: list[Real], *, symmetric: bool)
 
 
 def _dead_points(axes: Any, result: CaseMotion) -> None:
-    for angle in result.motion.told(result.dead_points):
+    motion = result.motion
+    for dead in result.dead_points:
+        angle = float(motion.told(dead))
+        if motion.instants is not None:  # which passes it several times
+            for i in motion.passing(dead):
+                axes.axvline(motion.progress[i], color="0.25", linewidth=1.0, linestyle=(0, (2, 2)), zorder=1)
+            continue
         axes.axvline(angle, color="0.25", linewidth=1.0, linestyle=(0, (2, 2)), zorder=1)
         axes.annotate(
             f"dead point of {result.drive.link}: {angle:.2f} {result.motion.unit}",

@@ -105,5 +105,5 @@ def _equal(one: Values, other: Values) -> bool:
 
 def _line(axes: Any, rates: Rates, values: Values, label: str, index: int) -> None:
     style = {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index // len(COLOURS) % len(DASHES)]}
-    axes.plot(rates.motion.told(rates.motion.angles), values, label=label, linewidth=1.8, **style)
+    axes.plot(rates.motion.progress, values, label=label, linewidth=1.8, **style)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)

@@ -12,7 +12,7 @@ import numpy as np
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError
 from alula.geometry.linkage.continuation import DeadPointError
-from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.motion import Motion, ends_of, solve_motion
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import changed_case, folder_of, parse_tables
 from alula.loads.states.case_motion import drive_angles
@@ -136,7 +136,8 @@ def motion_answer(text: str, name: str) -> Plain:
 def _moved(case: Case) -> tuple[Motion, list[DeadPointError]]:
     """Return the motion of a case as far as the linkage gets on either side of its pose, and where it is stopped."""
     pose, coordinate = case.solve_pose(), case.motion_coordinate
-    values, stopped = drive_angles(case, pose), list[DeadPointError]()
+    assert case.motion is not None
+    values, stopped = np.linspace(*ends_of(drive_angles(case, pose)), case.motion.poses), list[DeadPointError]()
     start = float(pose.q[coordinate.column(pose.closure)])
     if not coordinate.slides:
         start += math.tau * round((0.5 * float(values[0] + values[-1]) - start) / math.tau)

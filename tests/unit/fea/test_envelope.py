@@ -293,7 +293,7 @@ def test_modal_stress_is_recovered_as_that_of_a_single_field(order):
 
 def test_a_repetition_is_a_turn_or_there_and_back():
     history = np.array([1.0, 4.0, 2.0, 1.0])
-    assert closed_history(history, returns=True).tolist() == [1.0, 4.0, 2.0]
+    assert closed_history(history, returns=True).tolist() == [1.0, 4.0, 2.0, 1.0]
     assert closed_history(history, returns=False).tolist() == [1.0, 4.0, 2.0, 1.0, 2.0, 4.0]
 
 
@@ -430,7 +430,7 @@ def pose_of_bearing(monkeypatch, pressed, bears, evaluated):
         outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(because=lambda why: why, reason="")
     )
     solved = SimpleNamespace(joints={"B": joint}, forces={"B": np.zeros((4, 2))})
-    motion = SimpleNamespace(coordinate=Coordinate("crank"), angles=np.zeros(4))
+    motion = SimpleNamespace(coordinate=Coordinate("crank"), progress=np.zeros(4), instants=None)
     moved = SimpleNamespace(case=None, forces={"push": solved}, motion=motion)
     check = BearingCheck.model_validate({"type": "bearing"})
     eyes_asked = Asked(name="eyes", subject=Subject.pin("B"), quantity=Quantity.SAFETY_FACTOR, limit=3.33, check=check)

@@ -55,9 +55,14 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         monkeypatch.setattr(linkage_history, name, stub)
     moved = SimpleNamespace(
         case=SimpleNamespace(large_displacement="auto", layered=False),
-        motion=SimpleNamespace(coordinate=Coordinate("crank"), angles=np.radians([10.0, 20.0])),
+        motion=SimpleNamespace(
+            coordinate=Coordinate("crank"),
+            angles=np.radians([10.0, 20.0]),
+            progress=np.array([10.0, 20.0]),
+            instants=None,
+        ),
         loads={"push": ()},
-        drive=None,
+        held=object(),
     )
     [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
     assert "at crank = 20 deg" in told(found.reason)
