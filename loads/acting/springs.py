@@ -18,7 +18,8 @@ from alula.geometry.base.units import (
 )
 from alula.geometry.linkage.placement import Placement
 from alula.loads.acting import sizes
-from alula.loads.acting.sprung import Attachment, Law, Sprung, SprungRecord
+from alula.loads.acting.sprung import Law, Sprung, SprungRecord
+from alula.loads.records.attachment import Attachment
 
 
 class LineSpring(SprungRecord):

@@ -18,25 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.model import CaseModel, Name
+from alula.geometry.base.model import CaseModel
 from alula.geometry.linkage.placement import Placement
 from alula.loads.acting.acting import Acting, ActingMark, End, MarkKind
 from alula.loads.acting.sizes import Angle, Length, places
 from alula.loads.records.applied import PointLoad
+from alula.loads.records.attachment import Attachment
 
 Real = NDArray[np.float64]
 
 _COINCIDE = 1e-9
 """Length of a piece over the longest link below which its direction is not known."""
-
-
-class Attachment(CaseModel):
-    """A point of a link, moving or not, at which a spring or a tendon is fastened or led over."""
-
-    link: Name
-    """The link."""
-    at: Name
-    """The point of that link."""
 
 
 @dataclass(frozen=True, kw_only=True)

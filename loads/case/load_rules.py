@@ -7,15 +7,17 @@ import numpy as np
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.core import CoreCase
 from alula.loads.records.aero import AirPatch, check_air
+from alula.loads.records.attachment import Attachment
 from alula.loads.records.carried import CarriedBody, CarriedSpread
 from alula.loads.records.check_spec import FrequencyCheck
 from alula.loads.records.flapping import WIDEST, Wing, check_flapping
-from alula.loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
+from alula.loads.records.load_case import FacePressure, LoadCase, LoadLine, PointForce, PointMoment, SpreadForce
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.places import check_moving, check_point
 from alula.loads.text.reason import reason
 
-Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing
+_Load = PointForce | PointMoment | FacePressure | SpreadForce | LoadLine | Attachment | AirPatch
+Place = _Load | CarriedBody | CarriedSpread | Wing
 
 
 def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
@@ -48,6 +50,12 @@ def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
                 f"{entry}.at: a pressure acts on a named face, but point '{load.at}' of link '{load.link}' is none; "
                 f'name the face in its part, faces.{load.at} = "face 1" (parts of shape "step")'
             )
+    for i, line in enumerate(load_case.load_lines):
+        entry = f"{where}.load_lines.{i}"
+        for path, end in ((entry, line), (f"{entry}.leaves", line.leaves)):
+            if end is not None:
+                check_place(case, path, end)
+                _check_torque(case, path, end)
     for i, air in enumerate(load_case.air):
         check_air(air, f"{where}.air.{i}")
         for j, patch in enumerate(air.spread):
@@ -171,7 +179,7 @@ def check_place(case: CoreCase, entry: str, place: Place) -> None:
         raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
 
 
-def _check_torque(case: CoreCase, entry: str, load: PointMoment) -> None:
+def _check_torque(case: CoreCase, entry: str, load: PointMoment | LoadLine | Attachment) -> None:
     """A pin that turns freely passes no torque about its own axis; only the drive's does."""
     linkage = case.linkage
     pins = [name for name in linkage.joints_of(load.link)

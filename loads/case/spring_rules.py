@@ -5,8 +5,8 @@ import math
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.coordinate import Measure
-from alula.loads.acting.sprung import Attachment
 from alula.loads.case.core import CoreCase
+from alula.loads.records.attachment import Attachment
 from alula.loads.text.explain import require
 
 

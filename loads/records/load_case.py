@@ -4,15 +4,17 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Stress, parse
+from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Length, Stress, parse
 from alula.loads.records.aero import AirLoad
+from alula.loads.records.attachment import Attachment
 from alula.loads.records.flapping import Flapping
 from alula.loads.text.shares import LoadScatter
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
+Place = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]
 
 
@@ -91,6 +93,40 @@ class SpreadForce(CaseModel):
     the linkage deforms in a pose, the force keeps its direction either way."""
 
 
+_SHORTEST = 1e-9
+"""Length of a load line over its largest coordinate below which its direction is but rounding."""
+
+
+class LoadLine(CaseModel):
+    """A force along a line through two points in space, which enters a link over a rigid lever."""
+
+    from_: Place = Field(alias="from")
+    """Where the force begins, x and y, or x, y and z; the rigid lever to the link starts here."""
+    to: Place
+    """The point that it goes towards."""
+    force: Force
+    """Its size; a negative one goes from ``to`` towards ``from``."""
+    link: Name
+    """The link that it enters."""
+    at: Name
+    """The point of that link at which the lever is fastened."""
+    axes: Axes = "global"
+    """Axes of both points: global, so that the line stays in space while the linkage moves, or those of ``link``, so
+    that it moves with this link. While the linkage deforms in a pose, the levers move along and the force keeps its
+    direction either way."""
+    leaves: Attachment | None = None
+    """Where the opposite force enters, over a rigid lever that starts at ``to``; the ground bears it where left out."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> "LoadLine":
+        start, end = vector3(self.from_), vector3(self.to)
+        if np.linalg.norm(end - start) <= _SHORTEST * max(np.abs([start, end]).max(), 1.0):
+            raise refusal("from and to are the same point, which gives the force no direction; state two points")
+        if self.leaves is not None and (self.leaves.link, self.leaves.at) == (self.link, self.at):
+            raise refusal("its force enters and leaves at one point, so that nothing is left of it; name another point")
+        return self
+
+
 class LoadCase(CaseModel):
     """One set of loads that act at the same time."""
 
@@ -124,6 +160,8 @@ class LoadCase(CaseModel):
     """Pressures on named faces of imported parts."""
     spread: tuple[SpreadForce, ...] = ()
     """Forces spread along links."""
+    load_lines: tuple[LoadLine, ...] = ()
+    """Forces along lines in space, which enter links over rigid levers, as testing machines bring them in."""
     air: tuple[AirLoad, ...] = ()
     """Lift and drag of streams."""
     flapping: Flapping | None = None

@@ -13,6 +13,7 @@ from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import Acting, loads_of
 from alula.loads.acting.dead_load import DeadLoad
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.acting.sprung import Sprung
 from alula.loads.acting.stop import Bound
 from alula.loads.acting.weight import Weight
@@ -153,9 +154,10 @@ def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *
     Returns
     -------
     tuple of Acting
-        Stated loads first, then weights, wings that flap, springs and tendons.
+        Stated loads first, then load lines, weights, wings that flap, springs and tendons.
     """
     found: list[Acting] = [DeadLoad(load) for load in stated_loads(case, load_case)]
+    found += map(ForceOnLine, load_case.load_lines)
     if load_case.own_weight or inert:
         pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
         found += [Weight(link=link, mass=mass, gravity=pull) for link, mass in masses.items()]
