@@ -222,7 +222,7 @@ class Placement:
         )
         spin, moved = w - other_w, 1j * (v - other_v) + other_w * (o - other_o)
         far = np.abs(moved) >= _INFINITE * self.linkage.longest * np.abs(spin)
-        return np.asarray(o + moved / np.where(far, np.nan, spin))
+        return np.asarray(o + moved * (1.0 / np.where(far, np.nan, spin)))
 
     def arm(self, link: str, point: str) -> Complex:
         """Arm (...) from the origin of a link's frame to one of its points, global axes [mm].

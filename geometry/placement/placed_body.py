@@ -132,7 +132,7 @@ def _placed(
         high=tuple(bounds.max(axis=0).tolist()),
     )
     body = Body(
-        part=solid, pins=tuple(_pin(placement, one) for one in (wanted[0], *loaded, *wanted[1:])), ends=(), holes=()
+        part=solid, pins=tuple(_pin(placement, one) for one in (*wanted[:1], *loaded, *wanted[1:])), ends=(), holes=()
     )
     reach = [x for pin in body.pins for x in pin.span]
     if max(reach) == min(reach):  # a single pin: as far as loads reach

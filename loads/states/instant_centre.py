@@ -23,15 +23,15 @@ class LoadLine:
     ----------
     foot : complex array (n,)
         A point of the line, nearest to the origin of the link [mm].
-    force : complex array (n,)
-        The force in the plane [N].
+    along : complex array (n,)
+        Direction of the force in the plane, a unit vector.
     ahead : array (n,)
         Distance from the instant centre [mm]: positive where the load turns the link against the motion, and so holds
         it back, negative where it turns it on. NaN where the centre lies at infinity.
     """
 
     foot: Complex
-    force: Complex
+    along: Complex
     ahead: Real
 
 
@@ -82,9 +82,10 @@ def instant_centre(moved: CaseMotion) -> InstantCentre | None:
     for name, loads in moved.loads.items():
         wrench = sum((load.resultant(place) for load in loads if load.link == link), np.zeros((*place.shape, 6)))
         force, moment = wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 5]
-        force = np.where(np.abs(force) * motion.linkage.longest > _COUPLE * np.abs(moment), force, np.nan)
-        arm = place.origin(link) - path
-        about = moment + arm.real * force.imag - arm.imag * force.real
-        foot = place.origin(link) - 1j * force * moment / np.abs(force) ** 2
-        lines[name] = LoadLine(foot=foot, force=force, ahead=-onward * about / np.abs(force))
+        size = np.abs(force)
+        size = np.where(size * motion.linkage.longest > _COUPLE * np.abs(moment), size, np.nan)
+        along, arm = force * (1.0 / size), place.origin(link) - path
+        about = moment / size + arm.real * along.imag - arm.imag * along.real
+        foot = place.origin(link) - 1j * along * (moment / size)
+        lines[name] = LoadLine(foot=foot, along=along, ahead=-onward * about)
     return InstantCentre(link=link, against=against, path=path, lines=lines)

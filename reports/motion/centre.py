@@ -11,7 +11,7 @@ from alula.loads.states.instant_centre import InstantCentre
 from alula.reports.motion.charts import chart, figures
 from alula.reports.motion.extremes import extremes, extremes_table, stretches
 from alula.reports.motion.series import pose_columns
-from alula.reports.sections.section import Number, Part, Section, Series, Text, say
+from alula.reports.sections.section import Group, Number, Part, Section, Series, Text, say
 
 
 def centre_section(found: MotionFindings) -> Section:
@@ -64,8 +64,6 @@ def _parts(centre: InstantCentre, motion: Motion, record: Mapping[str, Any]) -> 
         "where it turns it on",
         kind="note",
     )
-    for name, line in centre.lines.items():
-        yield _stability(what, centre.link, motion, name, line.ahead)
     for first, last in record["at_infinity"]:
         ends = {"first": Number(first, motion.unit, 5), "last": Number(last, motion.unit, 5)}
         yield say(
@@ -73,18 +71,20 @@ def _parts(centre: InstantCentre, motion: Motion, record: Mapping[str, Any]) -> 
         )
     for name, of in record["load_cases"].items():
         rows = [("load line ahead of the centre", "mm", of["ahead"])]
-        yield extremes_table("load-line", name, rows, motion.unit, ends=True)
+        told = _stability(what, motion, centre.lines[name].ahead)
+        table = extremes_table("load-line", name, rows, motion.unit, ends=True)
+        yield Group(f"Load case {name}", (told, table) if np.isfinite(centre.lines[name].ahead).any() else (told,))
     yield chart("instant-centre", f"Path of {what}", lambda: figures().centre_figure(centre, motion))
     yield chart("load-line", f"Load lines ahead of {what}", lambda: figures().ahead_figure(centre, motion))
 
 
-def _stability(what: str, link: str, motion: Motion, name: str, ahead: Any) -> Text:
-    """Return on which side the load line of a load case runs at the first pose, and where that changes."""
+def _stability(what: str, motion: Motion, ahead: Any) -> Text:
+    """Return on which side the load line runs at the first pose, and where that changes."""
     start = Number(float(motion.told(motion.angles[0])), motion.unit, 5)
     if not np.isfinite(ahead[0]):
-        return say(f"{name}: at {motion.coordinate} = {{start}} no load line runs past {what}", start=start)
+        return say(f"At {motion.coordinate} = {{start}} no load line runs past {what}", start=start)
     side, state = ("behind", "Not stable") if ahead[0] < 0.0 else ("ahead of", "Stable")
-    told = f"{state}: at {motion.coordinate} = {{start}} the load line of {name} runs {{ahead}} {side} {what}"
+    told = f"{state}: at {motion.coordinate} = {{start}} the load line runs {{ahead}} {side} {what}"
     facts = {"start": start, "ahead": Number(abs(float(ahead[0])), "mm")}
     turn = np.flatnonzero((ahead < 0.0) != (ahead[0] < 0.0))
     turn = turn[np.isfinite(ahead[turn])]

@@ -117,20 +117,27 @@ def test_finger() -> None:
 
 
 def test_knee() -> None:
-    """The load's moment about the instantaneous centre, which lies where the description says, decides what holds."""
-    a, b, c, d = 25.0 + 0j, -25.0 + 0j, -20.0 + 35.0j, 15.0 + 45.0j
+    """The load's moment about the instant centre, which lies where the gallery says, decides what holds and how much."""
+    a, b = 31.75 + 0j, -31.75 + 0j
+    along = 25.4 * exp(1j * math.radians(-25.0))
+    c = meet(b, 90.805, a - along, 95.25, 1.0)
+    d = c + along
     centre = crossing(a, d, b, c)
-    assert (round(centre.real), round(centre.imag)) == (-5, 137)
+    assert (round(centre.real), round(centre.imag)) == (-48, 120)
     found = solve_case_statics(read_case("knee"), "knee")
-    rate = abs(c - centre) / abs(c - b)  # of the rear plates' angle to the thigh's: C turns about both centres
-    for name, line, by_stop in (("heel-strike", 20.0, True), ("late-stance", -15.0, False)):
-        held = cross(line - centre.real + 0j, -940.0j) / rate  # C moves the other way about B than about the centre
+    rear = ((c - centre) / (c - b)).real  # its angle by the thigh's: C turns about both centres
+    for name, start, end, by_stop in (
+        ("heel-strike", 20.0 + 120.0j, -40.0 - 420.0j, True),
+        ("late-stance", -60.0 + 120.0j, 150.0 - 400.0j, False),
+    ):
+        force = 940.0 * (end - start) / abs(end - start)
+        held = -cross(start - centre, force) / (1.0 - rear)
         standing, reactions = found.standing[name], found.reactions[name]
-        assert (standing.stop == "straight") == by_stop == (held < 0.0)  # the stop pushes clockwise
+        assert (standing.stop == "straight") == by_stop == (held > 0.0)  # the stop pushes counter-clockwise
         told = standing.contact if by_stop else reactions.driving[0]
         assert told == pytest.approx(held, rel=1e-8)
-        # The front plates bear no moment: moments about B on rear plates and thigh together.
-        front = (-940.0 * (line + 25.0) + held) / cross(a - b, (d - a) / abs(d - a))
+        # Moments about C on the thigh: load, what holds it, and the front plates, which bear along their line.
+        front = (cross(start - c, force) + held) / cross(d - c, (d - a) / abs(d - a))
         assert inplane(reactions, "A") == pytest.approx(abs(front), rel=1e-8)
 
 

@@ -228,10 +228,7 @@ def centre_figure(centre: InstantCentre, motion: Motion) -> Figure:
             axes.plot(*xy.T, color=colour, linewidth=1.4, marker="o", markersize=3.5, markerfacecolor="white", zorder=3)
         axes.plot(centre.path.real[index], centre.path.imag[index], "o", color=colour, markersize=7, zorder=4)
         for i, (name, line) in enumerate(centre.lines.items()):
-            along = line.force[index] / abs(line.force[index])
-            # from the point of the line beside the centre, up and down beyond the axes
-            beside = line.foot[index]
-            ends = beside + size * along * np.array([-1.0, 1.0])
+            ends = line.foot[index] + size * line.along[index] * np.array([-1.0, 1.0])
             style = {"linestyle": DASHES[1], "alpha": 1.0 if index == 0 else 0.35, "zorder": 2}
             label = f"load line of {name}" if index == 0 else None
             axes.plot(ends.real, ends.imag, color=COLOURS[i % len(COLOURS)], linewidth=1.3, label=label, **style)
