@@ -37,7 +37,11 @@ def _frustum(level: float) -> int:
     around = [(k, (k + 1) % 4) for k in range(4)]
     low, high, up = (
         [occ.addLine(one, other) for one, other in pairs]
-        for pairs in ([(tip[a], tip[b]) for a, b in around], [(top[a], top[b]) for a, b in around], zip(tip, top, strict=True))
+        for pairs in (
+            [(tip[a], tip[b]) for a, b in around],
+            [(top[a], top[b]) for a, b in around],
+            zip(tip, top, strict=True),
+        )
     )
     loops = [low, high, *([low[a], up[b], high[a], up[a]] for a, b in around)]
     return occ.addVolume([occ.addSurfaceLoop([occ.addPlaneSurface([occ.addCurveLoop(loop)]) for loop in loops])])

@@ -14,8 +14,8 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _INFINITE = 1e6
-"""Distance of an instant centre, over the longest link, from which it counts as infinite: a load line's distance from it
-would be lost to the rounding of velocities, some 1e-10 of them."""
+"""Distance of an instant centre, over the longest link, from which it counts as infinite: a load line's distance from
+it would be lost to the rounding of velocities, some 1e-10 of them."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

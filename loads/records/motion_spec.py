@@ -32,7 +32,7 @@ class MotionSpec(CaseModel):
     travel_acceleration: Acceleration = 0.0
     """Constant acceleration of the slider or slot, in place of the angular one."""
     instant_centre: Name | None = None
-    """A moving link whose instant centre is told over the motion, and where the line of the load on it runs past that."""
+    """A moving link whose instant centre is told over the motion, and where the line of the load on it runs past it."""
     against: Name | None = None
     """The link against which the instant centre is taken; the ground when left out."""
     inertia: bool | None = None

@@ -12,11 +12,11 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _COUPLE = 1e-9
-"""Force times the longest link, over the moment, below which a load is a couple: what is left of the force is rounding."""
+"""Force times the longest link, over the moment, below which a load is a couple: the force that is left is rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LoadLine:
+class LineOfAction:
     """The line of action of all that acts on a link, at n poses; NaN where nothing acts, and of a couple.
 
     Attributes
@@ -45,14 +45,14 @@ class InstantCentre:
         The two links.
     path : complex array (n,)
         Its place x + iy [mm], NaN where it lies at infinity.
-    lines : mapping of str to LoadLine
+    lines : mapping of str to LineOfAction
         Load case -> the line of what acts on ``link``.
     """
 
     link: str
     against: str
     path: Complex
-    lines: Mapping[str, LoadLine]
+    lines: Mapping[str, LineOfAction]
 
 
 def instant_centre(moved: CaseMotion) -> InstantCentre | None:
@@ -77,15 +77,17 @@ def instant_centre(moved: CaseMotion) -> InstantCentre | None:
         return None
     link, against = spec.instant_centre, spec.against or motion.linkage.ground
     place, path = motion.placement, motion.virtual.instant_centre(link, against)
-    onward = np.sign((motion.virtual.spin(link) - motion.virtual.spin(against)) * (motion.angles[-1] - motion.angles[0]))
+    onward = np.sign(
+        (motion.virtual.spin(link) - motion.virtual.spin(against)) * (motion.angles[-1] - motion.angles[0])
+    )
     lines = {}
     for name, loads in moved.loads.items():
         wrench = sum((load.resultant(place) for load in loads if load.link == link), np.zeros((*place.shape, 6)))
         force, moment = wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 5]
         size = np.abs(force)
         size = np.where(size * motion.linkage.longest > _COUPLE * np.abs(moment), size, np.nan)
-        along, arm = force * (1.0 / size), place.origin(link) - path
+        along, arm = np.asarray(force * (1.0 / size), dtype=complex), place.origin(link) - path
         about = moment / size + arm.real * along.imag - arm.imag * along.real
         foot = place.origin(link) - 1j * along * (moment / size)
-        lines[name] = LoadLine(foot=foot, along=along, ahead=-onward * about)
+        lines[name] = LineOfAction(foot=foot, along=along, ahead=-onward * about)
     return InstantCentre(link=link, against=against, path=path, lines=lines)

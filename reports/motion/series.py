@@ -57,7 +57,9 @@ def motion_series(found: MotionFindings, rates: Mapping[str, Rates], own: Rates 
         if columns
     ]
     files += [
-        Series.below(f"{file}.csv", {name: {**pose_columns(result.moved[name]), **columns} for name, columns in cases.items()})
+        Series.below(
+            f"{file}.csv", {name: {**pose_columns(result.moved[name]), **columns} for name, columns in cases.items()}
+        )
         for file, cases in below.items()
         if cases
     ]

@@ -6,6 +6,7 @@ Places of joints are found anew by circles; forces by virtual work, instantaneou
 import math
 from cmath import exp, phase, polar
 
+import numpy as np
 import pytest
 from edited_cases import PLANAR, tight_pins
 from golden import STARTERS
@@ -117,7 +118,7 @@ def test_finger() -> None:
 
 
 def test_knee() -> None:
-    """The load's moment about the instant centre, which lies where the gallery says, decides what holds and how much."""
+    """The load's moment about the instant centre, which lies where the gallery says, decides what holds it."""
     a, b = 31.75 + 0j, -31.75 + 0j
     along = 25.4 * exp(1j * math.radians(-25.0))
     c = meet(b, 90.805, a - along, 95.25, 1.0)
@@ -152,6 +153,15 @@ def test_step() -> None:
     assert pull > 0.0
     assert inplane(found, "A") == pytest.approx(pull, rel=1e-6)
     assert found.driving[0] == pytest.approx(-cross(b - o4, -pull * (b - a) / 85.0), rel=1e-6)
+
+
+def test_pylon() -> None:
+    """The clamp bears an oblique line in space: force, both bendings and torsion are moments of the line about it."""
+    start, end = np.array([20.0, 400.0, 20.0]), np.array([90.0, -80.0, -20.0])
+    force = 1000.0 * (end - start) / np.linalg.norm(end - start)
+    held = solve_case_statics(read_case("pylon"), "pylon").reactions["stance"].joints["O"]
+    assert held.force == pytest.approx(-force, rel=1e-9)
+    assert held.wrench[3:] == pytest.approx(-np.cross(start, force), rel=1e-9)
 
 
 @pytest.mark.converged

@@ -29,7 +29,7 @@ _POSES = 5
 _STRAY = 20
 """Of how many directions one is drawn where play shades a path."""
 _FAR = 10.0
-"""Points of a path that are so many times the longest link away are left out of a picture, and load lines are so long."""
+"""Points of a path that are so many times the longest link away are left out of a picture; load lines are so long."""
 _CLIP, _HEADROOM = 4.0, 1.6
 """Beside a dead point of the drive the axis ends at these multiples of the median and of the ends' values."""
 
