@@ -32,8 +32,8 @@ assert abs(centre[0].imag / height - 1.0) < 1e-6
 motion.plot_instant_centre()
 
 # %%
-# The load's moment about the centre, over the ratio of angular speeds, is what holds thigh against rear plates: the stop
-# at heel strike, the brake (the drive) in late stance. No joint force is needed for it.
+# The load's moment about the centre, over the ratio of angular speeds, is what holds thigh against rear plates: the
+# stop at heel strike, the brake (the drive) in late stance. No joint force is needed for it.
 upper = -31.75 + 90.805 * cmath.exp(1j * math.radians(rear))
 turns = 1.0 - ((upper - centre[0]) / (upper + 31.75)).real  # thigh against rear plates, for one turn of the thigh
 for name, line in motion.instant_centre.lines.items():

@@ -75,9 +75,12 @@ def test_parallel_links_have_it_at_infinity():
 
 
 def test_a_couple_and_no_load_have_no_line():
+    """Of three forces that balance but for their moment 0.1 + 0.2 - 0.3 is left, which is rounding."""
     moment = "moments = [{ link = 'thigh', at = 'K', moment = '5 N*m' }]"
-    cases = f"load_cases={{ turn = {{ own_weight = false, {moment} }}, none = {{ own_weight = false }} }}"
-    _, found = centre_of(edited("knee", [cases]))
+    forces = (f"{{ link = 'thigh', at = '{at}', force = ['{x} N', '0 N'] }}" for at, x in zip("KCD", (0.1, 0.2, -0.3)))
+    acts = {"turn": moment, "three": f"forces = [{', '.join(forces)}]", "none": "forces = []"}
+    cases = ", ".join(f"{name} = {{ own_weight = false, {what} }}" for name, what in acts.items())
+    _, found = centre_of(edited("knee", [f"load_cases={{ {cases} }}"]))
     assert all(np.isnan(line.ahead).all() for line in found.lines.values())
 
 
