@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.linkage.placement import Placement, vector
 from alula.loads.acting.acting import Acting
-from alula.loads.records.applied import Load, PointLoad, rotated, shifted
+from alula.loads.records.applied import PointLoad, rotated, shifted
 from alula.loads.records.load_case import LoadLine, vector3
 
 Real = NDArray[np.float64]
@@ -37,31 +37,30 @@ class ForceOnLine(Acting):
         Returns
         -------
         tuple of array (..., 3)
-            Global axes [mm].
+            Global axes; of a line without z, with z = 0 [mm].
         """
         start, end = (np.broadcast_to(vector3(at), (*place.shape, 3)) for at in (self.line.from_, self.line.to))
         if self.line.axes == "global":
             return start, end
-        origin, turn = _standing(place, self.line.link, place.origin(self.line.link)), place.axes(self.line.link)
+        origin, turn = self._in_plane(place, self.line.link, place.origin(self.line.link)), place.axes(self.line.link)
         return origin + rotated(turn, start), origin + rotated(turn, end)
 
-    def loads(self, place: Placement) -> tuple[Load, ...]:
+    def loads(self, place: Placement) -> tuple[PointLoad, ...]:
         """As ``Acting.loads``: the force on its link and, where it leaves by another, the opposite on that one."""
         line, (start, end) = self.line, self.ends(place)
         force = line.force * (end - start) / np.linalg.norm(end - start, axis=-1, keepdims=True)
-        found = [_over_lever(place, line.link, line.at, start, force)]
+        found = [self._over_lever(place, line.link, line.at, start, force)]
         if line.leaves is not None:
-            found.append(_over_lever(place, line.leaves.link, line.leaves.at, end, -force))
+            found.append(self._over_lever(place, line.leaves.link, line.leaves.at, end, -force))
         return tuple(found)
 
+    def _in_plane(self, place: Placement, link: str, at: NDArray[np.complex128]) -> Real:
+        """Return a place in the mid-plane of a link (..., 3), at z = 0 for a line without z [mm]."""
+        height = place.linkage.heights.get(link, 0.0) if len(self.line.to) == 3 else 0.0
+        return vector(at) + np.array([0.0, 0.0, height])
 
-def _standing(place: Placement, link: str, at: NDArray[np.complex128]) -> Real:
-    """Return a place in the plane of a link in space (..., 3) [mm]."""
-    return vector(at) + np.array([0.0, 0.0, place.linkage.heights.get(link, 0.0)])
-
-
-def _over_lever(place: Placement, link: str, point: str, start: Real, force: Real) -> PointLoad:
-    """Return a force at a place (..., 3) as a load at a point of a link."""
-    arm = start - _standing(place, link, place.position(link, point))
-    wrench = shifted(np.concatenate([force, np.zeros(force.shape)], axis=-1), arm)
-    return PointLoad(link=link, point=point, wrench=wrench, arm=arm)
+    def _over_lever(self, place: Placement, link: str, point: str, start: Real, force: Real) -> PointLoad:
+        """Return a force at a place (..., 3) as a load at a point of a link."""
+        arm = start - self._in_plane(place, link, place.position(link, point))
+        wrench = shifted(np.concatenate([force, np.zeros(force.shape)], axis=-1), arm)
+        return PointLoad(link=link, point=point, wrench=wrench, arm=arm)

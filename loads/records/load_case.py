@@ -4,10 +4,20 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Length, Stress, parse
+from alula.geometry.base.units import (
+    NOT_NEGATIVE,
+    Acceleration,
+    Angle,
+    AngularSpeed,
+    Force,
+    Length,
+    Stress,
+    parse,
+    weight_in,
+)
 from alula.loads.records.aero import AirLoad
 from alula.loads.records.attachment import Attachment
 from alula.loads.records.flapping import Flapping
@@ -18,12 +28,13 @@ Place = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]
 
 
-def _moment(stated: object) -> tuple[float, float, float]:
+def _moment(stated: object, info: ValidationInfo) -> tuple[float, float, float]:
+    weight = weight_in(info)
     if not isinstance(stated, list | tuple):
-        return 0.0, 0.0, parse(stated, "moment")
+        return 0.0, 0.0, parse(stated, "moment", weight)
     if len(stated) != 3:
         raise refusal('it must be one moment about z or three about x, y and z; write for example "130 N*mm"')
-    x, y, z = (parse(component, "moment") for component in stated)
+    x, y, z = (parse(component, "moment", weight) for component in stated)
     return x, y, z
 
 
@@ -101,9 +112,10 @@ class LoadLine(CaseModel):
     """A force along a line through two points in space, which enters a link over a rigid lever."""
 
     from_: Place = Field(alias="from")
-    """Where the force begins, x and y, or x, y and z; the rigid lever to the link starts here."""
+    """Where the force begins, x, y and z; the rigid lever to the link starts here. Without z both ends lie in the
+    mid-planes of the links that they load."""
     to: Place
-    """The point that it goes towards."""
+    """The point that it goes towards, with as many coordinates."""
     force: Force
     """Its size; a negative one goes from ``to`` towards ``from``."""
     link: Name
@@ -119,6 +131,8 @@ class LoadLine(CaseModel):
 
     @model_validator(mode="after")
     def _fits(self) -> "LoadLine":
+        if len(self.from_) != len(self.to):
+            raise refusal("one of from and to has no z; state two coordinates for both, or three")
         start, end = vector3(self.from_), vector3(self.to)
         if np.linalg.norm(end - start) <= _SHORTEST * max(np.abs([start, end]).max(), 1.0):
             raise refusal("from and to are the same point, which gives the force no direction; state two points")
