@@ -111,11 +111,12 @@ def placed_body(
 def _placed(
     part: FilePart, facts: PartFacts, wanted: tuple[Wanted, ...], others: Mapping[str, tuple[float, float]]
 ) -> Body:
-    placement = with_loaded_bores(part, place(part, facts.bores, wanted, others), facts.bores, others)
+    bored = {name: at for name, at in others.items() if name not in part.faces}
+    placement = with_loaded_bores(part, place(part, facts.bores, wanted, bored), facts.bores, bored)
     loaded = [
-        Wanted(name=name, place=others[name], diameter=bore.diameter)
+        Wanted(name=name, place=bored[name], diameter=bore.diameter)
         for name, bore in placement.bores.items()
-        if name in others
+        if name in bored
     ]
     corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
     bounds = corners @ placement.turn.T + placement.shift
