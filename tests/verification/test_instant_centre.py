@@ -77,7 +77,10 @@ def test_parallel_links_have_it_at_infinity():
 def test_a_couple_and_no_load_have_no_line():
     """Of three forces that balance but for their moment 0.1 + 0.2 - 0.3 is left, which is rounding."""
     moment = "moments = [{ link = 'thigh', at = 'K', moment = '5 N*m' }]"
-    forces = (f"{{ link = 'thigh', at = '{at}', force = ['{x} N', '0 N'] }}" for at, x in zip("KCD", (0.1, 0.2, -0.3)))
+    forces = (
+        f"{{ link = 'thigh', at = '{at}', force = ['{x} N', '0 N'] }}"
+        for at, x in zip("KCD", (0.1, 0.2, -0.3), strict=True)
+    )
     acts = {"turn": moment, "three": f"forces = [{', '.join(forces)}]", "none": "forces = []"}
     cases = ", ".join(f"{name} = {{ own_weight = false, {what} }}" for name, what in acts.items())
     _, found = centre_of(edited("knee", [f"load_cases={{ {cases} }}"]))

@@ -4,6 +4,7 @@ Places of joints are found anew by circles; forces by virtual work, instantaneou
 """
 
 import math
+import re
 from cmath import exp, phase, polar
 
 import numpy as np
@@ -16,7 +17,7 @@ from alula.fea.beam.calibration import uncalibrated
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Verdict
 from alula.fea.standing.case_statics import solve_case_statics
-from alula.loads.case.case_file import read_case
+from alula.loads.case.case_file import read_case, read_text
 from alula.loads.statics.statics import Reactions
 
 
@@ -168,6 +169,19 @@ def test_pylon() -> None:
     along = abs(force[1]) / (math.pi * (15.0**2 - 12.5**2)) + math.hypot(bend, turn) * 15.0 / second
     told = solved.by_hand("pylon").load_cases["stance"].links["pylon"].von_mises_max.value
     assert told == pytest.approx(math.hypot(along, math.sqrt(3.0) * twist * 7.5 / second), rel=0.005)
+
+
+def test_numbers_of_prostheses_have_a_source_or_are_assumed() -> None:
+    """What a source gives stands beside its number, in inches; what none gives is said to be assumed, once for all."""
+    for name in ("finger", "knee", "pylon"):
+        told = " ".join(read_case(name).assumptions)
+        assert re.search(r"All (other )?dimensions[^.;:]*assumed", told), name
+    stated = re.findall(r'"([\d.]+) mm".*# US 5,746,774: ([\d.]+) in', read_text("knee")[0])
+    assert [float(inches) for _, inches in stated] == [2.5, 3.75, 3.575, 1.0]
+    shares = [
+        float(mm) / float(inches) / 25.4 for mm, inches in stated
+    ]  # the shin's pins stand either side of its middle
+    assert shares == pytest.approx([0.5, 1.0, 1.0, 1.0])
 
 
 @pytest.mark.converged
