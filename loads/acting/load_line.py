@@ -57,7 +57,7 @@ class ForceOnLine(Acting):
     def _in_plane(self, place: Placement, link: str, at: NDArray[np.complex128]) -> Real:
         """Return a place in the mid-plane of a link (..., 3), at z = 0 for a line without z [mm]."""
         height = place.linkage.heights.get(link, 0.0) if len(self.line.to) == 3 else 0.0
-        return vector(at) + np.array([0.0, 0.0, height])
+        return np.asarray(vector(at) + np.array([0.0, 0.0, height]))
 
     def _over_lever(self, place: Placement, link: str, point: str, start: Real, force: Real) -> PointLoad:
         """Return a force at a place (..., 3) as a load at a point of a link."""

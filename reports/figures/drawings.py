@@ -163,13 +163,12 @@ class _Drawing:
             sheet.line(at(line), SPRING, 1.1)
             obstacles.append(np.vstack([along(a, b) for a, b in itertools.pairwise(line)]))
             labels.append((at(line), text, SPRING))
-        for line in self.lines:
-            levers = [
-                (place, self.points[one.link, one.point]) for place, one in zip(line.ends, line.loads, strict=False)
-            ]
-            for ends, width, dashes in ((line.ends, 0.9, (6.0, 3.0)), *((lever, 1.3, (1.2, 2.4)) for lever in levers)):
-                sheet.line(at(np.array(ends)), LOAD, width, dashes)
-                obstacles.append(along(*ends))
+        for stated in self.lines:
+            starts = zip(stated.ends, stated.loads, strict=False)
+            levers = [((place, self.points[one.link, one.point]), 1.3, (1.2, 2.4)) for place, one in starts]
+            for (one, other), width, dashes in (((stated.ends[0], stated.ends[1]), 0.9, (6.0, 3.0)), *levers):
+                sheet.line(at(np.array([one, other])), LOAD, width, dashes)
+                obstacles.append(along(one, other))
         arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
         arrows += [(*entry, LOAD) for entry in self._loads()]
         for text, place, force, colour in arrows:

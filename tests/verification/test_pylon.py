@@ -6,11 +6,13 @@ rigid lever. What a section bears is the force and its moment about the section'
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
 from alula.fea.links.link_by_hand import link_by_hand
+from alula.fea.nonlinear.large_displacement import examine
 from alula.fea.refine.refinement import Effort
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import solved_frame
@@ -147,6 +149,27 @@ def test_a_set_up_with_offsets_at_top_and_bottom_has_these_moments_half_way_up(l
     assert (forward, outward) == pytest.approx((9000.0, -6000.0), rel=1e-6)
     borne = np.array([200.0, 600.0, -300.0]) if leaves is None else np.zeros(3)
     assert reactions.joints["O"].wrench[:3] == pytest.approx(borne, abs=1e-6)
+
+
+def test_the_lever_leans_with_the_pylon_and_brings_it_down_sooner():
+    """A force P straight down, e beside the axis and h above the top: with k² = P/(E I), E I y'' = P (d - y), of which
+    the lever's end is off by d = e + y(L) + h y'(L). So d = e/(cos kL - k h sin kL), and y(L) = d (1 - cos kL); it
+    gives way where k h tan kL = 1.
+    """
+    beside, above, free, force = 20.0, 100.0, LENGTH - HELD, 6000.0
+    case = pylon(((beside, LENGTH + above, 0.0), (beside, 0.0, 0.0), force))
+    statics = solve_case_statics(case)
+    found = examine(case, "stand", statics.forces["stand"], statics.loads["stand"])
+    k = np.sqrt(force / (case.material_of("pylon").youngs_modulus * SECOND))
+    off = beside / (np.cos(k * free) - k * above * np.sin(k * free))
+    assert found.points["pylon", "T"][0] == pytest.approx(off * (1.0 - np.cos(k * free)), rel=0.01)
+    assert off * (1.0 - np.cos(k * free)) > 1.2 * beside * (k * free) ** 2 / 2.0, "it grows"
+    assert found.reactions.joints["O"].wrench[5] == pytest.approx(force * off, rel=0.01)
+    bent = link_by_hand(case, "pylon", found.links["pylon"]).check.forces
+    top, mouth = off * np.cos(k * free), off  # how far the line is beside the pylon
+    assert [bent.at(at)[5] for at in (LENGTH - 1e-6, HELD)] == pytest.approx([-force * top, -force * mouth], rel=0.01)
+    ends = brentq(lambda x: x * above / free * np.tan(x) - 1.0, 0.5, 1.5)
+    assert found.buckling == pytest.approx((ends / (k * free)) ** 2, rel=0.02)
 
 
 @pytest.fixture(scope="module")

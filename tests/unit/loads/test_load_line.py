@@ -7,6 +7,7 @@ import pytest
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.motion.link_history import link_histories
 from alula.fea.outcomes.unchecked import caveats
 from alula.fea.outcomes.unloaded import stated_size
 from alula.fea.standing.case_statics import solve_case_statics
@@ -171,6 +172,32 @@ def test_a_line_in_axes_of_its_link_moves_along():
     assert moved.forces["line"].forces["O"] == pytest.approx(-(turned + along(STRUT)[2])[:, :2])
     expected = -sum(np.cross(along(line)[0], along(line)[2])[2] for line in (LINE, STRUT))
     assert moved.torque["line"] == pytest.approx(np.full(39, expected))
+
+
+@pytest.mark.parametrize("lines", [(LINE, STRUT), (STRUT, LINE)])
+def test_over_a_motion_the_line_pushes_its_link_where_it_stands(lines):
+    """In the link's axes the force turns back and its arm changes from pose to pose; all that acts balances."""
+    flat = [{**line, "from": line["from"][:2], "to": line["to"][:2]} for line in lines]
+    points = {"O": ["0 mm", "0 mm"], "P": ["60 mm", "0 mm"]}
+    links = {"ground": {"ground": True, "points": {"O": ["0 mm", "0 mm"]}}, "lever": {"points": points, "part": "bar"}}
+    joints = {"O": {"links": ["ground", "lever"], "pin_diameter": "3 mm"}}
+    moved = solve_case_motion(lever(*flat, **MOTION, links=links, joints=joints, parts={"bar": BAR}))
+    [history] = link_histories(moved, "lever")
+    [end] = history.ends
+    turn = moved.motion.placement.axes("lever")
+    push = np.zeros((39, 6))
+    for line in flat:
+        start, _, force = along(line)
+        arm = start - turn @ [60.0, 0.0, 0.0]
+        push[:, :3] += np.einsum("nij,i->nj", turn, force)
+        push[:, 5] += np.cross(arm, force)[:, 2]
+    assert end.wrench == pytest.approx(push, abs=1e-6)
+    assert history.resultant() == pytest.approx(np.zeros((39, 6)), abs=1e-6)
+
+
+def test_an_envelope_does_not_follow_a_line_out_of_the_plane():
+    with pytest.raises(CaseError, match=r"load_cases\.line: a load on link 'lever' acts out of the linkage's plane"):
+        link_histories(solve_case_motion(lever(STRUT, LINE, **MOTION)), "lever")
 
 
 def test_a_linkage_that_is_let_go_stands_where_a_spring_balances_the_line():
