@@ -8,7 +8,7 @@ import inspect
 import os
 import threading
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import wraps
 from pathlib import Path
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import alula
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 
 if TYPE_CHECKING:
@@ -160,23 +161,11 @@ def _case(name: str, values: Mapping[str, object] | None, home: Path) -> "alula.
     if name not in alula.cases():
         place = _below(name, home)
         with suppress(ValueError, OSError):  # ``read_case`` says what is wrong
-            named += _files(tomllib.loads(place.read_text(encoding="utf-8")))
+            tables = tomllib.loads(place.read_text(encoding="utf-8"))
+            named += [table["file"] for _, table in named_files(tables)]
     for file in named:
         _below(str(file), home if place == name else Path(place).parent, home)
     return alula.read_case(place, values)
-
-
-def _files(tables: object) -> Iterator[str]:
-    """Yield every file that a case names."""
-    if isinstance(tables, dict):
-        for key, value in tables.items():
-            if key == "file" and isinstance(value, str):
-                yield value
-            else:
-                yield from _files(value)
-    elif isinstance(tables, list):
-        for one in tables:
-            yield from _files(one)
 
 
 def _below(path: str, beside: Path, home: Path | None = None) -> Path:

@@ -24,7 +24,7 @@ COLUMNS = (Quantity.SAFETY_FACTOR, Quantity.PLASTIC_COLLAPSE, Quantity.EYES)
 
 def asked(name: str) -> Case:
     """Return a case that asks for all three numbers, of eyes where their formulas hold."""
-    stated = alula.read_case(name).with_check("collapse", type="plastic-collapse", minimum=1.0)
+    stated = alula.read_case(name).with_check("collapse", type="plastic-collapse", minimum=1.0, replace=True)
     for link in stated.record.checked_links:
         with suppress(CaseError):
             more = stated.with_check(f"eyes of {link}", type="eye", minimum=1.0, links=[link])

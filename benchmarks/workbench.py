@@ -30,8 +30,8 @@ DRAGS = {
     },
     "ornithopter": {"pin": (r'(throw = ")3( mm)', 3.0, 0.01), "pose": (r'(angle = ")90( deg)', 90.0, 1.0)},
     "knee": {
-        "pin": (r'(points\.D = \[")46.09772229( mm)', 46.09772229, 0.02),
-        "pose": (r'(angle = ")81.86989765( deg)', 81.86989765, -0.2),
+        "pin": (r'(points\.D = \[")95.25( mm)', 95.25, 0.02),
+        "pose": (r'(angle = ")-25( deg)', -25.0, 0.2),
     },
 }
 """Case -> what is dragged: the entry, its value, and by how much each change moves it."""

@@ -44,6 +44,7 @@ def edited(name: str, entries: Sequence[str], *, bare: bool = False, fits: bool 
 def tight_pins(case: Case) -> Case:
     """Return a case whose pins tilt in none of their holes, so that they share couples between layers in one way."""
     stated = {"fit": None, "clearance": None}
-    tight = {n: {"tight_in": joint.links, **stated} for n, joint in case.joints.items() if joint.type == "revolute"}
+    turning = {n: joint for n, joint in case.joints.items() if joint.type == "revolute" and not joint.clamped}
+    tight = {n: {"tight_in": joint.links, **stated} for n, joint in turning.items()}
     joints = {n: j.model_copy(update=tight.get(n, {"tight_in": ()})) for n, j in case.joints.items()}
     return case.model_copy(update={"joints": joints})

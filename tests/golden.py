@@ -40,7 +40,7 @@ relative, and moments, in N mm, are rounding below 1e-12, and any order of sums 
 relative to the solution, and the reaction of supports, relative to the load, measure error themselves: they are below
 1e-9 in all kept results, and differences below 1e-8 have no meaning. Links that nothing bends deflect by rounding [mm],
 and a link that starts along x is turned by rounding [deg]."""
-STARTERS = ("finger", "four-bar", "knee", "six-bar", "slider-crank", "step")
+STARTERS = ("finger", "four-bar", "knee", "pylon", "six-bar", "slider-crank", "step")
 """Built-in cases of our own, to start from. Their joint forces and torques are compared with closed forms
 (``tests/verification/test_starters.py``), so that their hand calculation alone is kept here."""
 VOLATILE = ("schema_version", "timings", "timings_s", "kept", "seconds", "version", "next_cost", "work", "memory")

@@ -16,6 +16,7 @@ from alula.loads.states.case_motion import AirRange, CaseMotion
 from alula.loads.states.clearance import Clearance, clearance
 from alula.loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from alula.loads.states.drive_work import DriveWork
+from alula.loads.states.instant_centre import InstantCentre, instant_centre
 from alula.loads.states.loose_motion import loose_motion
 
 Real = NDArray[np.float64]
@@ -90,6 +91,8 @@ class MotionFindings:
         Load case -> what the drive does, with the ends of what friction may be; empty where no joint rubs.
     linkage : mapping of str to LinkageOverMotion
         Load case -> numbers of the linkage as a whole, where a check asks for the limit load.
+    centre : InstantCentre or None
+        None where the case asks for none.
     dead_point_distance : float
         The least over the motion, a ratio.
     way_to_dead_point : float
@@ -102,6 +105,7 @@ class MotionFindings:
     air: AirRange | None
     work: Mapping[str, DriveWork]
     linkage: Mapping[str, LinkageOverMotion]
+    centre: InstantCentre | None
     dead_point_distance: float
     way_to_dead_point: float
 
@@ -129,6 +133,7 @@ def motion_findings(moved: CaseMotion) -> MotionFindings:
         air=air_range(moved),
         work={name: work_between(moved, name) for name in moved.rubbing},
         linkage=asked_over_motion(moved),
+        centre=instant_centre(moved),
         dead_point_distance=least_dead_point_distance(moved),
         way_to_dead_point=way_to_dead_point(moved),
     )

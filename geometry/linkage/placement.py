@@ -13,6 +13,10 @@ from alula.geometry.linkage.linkage import Linkage
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+_INFINITE = 1e6
+"""Distance of an instant centre, over the longest link, from which it counts as infinite: a load line's distance from
+it would be lost to the rounding of velocities, some 1e-10 of them."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Placement:
@@ -198,6 +202,31 @@ class Placement:
             x + iy [mm/s²].
         """
         return np.asarray(self._of(self._accelerations, link))
+
+    def instant_centre(self, link: str, against: str) -> Complex:
+        """Point (...) about which a link turns against another, where both have the same velocity; it needs rates.
+
+        Parameters
+        ----------
+        link, against : str
+            Their names.
+
+        Returns
+        -------
+        complex array (...)
+            x + iy [mm], NaN where it lies at infinity: the links do not turn against each other, or it is so far that
+            the turning is rounding.
+
+        References
+        ----------
+        Derived: v + i w (z - o) of both links are equal at z, for their velocities v, spins w and origins o.
+        """
+        (v, w, o), (other_v, other_w, other_o) = (
+            (self.velocity(name), self.spin(name), self.origin(name)) for name in (link, against)
+        )
+        spin, moved = w - other_w, 1j * (v - other_v) + other_w * (o - other_o)
+        far = np.abs(moved) >= _INFINITE * self.linkage.longest * np.abs(spin)
+        return np.asarray(o + moved * (1.0 / np.where(far, np.nan, spin)))
 
     def arm(self, link: str, point: str) -> Complex:
         """Arm (...) from the origin of a link's frame to one of its points, global axes [mm].

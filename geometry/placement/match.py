@@ -54,11 +54,9 @@ def place(
     CaseError
         Where none fits, or several do.
     """
-    candidates = [_candidates(part, bores, one) for one in wanted]
     if not wanted:
-        raise CaseError(
-            "an imported part is placed by the bores of its pins, but the link has no joint with a pin; add one"
-        )
+        wanted = _unpinned(part, bores, others)
+    candidates = [_candidates(part, bores, one) for one in wanted]
     if len(wanted) == 1:
         return _placed_about(part, bores, candidates[0], wanted[0], others)
     if part.along is not None:
@@ -86,6 +84,17 @@ def place(
         )
     [either_way_up] = found.values()
     return either_way_up[-1 if part.flip else 0]
+
+
+def _unpinned(part: FilePart, bores: Sequence[Bore], others: Mapping[str, tuple[float, float]]) -> list[Wanted]:
+    """Return the first point with a bore of its own, which tells how a part without pins lies."""
+    for name in others:
+        if name in part.bores:
+            return [Wanted(name=name, place=others[name], diameter=_named(part, bores, name).diameter)]
+    raise CaseError(
+        "an imported part is placed by its bores, but the link has no joint with a pin; add one, or name in the part's "
+        "bores that of a point without a joint"
+    )
 
 
 def _placed_about(

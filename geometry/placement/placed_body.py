@@ -111,11 +111,12 @@ def placed_body(
 def _placed(
     part: FilePart, facts: PartFacts, wanted: tuple[Wanted, ...], others: Mapping[str, tuple[float, float]]
 ) -> Body:
-    placement = with_loaded_bores(part, place(part, facts.bores, wanted, others), facts.bores, others)
+    bored = {name: at for name, at in others.items() if name not in part.faces}
+    placement = with_loaded_bores(part, place(part, facts.bores, wanted, bored), facts.bores, bored)
     loaded = [
-        Wanted(name=name, place=others[name], diameter=bore.diameter)
+        Wanted(name=name, place=bored[name], diameter=bore.diameter)
         for name, bore in placement.bores.items()
-        if name in others
+        if name in bored
     ]
     corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
     bounds = corners @ placement.turn.T + placement.shift
@@ -132,7 +133,7 @@ def _placed(
         high=tuple(bounds.max(axis=0).tolist()),
     )
     body = Body(
-        part=solid, pins=tuple(_pin(placement, one) for one in (wanted[0], *loaded, *wanted[1:])), ends=(), holes=()
+        part=solid, pins=tuple(_pin(placement, one) for one in (*wanted[:1], *loaded, *wanted[1:])), ends=(), holes=()
     )
     reach = [x for pin in body.pins for x in pin.span]
     if max(reach) == min(reach):  # a single pin: as far as loads reach

@@ -246,6 +246,10 @@ def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
         )
     else:
         check_moving(case.linkage, "motion.coordinate", name)
+    if spec.instant_centre is not None:
+        check_moving(case.linkage, "motion.instant_centre", spec.instant_centre)
+    if spec.against is not None:
+        require("motion.against", spec.against, case.links, "is no link")
 
 
 def _check_cycle(case: CoreCase) -> None:

@@ -491,7 +491,7 @@ class CoreCase(Revisable):
                 for pin in pins
             )
             if link not in self._imported:
-                others = tuple((end.name, (end.x, end.y)) for end in ends if end.name not in part.faces)
+                others = tuple((end.name, (end.x, end.y)) for end in ends)
                 placed = placed_body(part, wanted, others)
                 bores, faces = {pin.name for pin in placed.pins}, faces_of(part, placed)
                 outside = tuple(replace(end, face=faces.get(end.name)) for end in ends if end.name not in bores)

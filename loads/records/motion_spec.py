@@ -32,6 +32,10 @@ class MotionSpec(CaseModel):
     """Speed of the slider or slot at the first pose, in place of the angular speed."""
     travel_acceleration: Acceleration = 0.0
     """Constant acceleration of the slider or slot, in place of the angular one."""
+    instant_centre: Name | None = None
+    """A moving link whose instant centre is told over the motion, and where the line of the load on it runs past it."""
+    against: Name | None = None
+    """The link against which the instant centre is taken; the ground when left out."""
     inertia: bool | None = None
     """Whether the inertia of the links' parts and of what they carry loads the joints: where a speed or an acceleration
     is stated, unless this is false."""
@@ -101,6 +105,12 @@ class MotionSpec(CaseModel):
             ),
             "the order of the ends gives the direction, so speed must not be negative; swap the ends": (
                 self.ends is not None and speed < 0.0
+            ),
+            "against is the second link of an instant centre; state instant_centre as well": (
+                self.against is not None and self.instant_centre is None
+            ),
+            f"'{self.against}' does not turn against itself; state two different links": (
+                self.against is not None and self.against == self.instant_centre
             ),
             'inertia = true needs a speed; state one, for example speed = "150 rpm"': (
                 self.inertia is True and speed == 0.0 and acceleration == 0.0

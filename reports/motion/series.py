@@ -52,19 +52,32 @@ def motion_series(found: MotionFindings, rates: Mapping[str, Rates], own: Rates 
         "joint-forces": {name: _force_columns(result, name) for name in result.forces},
     }
     files = [
-        Series(file=f"{file}.csv", columns={**_base(motion), **columns}, digits=12)
+        Series(file=f"{file}.csv", columns={**pose_columns(motion), **columns}, digits=12)
         for file, columns in whole.items()
         if columns
     ]
     files += [
-        Series.below(f"{file}.csv", {name: {**_base(result.moved[name]), **columns} for name, columns in cases.items()})
+        Series.below(
+            f"{file}.csv", {name: {**pose_columns(result.moved[name]), **columns} for name, columns in cases.items()}
+        )
         for file, cases in below.items()
         if cases
     ]
     return Section(key="files", series=tuple(files))
 
 
-def _base(motion: Motion) -> dict[str, Real]:
+def pose_columns(motion: Motion) -> dict[str, Real]:
+    """Return the first columns of every file: the share of the cycle, the coordinate, and the time.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    dict
+        Title with unit -> values (n,).
+    """
     columns = {} if motion.instants is None else {motion.progress_title: motion.progress}
     columns |= {f"{motion.coordinate} {motion.coordinate.measure.word} [{motion.unit}]": motion.told(motion.angles)}
     return columns if motion.times is None else columns | {"time [s]": motion.times}

@@ -6,6 +6,7 @@ from alula.fea.findings.of_motion import MotionFindings
 from alula.fea.findings.rates import QUANTITIES, series
 from alula.loads.case.case import Case
 from alula.loads.states.clearance import Clearance
+from alula.reports.motion.centre import centre_section
 from alula.reports.motion.drive import drive_section
 from alula.reports.motion.play import play_section
 from alula.reports.motion.poses import motion_section
@@ -50,6 +51,7 @@ def motion_sections(found: MotionFindings) -> tuple[Section, ...]:
         model_section(moved.case, MOTION_CAPTION, still=LINKAGE),
         motion_section(found, own),
         drive_section(found),
+        centre_section(found),
         _air(found),
         play_section(found),
         _gaps(found.clearance),

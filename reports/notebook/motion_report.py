@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from alula.fea.findings.of_motion import MotionFindings, PlayOverMotion, motion_findings, play_over_motion
 from alula.fea.findings.rates import series
+from alula.geometry.base.errors import CaseError
 from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.instant_centre import InstantCentre
 from alula.reports.motion.whole_motion import motion_sections
 from alula.reports.notebook.shown import ShownPicture, ShownTable, Tabled, pick, table_of
 from alula.reports.sections.section import Section
@@ -56,6 +58,11 @@ class MotionReport(Tabled):
     def dead_points(self) -> tuple[float, ...]:
         """Values of the coordinate at which the driven link turns back [degrees or mm]."""
         return tuple(float(self.result.motion.told(at)) for at in self.result.dead_points)
+
+    @property
+    def instant_centre(self) -> InstantCentre | None:
+        """Path of the instant centre, and where load lines run past it; None where the case asks for none."""
+        return self._found.centre
 
     def table(self, of: str = "drive") -> ShownTable:
         """Return a table of the motion, with rows per load case.
@@ -126,6 +133,26 @@ class MotionReport(Tabled):
         from alula.reports.figures.motion.motion_figures import paths_figure
 
         return _picture(paths_figure(self.result.motion, self._play))
+
+    def plot_instant_centre(self) -> ShownPicture:
+        """Draw the path of the instant centre for which the case asks, with the load lines at the first and last pose.
+
+        Returns
+        -------
+        ShownPicture
+
+        Raises
+        ------
+        CaseError
+            Where the case asks for none.
+        """
+        from alula.reports.figures.motion.motion_figures import centre_figure
+
+        if self.instant_centre is None:
+            raise CaseError(
+                'motion.instant_centre: the case asks for none; state a link, as in instant_centre = "thigh"'
+            )
+        return _picture(centre_figure(self.instant_centre, self.result.motion))
 
     def __repr__(self) -> str:
         return f"<motion of {self.result.case.title!r}: {len(self.coordinates)} poses>"

@@ -13,6 +13,7 @@ from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
 from alula.geometry.base.whole_file import write_whole
 from alula.geometry.keeping.cache_folder import cache_folder
+from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import file_text
 
@@ -110,7 +111,7 @@ def plain_name(name: str, suffix: str) -> str:
 
 
 def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
-    """Refuse a case whose parts are files outside of its folder: the page reads nothing there.
+    """Refuse a case that names files outside of its folder: the page reads nothing there.
 
     Parameters
     ----------
@@ -122,13 +123,13 @@ def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
     ------
     CaseError
     """
-    parts, home = tables.get("parts"), Path(os.path.realpath(folder))
-    for name, part in parts.items() if isinstance(parts, dict) else ():
-        file = part.get("file") if isinstance(part, dict) else None
-        if isinstance(file, str) and not Path(os.path.realpath(home / file.replace("\0", ""))).is_relative_to(home):
+    home = Path(os.path.realpath(folder))
+    for entry, table in named_files(tables):
+        file = table["file"].replace("\0", "")
+        if not Path(os.path.realpath(home / file)).is_relative_to(home):
             raise CaseError(
-                f"parts.{printable(name)}.file: '{printable(file)}' is not in the folder of the case, and the page "
-                "reads no other; copy it there"
+                f"{printable(entry)}: '{printable(file)}' is not in the folder of the case, and nothing else is read "
+                "here; copy it there"
             )
 
 

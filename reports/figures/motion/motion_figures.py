@@ -15,8 +15,10 @@ from alula.fea.findings.of_motion import PlayOverMotion
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.motion import Motion
 from alula.loads.states.case_motion import CaseMotion
+from alula.loads.states.instant_centre import InstantCentre
 
 Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00", "#56b4e9", "#444444", "#e69f00")
 """Okabe and Ito's colours, told apart by the colour-blind; two of them darkened for lines on white."""
@@ -26,6 +28,8 @@ _SIZE = (8.0, 4.8)
 _POSES = 5
 _STRAY = 20
 """Of how many directions one is drawn where play shades a path."""
+_FAR = 10.0
+"""Points of a path that are so many times the longest link away are left out of a picture; load lines are so long."""
 _CLIP, _HEADROOM = 4.0, 1.6
 """Beside a dead point of the drive the axis ends at these multiples of the median and of the ends' values."""
 
@@ -204,7 +208,57 @@ def _stray(axes: Any, motion: Motion, play: PlayOverMotion, label: str, colour: 
     return f" ± {most:.2g} mm" if np.isfinite(most) else ""
 
 
-def plane(motion: Motion, *, width: float) -> tuple[Figure, Any]:
+def centre_figure(centre: InstantCentre, motion: Motion) -> Figure:
+    """Draw the path of an instant centre, and the linkage with its load lines at the first pose (black) and the last.
+
+    Parameters
+    ----------
+    centre : InstantCentre
+    motion : Motion
+
+    Returns
+    -------
+    Figure
+    """
+    figure, axes = plane(motion, width=8.0, beside=centre.path)
+    axes.plot(centre.path.real, centre.path.imag, color="black", linewidth=1.6, label="instant centre")
+    size = motion.linkage.longest * _FAR
+    for index, colour in ((-1, "0.75"), (0, "black")):
+        for chain in chains(motion.linkage):
+            xy = np.array([motion.position(link, point)[index] for link, point in chain])
+            axes.plot(*xy.T, color=colour, linewidth=1.4, marker="o", markersize=3.5, markerfacecolor="white", zorder=3)
+        axes.plot(centre.path.real[index], centre.path.imag[index], "o", color=colour, markersize=7, zorder=4)
+        for i, (name, line) in enumerate(centre.lines.items()):
+            ends = line.foot[index] + size * line.along[index] * np.array([-1.0, 1.0])
+            style = {"linestyle": DASHES[1], "alpha": 1.0 if index == 0 else 0.35, "zorder": 2}
+            label = f"load line of {name}" if index == 0 else None
+            axes.plot(ends.real, ends.imag, color=COLOURS[i % len(COLOURS)], linewidth=1.3, label=label, **style)
+    ground(axes, motion)
+    legend(axes, f"{centre.link} against {centre.against}")
+    return figure
+
+
+def ahead_figure(centre: InstantCentre, motion: Motion) -> Figure:
+    """Draw how far ahead of an instant centre the load lines run, over the coordinate.
+
+    Parameters
+    ----------
+    centre : InstantCentre
+    motion : Motion
+
+    Returns
+    -------
+    Figure
+    """
+    figure, [axes] = over_angle(motion, ["load line ahead of the centre [mm]"])
+    for i, (name, line) in enumerate(centre.lines.items()):
+        _line(axes, motion, line.ahead, name, i)
+    axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    legend(axes, "load case")
+    return figure
+
+
+def plane(motion: Motion, *, width: float, beside: Complex | None = None) -> tuple[Figure, Any]:
     """Return a figure and axes that contain the whole motion to scale [mm].
 
     Parameters
@@ -212,12 +266,17 @@ def plane(motion: Motion, *, width: float) -> tuple[Figure, Any]:
     motion : Motion
     width : float
         Of the figure [inches].
+    beside : complex array, optional
+        Other points that it contains, where they are not far off.
 
     Returns
     -------
     tuple
     """
     everything = motion.points
+    if beside is not None:
+        near = beside[np.abs(beside - everything.mean()) < _FAR * motion.linkage.longest]
+        everything = np.concatenate([everything.ravel(), near])
     x, y = everything.real, everything.imag
     margin = 0.06 * max(np.ptp(x), np.ptp(y))
     spans = (np.ptp(x) + 2 * margin, np.ptp(y) + 2 * margin)

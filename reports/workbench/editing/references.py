@@ -16,7 +16,7 @@ BY_KEY = {
 }
 """Key of a table -> what its own keys name."""
 BY_VALUE = {
-    **dict.fromkeys(("link", "links", "massless", "tight_in"), "links"),
+    **dict.fromkeys(("link", "links", "massless", "tight_in", "instant_centre", "against"), "links"),
     **dict.fromkeys(("joint", "joints", "crank_pivot", "crank_pin", "rocker_pin", "rocker_pivot"), "joints"),
     **dict.fromkeys(("at", "start", "end", "held_at", "points"), "points"),
     **dict.fromkeys(("material", "pin_material"), "materials"),

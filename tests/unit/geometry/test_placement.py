@@ -175,6 +175,16 @@ def test_named_bores_without_a_joint_tell_how_a_part_on_a_single_pin_lies(seed, 
         assert side.turn @ bores["ABC".index(other)].centre + side.shift == pytest.approx([*POINTS[other], 0.0])
 
 
+def test_without_pins_the_bore_of_a_point_tells_how_a_part_lies():
+    turn, shift = rotation(3), np.array([3.0, -40.0, 12.0])
+    bores, names = moved(turn, shift), {"B": "bore 2", "C": "bore 3"}
+    pinned = place(part(bores=names), bores, wanted({"B": POINTS["B"]}), {"C": POINTS["C"]})
+    found = place(part(bores=names), bores, [], {name: POINTS[name] for name in ("B", "C")})
+    assert list(found.bores) == ["B"]
+    assert np.allclose(found.turn, pinned.turn, atol=1e-12)
+    assert np.allclose(found.shift, pinned.shift, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("entries", "points", "said"),
     [

@@ -136,9 +136,9 @@ def test_the_whole_verdict_is_that_of_alula_check(name):
                 check.answer,
             )
     for link, one in answer["links"].items():
-        factors = [
-            c for c in checks.values() if c["subject"] == link and c["quantity"].startswith("safety") and c["low"]
-        ]
+        kinds = ("safety", "plastic-collapse")
+        own = [c for c in checks.values() if c["subject"] == link and c["quantity"].startswith(kinds)]
+        factors = [c for c in own if c["low"]]
         assert one["use"][1] == pytest.approx(max(c["limit"] / c["low"] for c in factors))
         assert one["use"][0] == pytest.approx(max(c["limit"] / c["high"] for c in factors if c["high"]))
     [soon] = early
