@@ -24,7 +24,7 @@ def test_what_cannot_be_written_stays_as_it_was(tmp_path, monkeypatch, harm):
         file.chmod(0o444)
     if harm == "full":
         monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(28, "No space left on device")))
-    with pytest.raises(OSError, match="read-only|No space|No such file"):
+    with pytest.raises(OSError, match=r"read-only|No space|No such file"):
         write_whole(file if harm != "no folder" else tmp_path / "none" / "one.txt", b"after")
     assert file.read_bytes() == b"before"
     assert [one.name for one in tmp_path.iterdir()] == ["one.txt"]
