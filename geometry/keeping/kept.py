@@ -32,9 +32,9 @@ from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
-from alula.geometry.base.whole_file import write_whole
 from alula.geometry.keeping.cache_folder import cache_folder
 from alula.geometry.keeping.content import digest
+from alula.geometry.keeping.whole_file import write_whole
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -6,7 +6,7 @@ from typing import Any
 import tomlkit
 
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.geometry.base.whole_file import write_whole
+from alula.geometry.keeping.whole_file import write_whole
 from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
-from alula.geometry.base.whole_file import write_whole
 from alula.geometry.keeping.cache_folder import cache_folder
+from alula.geometry.keeping.whole_file import write_whole
 from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import file_text
@@ -144,7 +144,7 @@ def write_file(path: Path, text: str) -> None:
     Raises
     ------
     CannotRunError
-        Where the disk refuses, as ``alula.geometry.base.whole_file.write_whole`` does; the file is as it was then.
+        Where the disk refuses, as ``alula.geometry.keeping.whole_file.write_whole`` does; the file is as it was then.
     """
     try:
         write_whole(path, text.encode())

@@ -263,7 +263,8 @@ class Forms {
   /** A box that opens; what is in it is made only then. */
   box(path, title, inside, open = false) {
     const name = key(path);
-    const is = open || this.open.has(name) || this.holdsProblem(path);
+    const wrong = path.at(-1) === "further" ? path.length > 2 && this.begins(path.slice(0, -1)) : this.begins(path);
+    const is = open || this.open.has(name) || wrong;
     const box = make("details", { "data-path": name, open: is }, make("summary", {}, title));
     const fill = () => box.childElementCount === 1 && box.append(...inside().flat().filter(Boolean));
     if (is) fill();
@@ -272,10 +273,6 @@ class Forms {
       if (box.open) fill();
     });
     return box;
-  }
-
-  holdsProblem(path) {
-    return path.at(-1) === "further" ? path.length > 2 && this.begins(path.slice(0, -1)) : this.begins(path);
   }
 
   begins(path) {

@@ -35,13 +35,7 @@ function* boxes(anchor, text, gap, way, near) {
   }
 }
 
-/**
- * Find a box for each label {text, anchors, gap, way, needed, near}; null for one that has no room and is not needed.
- *
- * @param {object[]} labels in the order in which they choose
- * @param {number[][]} taken places that stay free of text
- * @param {number[]} frame left, top, right, bottom of what is seen
- */
+/** A box for each label {text, anchors, gap, way, needed, near}, in the order in which they choose; null for one that has no room and is not needed. Places that are taken stay free of text; the frame is what is seen. */
 export function place(labels, taken, frame) {
   const found = [];
   for (const label of labels) {

@@ -1,0 +1,30 @@
+"""Files that are written whole or not at all."""
+
+import os
+
+import pytest
+
+from alula.geometry.keeping.whole_file import write_whole
+
+
+def test_a_file_keeps_its_place_behind_a_link_and_its_permissions(tmp_path):
+    file, link = tmp_path / "one.txt", tmp_path / "link.txt"
+    file.write_bytes(b"before")
+    file.chmod(0o640)
+    link.symlink_to(file)
+    write_whole(link, b"a", b"b", lasting=False)
+    assert (file.read_bytes(), file.stat().st_mode & 0o777, link.is_symlink()) == (b"ab", 0o640, True)
+
+
+@pytest.mark.parametrize("harm", ["read-only", "full", "no folder"])
+def test_what_cannot_be_written_stays_as_it_was(tmp_path, monkeypatch, harm):
+    file = tmp_path / "one.txt"
+    file.write_bytes(b"before")
+    if harm == "read-only":
+        file.chmod(0o444)
+    if harm == "full":
+        monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    with pytest.raises(OSError, match=r"read-only|No space|No such file"):
+        write_whole(file if harm != "no folder" else tmp_path / "none" / "one.txt", b"after")
+    assert file.read_bytes() == b"before"
+    assert [one.name for one in tmp_path.iterdir()] == ["one.txt"]
