@@ -139,7 +139,7 @@ def test_a_lever_on_a_tie_stays_where_the_shapes_of_its_links_put_it(monkeypatch
     found = link_collapse._stays
 
     def kept(paths, *more):
-        [(held, path)] = paths
+        held, path = paths[0]
         _, state = held.stays(path, 1.0)
         fields.append(held.displacement(state) - held.displacement(held.problem.elastic(1.0)))
         return found(paths, *more)
