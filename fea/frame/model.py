@@ -197,6 +197,25 @@ class NodeLoad:
         arm, force = self.lever
         return np.asarray(float(arm @ force) * np.eye(3) - np.outer(arm, force))
 
+    def turned(self, rotation: Floats) -> "NodeLoad":
+        """Return the load where its node has turned, and with it the arm.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3)
+            Of the node.
+
+        Returns
+        -------
+        NodeLoad
+        """
+        arm, force = self.lever
+        if not arm.any():
+            return self
+        moved = rotation @ arm
+        wrench = self.wrench + np.concatenate([np.zeros(3), np.cross(moved - arm, force)])
+        return NodeLoad(node=self.node, wrench=wrench, lever=np.array([moved, force]))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FrameModel:

@@ -415,7 +415,11 @@ class EquilibriumPath:
             moments[node] -= wrench[3:]
 
         for load in model.loads:
-            push(load.node, factor * load.wrench)
+            now = load.turned(state.rotations[load.node])
+            push(load.node, factor * now.wrench)
+            if now.lever.any():
+                turns = [step.number for step in self.chain.nodes[load.node]]
+                np.add.at(tangent, np.ix_(turns, turns), factor * axes[turns] @ now.stiffness @ axes[turns].T)
         for spring, wrenches in self.springs.changes(state.displacements, state.rotations, factor):
             for node, wrench in zip(spring.nodes, wrenches, strict=True):
                 if node is not None:
@@ -505,7 +509,7 @@ class EquilibriumPath:
         ends = answer.forces.reshape(-1, 2, 6)
         np.add.at(joints, self.pairs, ends)
         for load in model.loads:
-            joints[load.node] -= load.wrench
+            joints[load.node] -= load.turned(state.rotations[load.node]).wrench
         changes = tuple(self.springs.changes(state.displacements, state.rotations, 1.0))
         for spring, wrenches in changes:
             for node, wrench in zip(spring.nodes, wrenches, strict=True):

@@ -42,13 +42,18 @@ from alula.fea.frame.displacement_band import compliance_range
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
-from alula.fea.nonlinear.equilibrium_path import MOST_STEPS, NoEquilibriumError, UnfollowedError
+from alula.fea.nonlinear.equilibrium_path import (
+    MOST_STEPS,
+    CorotationalSolution,
+    NoEquilibriumError,
+    UnfollowedError,
+)
 from alula.fea.nonlinear.softened import followed
 from alula.fea.nonlinear.stability import LARGE, ON_RIMS, SNAP, dead_point_factor, linkage_factor, span
 from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.case import Case
-from alula.loads.records.applied import Load, PointLoad
+from alula.loads.records.applied import Load, PointLoad, in_axes
 from alula.loads.statics.statics import Reactions
 
 if TYPE_CHECKING:
@@ -447,6 +452,14 @@ def _end(frame: LinkageFrame, held: float) -> tuple[float, float]:
     return MOST, math.inf
 
 
+def _leaning(load: PointLoad, frame: LinkageFrame, found: CorotationalSolution) -> PointLoad:
+    """Return what the moment of a load gains as its arm turns with its link."""
+    stated = in_axes(load, "global", frame.pose.placement)
+    turned = found.rotations[frame.points[load.link, load.point]] @ stated.arm
+    gained = np.cross(turned - stated.arm, stated.wrench[:3])
+    return PointLoad(link=load.link, point=load.point, wrench=np.concatenate([np.zeros(3), gained]))
+
+
 def _deformed(
     case: Case,
     title: str,
@@ -482,6 +495,7 @@ def _deformed(
             for spring, wrenches in found.springs
             for (link, point), wrench in zip(spring.acting.ends, wrenches, strict=True)
         ),
+        *(_leaning(load, frame, found) for load in loads if isinstance(load, PointLoad) and load.arm.any()),
     )
     return replace(
         small,

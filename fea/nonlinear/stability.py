@@ -238,10 +238,6 @@ def geometric_stiffness(path: EquilibriumPath, pressed: ElementResponse, guide_f
         axes = path.chain.axes(start.rotations)
         elastic = path.springs.tangent(start.displacements, start.rotations, axes, 0.0)
         bent[: path.chain.count, : path.chain.count] -= elastic
-    axes = path.chain.axes(start.rotations)
-    for load in path.model.loads:
-        numbers = [step.number for step in path.chain.nodes[load.node]]
-        np.add.at(bent, np.ix_(numbers, numbers), axes[numbers] @ load.stiffness @ axes[numbers].T)
     return bent
 
 

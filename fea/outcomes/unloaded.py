@@ -17,6 +17,7 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.loads.acting.acting import loads_of
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from alula.loads.records.check_spec import SafetyFactorCheck
@@ -184,7 +185,7 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
 
 
 def stated_size(case: Case, title: str) -> float:
-    """Return ``load_size`` of what a load case states, whatever the pose, and of springs in the stated one.
+    """Return ``load_size`` of what a load case states, and of springs and load lines in the stated pose.
 
     Parameters
     ----------
@@ -197,5 +198,6 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    springs = loads_of(lasting(case), case.stated_pose.placement)
-    return load_size((*stated_loads(case, case.load_cases[title]), *springs), case.linkage.longest)
+    load_case = case.load_cases[title]
+    posed = loads_of((*map(ForceOnLine, load_case.load_lines), *lasting(case)), case.stated_pose.placement)
+    return load_size((*stated_loads(case, load_case), *posed), case.linkage.longest)

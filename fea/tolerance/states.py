@@ -1,5 +1,6 @@
 """Pose and statics of n samples of a case at once."""
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -169,17 +170,15 @@ class Sampler:
             first, second = DrivenClosure(place.closure, self.pose.coordinate).coefficients(place.q)
             place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
         acting = acting_on(self.case, load_case, self.masses, inert=place.qddot is not None)
-        found: list[Load] = []
-        stated = 0
-        for one in acting:
-            found += (at_poses(load, place.shape) for load in one.loads(place))
-            stated = stated if one.lasting else len(found)
+        found = [[at_poses(load, place.shape) for load in one.loads(place)] for one in acting]
         for variable, column in zip(self.variables, deviations.T, strict=True):
             if variable.kind in ("load", "force") and is_of(name, str(variable.target[0])):
                 number = int(variable.target[1])
-                for i in range(stated) if number < 0 else (number,):
-                    found[i] = _changed(found[i], variable, column)
-        return tuple(self._weighing(load, deviations) if isinstance(load, BodyForce) else load for load in found)
+                every = [i for i, one in enumerate(acting) if not one.lasting]
+                for i in every if number < 0 else (number,):
+                    found[i] = [_changed(load, variable, column) for load in found[i]]
+        loads = itertools.chain.from_iterable(found)
+        return tuple(self._weighing(load, deviations) if isinstance(load, BodyForce) else load for load in loads)
 
     def _weighing(self, load: BodyForce, deviations: Real) -> Load:
         """Return weight and inertia of a link with the mass of each sample: by a parabola through three masses."""
@@ -248,7 +247,7 @@ def scaled(load: AnyLoad, factor: Real) -> AnyLoad:
     PointLoad, LineLoad or BodyForce
     """
     found: Any = {}
-    for name in (*load.VECTORS, *load.SCALARS):
+    for name in {*load.VECTORS, *load.SCALARS} - {"arm"}:
         values = np.asarray(getattr(load, name))
         found[name] = values * factor.reshape(-1, *[1] * (values.ndim - 1))
     changed: AnyLoad = replace(load, **found)

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any
 
+from pydantic import ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 from alula.geometry.base.model import refusal
@@ -72,6 +73,10 @@ LEAST, LARGEST = 1e-20, 1e20
 """Sizes in alula's units beyond which a quantity is taken for a mistake. Nothing that is built comes near, and what is
 computed from sizes between them stays finite (measured: statics, motion and hand calculation with one to three
 quantities at either end)."""
+BODY_WEIGHT = "body_weight"
+"""The unit of force that is the weight of the body whose mass a case states, and its key in a validation's context."""
+_STANDARD_GRAVITY = 9806.65
+"""By definition (3rd CGPM, 1901) [mm/s²]."""
 _LONGEST_TEXT = 64
 _UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?(?:[01]\.5|[1-4]))?"
 TYPOGRAPHY = str.maketrans(
@@ -88,7 +93,7 @@ def registry() -> Any:
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 
 
-def parse(text: object, dimension: str) -> float:
+def parse(text: object, dimension: str, body_weight: float | None = None) -> float:
     """Convert text such as ``"2.4 GPa"`` to a float in alula's unit of its dimension.
 
     Parameters
@@ -97,6 +102,8 @@ def parse(text: object, dimension: str) -> float:
         What stands in the case file.
     dimension : str
         A key of ``INTERNAL_UNITS``, such as ``"stress"``.
+    body_weight : float, optional
+        What the unit ``body_weight`` stands for [N]; it is refused where left out.
 
     Returns
     -------
@@ -118,9 +125,17 @@ def parse(text: object, dimension: str) -> float:
         raise refusal(f"the {dimension} must be one finite number and its unit; {_comma_remedy(text) or example}")
     if not unit:
         raise refusal(f"the {dimension} needs its unit; {example}")
-    conversion = _usual(unit, dimension) or _conversion(unit, dimension)
+    of_body = unit.startswith(BODY_WEIGHT) and unit[len(BODY_WEIGHT) :][:1] in ("", " ", "*", "/")
+    known = unit.replace(BODY_WEIGHT, "N", 1) if of_body else unit
+    conversion = _usual(known, dimension) or _conversion(known, dimension)
     if conversion is None:
         raise refusal(f'"{unit}" is not a unit of {dimension}; {example}')
+    if of_body:
+        if body_weight is None:
+            raise refusal(
+                'no body is stated that weighs so much; write for example body_mass = "80 kg" above all tables'
+            )
+        number *= body_weight
     factor, offset = conversion
     value = number * factor + offset
     if value != 0.0 and not LEAST <= abs(value) <= LARGEST:
@@ -128,6 +143,25 @@ def parse(text: object, dimension: str) -> float:
         size = f"{limit} {INTERNAL_UNITS[dimension]} in size"
         raise refusal(f"the {dimension} must be {size}; check the number and its unit{zero}")
     return value
+
+
+def weight_of(body_mass: object) -> float | None:
+    """Return the weight of a body, under standard gravity.
+
+    Parameters
+    ----------
+    body_mass : object
+        What stands in the case file.
+
+    Returns
+    -------
+    float or None
+        [N]; None where no mass is stated. Of what is no mass any, since that is refused by itself.
+    """
+    try:
+        return None if body_mass is None else parse(body_mass, "mass") * _STANDARD_GRAVITY
+    except PydanticCustomError:
+        return 1.0
 
 
 def as_text(value: float, dimension: str) -> str:
@@ -204,6 +238,22 @@ def _conversion(unit: str, dimension: str) -> tuple[float, float] | None:
     return (one - zero, zero) if dimension == "temperature" else (one, 0.0)
 
 
+def weight_in(info: ValidationInfo) -> float | None:
+    """Return what ``body_weight`` stands for in a validation.
+
+    Parameters
+    ----------
+    info : ValidationInfo
+        Its context may have it.
+
+    Returns
+    -------
+    float or None
+        [N]
+    """
+    return (info.context or {}).get(BODY_WEIGHT)
+
+
 class Dimensioned:
     """Tells pydantic to read a field as text with a number and a unit of the given dimension."""
 
@@ -212,7 +262,9 @@ class Dimensioned:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         """Parse text to a float in alula's unit."""
-        return core_schema.no_info_plain_validator_function(lambda text: parse(text, self.dimension))
+        return core_schema.with_info_plain_validator_function(
+            lambda text, info: parse(text, self.dimension, weight_in(info))
+        )
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         """Describe the field as text, with an example."""

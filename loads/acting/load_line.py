@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.linkage.placement import Placement, vector
 from alula.loads.acting.acting import Acting
-from alula.loads.records.applied import Load, PointLoad, rotated, shifted
+from alula.loads.records.applied import PointLoad, rotated, shifted
 from alula.loads.records.load_case import LoadLine, vector3
 
 Real = NDArray[np.float64]
@@ -45,7 +45,7 @@ class ForceOnLine(Acting):
         origin, turn = self._in_plane(place, self.line.link, place.origin(self.line.link)), place.axes(self.line.link)
         return origin + rotated(turn, start), origin + rotated(turn, end)
 
-    def loads(self, place: Placement) -> tuple[Load, ...]:
+    def loads(self, place: Placement) -> tuple[PointLoad, ...]:
         """As ``Acting.loads``: the force on its link and, where it leaves by another, the opposite on that one."""
         line, (start, end) = self.line, self.ends(place)
         force = line.force * (end - start) / np.linalg.norm(end - start, axis=-1, keepdims=True)
@@ -57,7 +57,7 @@ class ForceOnLine(Acting):
     def _in_plane(self, place: Placement, link: str, at: NDArray[np.complex128]) -> Real:
         """Return a place in the mid-plane of a link (..., 3), at z = 0 for a line without z [mm]."""
         height = place.linkage.heights.get(link, 0.0) if len(self.line.to) == 3 else 0.0
-        return vector(at) + np.array([0.0, 0.0, height])
+        return np.asarray(vector(at) + np.array([0.0, 0.0, height]))
 
     def _over_lever(self, place: Placement, link: str, point: str, start: Real, force: Real) -> PointLoad:
         """Return a force at a place (..., 3) as a load at a point of a link."""

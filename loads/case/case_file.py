@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from alula.geometry.base.errors import CaseError
+from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
 from alula.loads.case.part_points import with_part_points
@@ -342,7 +343,7 @@ def validate(data: dict[str, Any], folder: str = "") -> Case:
     """
     refuse_deep(data, "case")
     _check_version(data)
-    context = {"folder": folder}
+    context = {"folder": folder, BODY_WEIGHT: weight_of(data.get("body_mass"))}
     tables = with_part_points(data, context)
     try:
         return Case.model_validate(tables, context=context)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import Name, Text
-from alula.geometry.base.units import NOT_NEGATIVE, Length
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length, Mass
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.bodies.features import FlatFace
 from alula.geometry.joints.joint import Joint
@@ -57,6 +57,9 @@ class CoreCase(Revisable):
     """Where its numbers come from."""
     assumptions: tuple[Text, ...] = ()
     """What the case assumes beyond its source, one sentence each; the report lists them."""
+    body_mass: Annotated[Mass, POSITIVE] | None = None
+    """Mass of the body whose weight, under standard gravity of 9.80665 m/s², is the unit body_weight: any force may be
+    stated as "1.1 body_weight", any moment as "0.05 body_weight*m"."""
     links: Annotated[dict[Name, Link], Field(min_length=2, max_length=200)]
     """The links by name; one of them is the ground."""
     joints: Annotated[dict[Name, Joint], Field(min_length=1, max_length=400)]

@@ -297,3 +297,9 @@ def load_caveats(case: CoreCase) -> Iterator[Caveat]:
             what=reason("forces_on_pins", places=tuple(on_pins)),
             why=reason("pin_bears_it"),
         )
+    lines = [line for load_case in case.load_cases.values() for line in load_case.load_lines]
+    ends = [end for line in lines for end in (line, line.leaves) if end is not None]
+    places = tuple(dict.fromkeys(f"{end.at} of {end.link}" for end in ends))
+    if places:
+        yield Caveat(heading=Heading.ASSUMED, topic=Topic.LOADS, what=reason("rigid_levers", places=places))
+        yield Caveat(topic=Topic.LOADS, what=reason("beyond_levers", places=places), why=reason("not_modelled"))

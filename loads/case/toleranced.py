@@ -1,6 +1,7 @@
 """Which numbers of a case its tolerances let vary: one independent variable for each."""
 
-from collections.abc import Callable, Iterator, Mapping
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sized
 from dataclasses import dataclass
 from typing import Literal
 
@@ -34,8 +35,8 @@ class Variable:
         The entry that is toleranced; both coordinates of a place share it.
     kind : {"place", "pose", "load", "force", "material", "size"}
     target : tuple
-        Place: link, point, axis. Load: load case, number among its stated loads (-1: all that acts). Force: load case,
-        number, component. Material: its name, entry. Size: the path of its entry.
+        Place: link, point, axis. Load: load case, number among its load lines and then its other stated loads (-1: all
+        that acts). Force: load case, number, component. Material: its name, entry. Size: the path of its entry.
     half : float
         Half the width: [mm, rad, N], of loads and materials a share.
     nominal : float
@@ -139,20 +140,20 @@ def _place(path: str, link: str, point: str, tolerance: Tolerance, stated: str) 
 
 def _load(case: CoreCase, entry: str, path: str, load_case: str, rest: list[str], tolerance: Tolerance) -> Variable:
     record = case.load_cases[load_case]
-    lists = {"forces": record.forces, "moments": record.moments, "spread": record.spread}
+    lists: dict[str, Sized] = {"load_lines": record.load_lines, "forces": record.forces, "moments": record.moments}
+    lists |= {"pressures": record.pressures, "spread": record.spread}
     make: Callable[..., Variable] = lambda **more: Variable(  # noqa: E731
         tolerance=path, distribution=tolerance.distribution, **more
     )
     if not rest:
         return make(kind="load", target=(load_case, -1), half=_half(entry, tolerance, None, 1.0))
-    if rest[0] not in lists:
+    if rest[0] not in lists or rest[0] == "pressures":
         raise CaseError(f"{entry}: this entry cannot have a tolerance; choose one of {KNOWN}")
     loads = lists[rest[0]]
     if len(rest) < 2 or not rest[1].isdecimal() or int(rest[1]) >= len(loads):
         raise CaseError(f"{entry}: it names none of the {len(loads)} {rest[0]}; count them from 0")
-    moments = len(record.forces)
-    before = {"forces": 0, "moments": moments, "spread": moments + len(record.moments) + len(record.pressures)}
-    number = before[rest[0]] + int(rest[1])
+    before = itertools.takewhile(lambda one: one != rest[0], lists)
+    number = sum(len(lists[one]) for one in before) + int(rest[1])
     match rest[2:]:
         case []:
             return make(kind="load", target=(load_case, number), half=_half(entry, tolerance, None, 1.0))

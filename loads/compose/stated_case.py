@@ -19,6 +19,7 @@ from pydantic import BaseModel, ValidationError, create_model
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel
+from alula.geometry.base.units import BODY_WEIGHT
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import (
@@ -692,7 +693,7 @@ def _check(tables: Tables, folder: str) -> None:
     if table == "links" and isinstance(tables[table], dict):  # an imported part gives its link the points
         tables = {table: {name: _with_any_points(link) for name, link in tables[table].items()}}
     try:
-        _model_of(table).model_validate(tables, context={"folder": folder})
+        _model_of(table).model_validate(tables, context={"folder": folder, BODY_WEIGHT: 1.0})  # of any body
     except ValidationError as error:
         raise CaseError(sentence(error, Case)) from None
 

@@ -4,10 +4,20 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
 
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Length, Stress, parse
+from alula.geometry.base.units import (
+    NOT_NEGATIVE,
+    Acceleration,
+    Angle,
+    AngularSpeed,
+    Force,
+    Length,
+    Stress,
+    parse,
+    weight_in,
+)
 from alula.loads.records.aero import AirLoad
 from alula.loads.records.attachment import Attachment
 from alula.loads.records.flapping import Flapping
@@ -18,12 +28,13 @@ Place = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]
 
 
-def _moment(stated: object) -> tuple[float, float, float]:
+def _moment(stated: object, info: ValidationInfo) -> tuple[float, float, float]:
+    weight = weight_in(info)
     if not isinstance(stated, list | tuple):
-        return 0.0, 0.0, parse(stated, "moment")
+        return 0.0, 0.0, parse(stated, "moment", weight)
     if len(stated) != 3:
         raise refusal('it must be one moment about z or three about x, y and z; write for example "130 N*mm"')
-    x, y, z = (parse(component, "moment") for component in stated)
+    x, y, z = (parse(component, "moment", weight) for component in stated)
     return x, y, z
 
 

@@ -154,10 +154,9 @@ def acting_on(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass], *
     Returns
     -------
     tuple of Acting
-        Stated loads first, then load lines, weights, wings that flap, springs and tendons.
+        Load lines first, then other stated loads, weights, wings that flap, springs and tendons.
     """
-    found: list[Acting] = [DeadLoad(load) for load in stated_loads(case, load_case)]
-    found += map(ForceOnLine, load_case.load_lines)
+    found: list[Acting] = [*map(ForceOnLine, load_case.load_lines), *map(DeadLoad, stated_loads(case, load_case))]
     if load_case.own_weight or inert:
         pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
         found += [Weight(link=link, mass=mass, gravity=pull) for link, mass in masses.items()]
@@ -192,7 +191,7 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
 
 
 def stated_loads(case: Case, load_case: LoadCase) -> tuple[PointLoad | LineLoad, ...]:
-    """Return the forces, moments, spread loads and air of a load case, the same at every pose.
+    """Return the forces, moments, spread loads and air of a load case, the same at every pose: all but load lines.
 
     Parameters
     ----------

@@ -2,14 +2,17 @@
 
 import itertools
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.outcomes.result import CheckResult, SolidResult
-from alula.geometry.linkage.placement import vector
+from alula.geometry.linkage.placement import Placement, vector
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import LineLoad, PointLoad, in_axes
+from alula.loads.records.load_case import LoadLine
 from alula.loads.states.actions import bounds, lasting, stated_loads
 from alula.loads.statics.rounding import without_rounding
 from alula.reports.figures.sheet.canvas import Canvas
@@ -49,6 +52,18 @@ def linkage_drawing(result: CheckResult, load_case: str) -> Canvas:
     return _Drawing(result, load_case).draw()
 
 
+class _Line(NamedTuple):
+    """A load line as it is drawn: both ends (2, 2) [mm], and what enters over levers from the first and the second."""
+
+    ends: Real
+    loads: tuple[PointLoad, ...]
+
+    @classmethod
+    def of(cls, line: LoadLine, place: Placement) -> "_Line":
+        acting = ForceOnLine(line)
+        return cls(np.array(acting.ends(place))[:, :2], acting.loads(place))
+
+
 class _Drawing:
     """Positions and forces of one load case, and how to draw them."""
 
@@ -61,6 +76,7 @@ class _Drawing:
         without_air = self.stated.model_copy(update={"air": ()})
         stated = stated_loads(result.case, without_air)
         self.applied = [in_axes(load, "global", self.pose.placement) for load in stated]
+        self.lines = [_Line.of(line, self.pose.placement) for line in self.stated.load_lines]
         self.points = {
             (link, point): self.pose.position(link, point)
             for link, record in self.linkage.links.items()
@@ -72,7 +88,7 @@ class _Drawing:
         self.largest = max((float(np.linalg.norm(f)) for f in forces), default=0.0)
         self.per_newton = _ARROW * self.size / self.largest if self.largest > 0.0 else 0.0
         tips = [at + f * self.per_newton for _, at, f in (*self._joint_forces(), *self._loads())]
-        everything = np.vstack([corners, *[t[None] for t in tips]])
+        everything = np.vstack([corners, *[t[None] for t in tips], *[line.ends for line in self.lines]])
         low, high = everything.min(axis=0) - 0.11 * self.size, everything.max(axis=0) + 0.11 * self.size
         for link in self.linkage.links:
             if (nodes := self._nodes(link)) is not None:  # a part may reach far beyond its points
@@ -120,6 +136,11 @@ class _Drawing:
                 continue
             if np.any(vector):
                 found.append((f"{number(float(np.linalg.norm(vector)), 3)} N\n{how} {load.link}", at, vector))
+        for line in self.lines:
+            for load, at in zip(line.loads, line.ends, strict=False):
+                if np.any(vector := load.wrench[:2]):
+                    whole = number(float(np.linalg.norm(load.wrench[:3])), 3)
+                    found.append((f"{whole} N\non {load.link}", at, vector))
         points = self.result.case.link_points
         for air, forces in zip(self.stated.air, self.result.case.air_forces(self.name), strict=True):
             for patch, share in zip(air.spread, shares(air, points), strict=True):
@@ -142,6 +163,12 @@ class _Drawing:
             sheet.line(at(line), SPRING, 1.1)
             obstacles.append(np.vstack([along(a, b) for a, b in itertools.pairwise(line)]))
             labels.append((at(line), text, SPRING))
+        for stated in self.lines:
+            starts = zip(stated.ends, stated.loads, strict=False)
+            levers = [((place, self.points[one.link, one.point]), 1.3, (1.2, 2.4)) for place, one in starts]
+            for (one, other), width, dashes in (((stated.ends[0], stated.ends[1]), 0.9, (6.0, 3.0)), *levers):
+                sheet.line(at(np.array([one, other])), LOAD, width, dashes)
+                obstacles.append(along(one, other))
         arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
         arrows += [(*entry, LOAD) for entry in self._loads()]
         for text, place, force, colour in arrows:
@@ -347,7 +374,7 @@ class _Drawing:
         scale = f"; {number(key, 1)} N is {number(key * self.per_newton, 2)} mm long" if key > 0.0 else ""
         entries = [(JOINT_FORCE, f"joint force{scale}")]
         if self._loads() or any(colour == LOAD for *_, colour in self._moments()):
-            entries.append((LOAD, "applied load"))
+            entries.append((LOAD, "applied load" + ("; dashed: its line, dotted: rigid lever" if self.lines else "")))
         drive = self.reactions.drive
         if drive is not None and self.reactions.drive_torque != 0.0 and not drive.idle:
             entries.append((TORQUE, "moment of the stop" if drive.stop else "drive torque"))

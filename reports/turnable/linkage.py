@@ -1,7 +1,7 @@
 """The linkage as a whole for the browser: its bodies in their layers, its poses, and a value for each link."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.linkage.placement import Placement
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
 from alula.loads.case.forks import levels, outer_link
 from alula.loads.case.layers import on_one_axis, slab
-from alula.loads.records.applied import LineLoad, PointLoad
+from alula.loads.records.applied import LineLoad, PointLoad, in_axes
+from alula.loads.records.load_case import LoadCase
 from alula.loads.states.actions import lasting, stated_loads
 from alula.reports.figures.figures import COLOURS
 from alula.reports.figures.outlines.assembly import LAYERS
@@ -301,7 +303,7 @@ def _loads(case: Case) -> list[dict[str, Any]]:
     """Return the stated forces, as arrows at the points of links."""
     found, several = [], len(case.load_cases) > 1
     for name, load_case in case.load_cases.items():
-        for load in stated_loads(case, load_case.model_copy(update={"air": ()})):
+        for load in (*stated_loads(case, load_case.model_copy(update={"air": ()})), *_on_lines(case, load_case)):
             if isinstance(load, PointLoad):
                 force, (x, y) = load.wrench[:3], case.links[load.link].points[load.point]
             elif isinstance(load, LineLoad):
@@ -321,6 +323,14 @@ def _loads(case: Case) -> list[dict[str, Any]]:
                     }
                 )
     return found
+
+
+def _on_lines(case: Case, load_case: LoadCase) -> Iterator[PointLoad]:
+    """Yield the loads of load lines where they enter, in axes of their link where the line turns with it."""
+    place = case.stated_pose.placement
+    for line in load_case.load_lines:
+        for load in ForceOnLine(line).loads(place):
+            yield in_axes(load, line.axes, place) if load.link == line.link else load
 
 
 def _drive(case: Case) -> dict[str, Any] | None:

@@ -305,4 +305,6 @@ def _record(tables: Mapping[str, Any], one: Reference) -> Path:
         and not (table == "checks" and isinstance(names, list) and len(names) > 1)
     ):
         return path[:2]
+    if path[-2] == "leaves":  # a load line that lost its far end would go to the ground
+        return path[:-2]
     return path if isinstance(names, list) else path[:-1]

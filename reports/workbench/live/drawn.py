@@ -15,12 +15,13 @@ from pydantic import ValidationError
 
 from alula.fea.standing.case_statics import CaseStatics
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.units import parse
+from alula.geometry.base.units import BODY_WEIGHT, parse, weight_of
 from alula.geometry.bodies.body import Body
 from alula.geometry.clearance.shape import link_shape
 from alula.geometry.joints.joint import Joint
 from alula.geometry.linkage.linkage import Link
 from alula.geometry.linkage.pose import Pose
+from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
 from alula.loads.case.heights import thickness
 from alula.loads.records.aero import shares
@@ -105,6 +106,7 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
         kind, dimension = ("travel", "length") if "travel" in pose else ("angle", "angle")
         value = parse(pose.get(kind, "0 deg"), dimension) if pose.get("coordinate") else 0.0
         held = {"kind": kind, "value": math.degrees(value) if kind == "angle" else value, "least": None, "most": None}
+        weight = {BODY_WEIGHT: weight_of(tables.get("body_mass"))}
         load_cases, drive, whole = tables.get("load_cases", {}), tables.get("drive", {}), _size([*at.values()])
         return {
             "links": [_link(name, one, frames[name], whole, case) for name, one in links.items()],
@@ -113,7 +115,7 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
                 for name, joint in joints.items()
                 if ends[name] in at and joint.links[0] in frames
             ],
-            "loads": [load for name, one in load_cases.items() for load in _loose_loads(name, one, at, frames)],
+            "loads": [load for name, one in load_cases.items() for load in _loose_loads(name, one, at, frames, weight)],
             "springs": [],
             "coordinate": {"name": pose["coordinate"], **held} if pose.get("coordinate") else None,
             "drive": {"link": drive["link"], "joint": drive["joint"]} if drive.keys() >= {"link", "joint"} else None,
@@ -229,6 +231,10 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
         else:
             at, point = pose.position(seen.link, seen.point), seen.point
             yield _load(path, name, kind, seen.link, at, seen.wrench, point) | {"axes": load.axes}
+    for i, line in enumerate(map(ForceOnLine, stated.load_lines)):
+        for load, at in zip(line.loads(pose.placement), line.ends(pose.placement), strict=False):
+            path = ["load_cases", own, "load_lines", i]
+            yield _load(path, name, "load line", load.link, at[:2], load.wrench[:3])
     for i, (air, forces) in enumerate(zip(stated.air, case.air_forces(own), strict=True)):
         for patch, share in zip(air.spread, shares(air, case.link_points), strict=True):
             ends = [pose.position(patch.link, p) for p in (patch.at, patch.start, patch.end) if p is not None]
@@ -241,12 +247,16 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
 
 
 def _loose_loads(
-    name: str, tables: Mapping[str, Any], at: Mapping[tuple[str, str], complex], frames: Mapping[str, Frame]
+    name: str,
+    tables: Mapping[str, Any],
+    at: Mapping[tuple[str, str], complex],
+    frames: Mapping[str, Frame],
+    weight: Mapping[str, float | None],
 ) -> Iterator[Plain]:
     """Yield the forces of a load case that can be read."""
     for i, stated in enumerate(tables.get("forces", [])):
         try:
-            force = PointForce.model_validate(stated)
+            force = PointForce.model_validate(stated, context=dict(weight))
         except ValidationError:
             continue
         if (force.link, force.at) in at:

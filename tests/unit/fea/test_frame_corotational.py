@@ -111,18 +111,36 @@ def test_turning_the_frame_turns_the_answer() -> None:
     assert b.end_forces.reshape(-1, 3) == pytest.approx(a.end_forces.reshape(-1, 3) @ R.T, abs=1e-6)
 
 
-def test_the_root_holds_what_lies_beyond() -> None:
-    """Force and moment at the root from the deformed tip's position."""
+@pytest.mark.parametrize("arm", [(0.0, 0.0, 0.0), (5.0, 30.0, -20.0)])
+def test_the_root_holds_what_lies_beyond(arm: tuple[float, ...]) -> None:
+    """Force and moment at the root from the deformed tip's position, and from where its turned lever ends."""
     force, moment = np.array([0.2, 0.5, -0.3]), np.array([2.0, -1.0, 3.0])
     model = FrameModel(
         nodes=np.array([[0.0, 0, 0], [100, 0, 0]]),
         elements=(element(0, 1, section=TUBE),),
         supports=(Support(node=0),),
-        loads=(NodeLoad(node=1, wrench=np.concatenate([force, moment])),),
+        loads=(NodeLoad(node=1, wrench=np.array([*force, *moment + np.cross(arm, force)]), lever=[arm, force]),),
     )
     out = solve_large_displacement(model, 8)
-    tip = np.array([100.0, 0, 0]) + out.displacements[1]
-    assert out.end_forces[0, 0] == pytest.approx([*-force, *-(moment + np.cross(tip, force))], abs=1e-5)
+    end = np.array([100.0, 0, 0]) + out.displacements[1] + out.rotations[1] @ arm
+    assert out.end_forces[0, 0] == pytest.approx([*-force, *-(moment + np.cross(end, force))], abs=1e-5)
+    assert out.joint_wrenches[1] == pytest.approx(np.zeros(6), abs=1e-5), "nothing but the load is joined to the tip"
+
+
+def test_the_tangent_of_a_lever_is_the_derivative_of_what_is_left_over() -> None:
+    """Out of the plane, at a pin whose axis has turned, by differences; beside a load without a lever."""
+    model = four_bar(3.0)
+    lever = np.array([[9.0, -20.0, 35.0], [2.0, 5.0, -4.0]])
+    pushed = NodeLoad(node=2, wrench=np.concatenate([lever[1], np.cross(*lever)]), lever=lever)
+    path = EquilibriumPath(subdivide(replace(model, loads=(*model.loads, pushed)), 2))
+    path.follow(1e-3, 20)
+    assert np.abs(path.state.rotations[2] - np.eye(3)).max() > 0.05
+    tangent = path.balance(path.state, 1.0)[1]
+    for number, unknown in enumerate(np.eye(path.size)):
+        step = 1e-5 * path.unit[number]
+        ahead, behind = (path.balance(path._moved(path.state, sign * step * unknown), 1.0)[0] for sign in (1.0, -1.0))
+        found = (ahead - behind) / (2.0 * step)
+        assert tangent[:, number] == pytest.approx(found, abs=1e-5 * np.abs(tangent[:, number]).max())
 
 
 def pulled(force: float, *across: float) -> FrameModel:

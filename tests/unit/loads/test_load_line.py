@@ -1,13 +1,24 @@
 """Forces along lines in space: where they enter, what of them reaches joints, and how they stay where links move."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.motion.link_history import link_histories
+from alula.fea.outcomes.unchecked import caveats
+from alula.fea.outcomes.unloaded import stated_size
 from alula.fea.standing.case_statics import solve_case_statics
+from alula.fea.tolerance.states import Sampler
 from alula.geometry.base.errors import CaseError
 from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case_file import validate
+from alula.loads.case.toleranced import toleranced
 from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.text.caveat import Topic
+from alula.reports.sentences.caveats import caveat
 
 FIRST = {
     "from": ["260 mm", "90 mm", "40 mm"],
@@ -75,9 +86,8 @@ def lever(*lines, **motion):
             },
             "joints": {"O": {"links": ["ground", "lever"]}},
             "pose": {"coordinate": "lever", "angle": "30 deg"},
-            "drive": {"link": "lever", "joint": "O"},
             "load_cases": {"line": {"load_lines": list(lines)}},
-            **motion,
+            **(motion if "springs" in motion else {"drive": {"link": "lever", "joint": "O"}} | motion),
         }
     )
 
@@ -149,7 +159,9 @@ MOTION = {"motion": {"speed": "1 rad/s", "range": ["-20 deg", "170 deg"], "poses
 def test_a_line_in_space_stays_there_while_the_link_turns(lines):
     """The torque about O is the moment of the lines about it: the same at every pose."""
     expected = -sum(np.cross(along(line)[0], along(line)[2])[2] for line in lines)
-    assert solve_case_motion(lever(*lines, **MOTION)).torque["line"] == pytest.approx(np.full(39, expected))
+    moved = solve_case_motion(lever(*lines, **MOTION))
+    assert moved.torque["line"] == pytest.approx(np.full(39, expected))
+    assert moved.forces["line"].imbalance == pytest.approx(np.zeros(39), abs=1e-9 * abs(expected))
 
 
 def test_a_line_in_axes_of_its_link_moves_along():
@@ -160,6 +172,80 @@ def test_a_line_in_axes_of_its_link_moves_along():
     assert moved.forces["line"].forces["O"] == pytest.approx(-(turned + along(STRUT)[2])[:, :2])
     expected = -sum(np.cross(along(line)[0], along(line)[2])[2] for line in (LINE, STRUT))
     assert moved.torque["line"] == pytest.approx(np.full(39, expected))
+
+
+@pytest.mark.parametrize("lines", [(LINE, STRUT), (STRUT, LINE)])
+def test_over_a_motion_the_line_pushes_its_link_where_it_stands(lines):
+    """In the link's axes the force turns back and its arm changes from pose to pose; all that acts balances."""
+    flat = [{**line, "from": line["from"][:2], "to": line["to"][:2]} for line in lines]
+    points = {"O": ["0 mm", "0 mm"], "P": ["60 mm", "0 mm"]}
+    links = {"ground": {"ground": True, "points": {"O": ["0 mm", "0 mm"]}}, "lever": {"points": points, "part": "bar"}}
+    joints = {"O": {"links": ["ground", "lever"], "pin_diameter": "3 mm"}}
+    moved = solve_case_motion(lever(*flat, **MOTION, links=links, joints=joints, parts={"bar": BAR}))
+    [history] = link_histories(moved, "lever")
+    [end] = history.ends
+    turn = moved.motion.placement.axes("lever")
+    push = np.zeros((39, 6))
+    for line in flat:
+        start, _, force = along(line)
+        arm = start - turn @ [60.0, 0.0, 0.0]
+        push[:, :3] += np.einsum("nij,i->nj", turn, force)
+        push[:, 5] += np.cross(arm, force)[:, 2]
+    assert end.wrench == pytest.approx(push, abs=1e-6)
+    assert history.resultant() == pytest.approx(np.zeros((39, 6)), abs=1e-6)
+
+
+def test_an_envelope_does_not_follow_a_line_out_of_the_plane():
+    with pytest.raises(CaseError, match=r"load_cases\.line: a load on link 'lever' acts out of the linkage's plane"):
+        link_histories(solve_case_motion(lever(STRUT, LINE, **MOTION)), "lever")
+
+
+def test_a_linkage_that_is_let_go_stands_where_a_spring_balances_the_line():
+    """It is no potential in the plane, but one of the coordinate: the torque M of a line in space turns it by M/k."""
+    flat = {**LINE, "from": LINE["from"][:2], "to": LINE["to"][:2]}
+    torque = np.cross(along(flat)[0], along(flat)[2])[2]
+    spring = {"joint": "O", "stiffness": "20 N*m/rad", "free_angle": "30 deg"}
+    case = lever(flat, pose={"coordinate": "lever", "angle": "30 deg", "equilibrium": True}, springs={"s": spring})
+    [standing] = solve_case_statics(case).standing.values()
+    assert standing.pose.angles["lever"] == pytest.approx(np.radians(30.0) + torque / 20e3)
+    assert standing.stiffness == pytest.approx(20e3)
+
+
+def test_the_tolerance_of_a_line_changes_its_loads_alone():
+    """Of two lines, one of which leaves by another link, and a force: each draw is that of its own."""
+    force = {"link": "pylon", "at": "M", "force": ["70 N", "20 N"]}
+    first, second = ({**line, "from": line["from"][:2], "to": line["to"][:2]} for line in (FIRST, SECOND))
+    stand = {"load_lines": [second, first], "forces": [force]}
+    tolerances = {f"load_cases.stand.{entry}": "10 %" for entry in ("load_lines.0", "load_lines.1", "forces.0")}
+    case = two(load_cases={"stand": stand}, tolerances=tolerances)
+    sampler = Sampler(case=case, pose=case.solve_pose(), masses={}, variables=toleranced(case))
+    place, rows = case.solve_pose().placement, 0.1 * np.vstack([np.eye(3), np.zeros(3)])
+    sampled = sampler._loads("stand", case.load_cases["stand"], replace(place, q=np.tile(place.q, (4, 1))), rows)
+    stated = [record for line in case.load_cases["stand"].load_lines for record in ForceOnLine(line).loads(place)]
+    assert [load.link for load in sampled] == ["foot", "pylon", "pylon", "pylon"]
+    for load, before, grown in zip(sampled, stated, (0, 0, 1), strict=False):
+        factors = 1.0 + 0.1 * (np.arange(4) == grown)
+        assert load.wrench == pytest.approx(factors[:, None] * before.wrench)
+        assert load.arm == pytest.approx(np.tile(before.arm, (4, 1)))
+    assert sampled[3].wrench[:, 0] == pytest.approx(70.0 * np.array([1.0, 1.0, 1.1, 1.0]))
+
+
+def test_of_lines_that_cancel_nothing_is_asked():
+    """Two that are opposed, at one point, wherever along the line they begin; each alone is a load."""
+    back = {**FIRST, "from": FIRST["to"], "to": FIRST["from"]}
+    result = check_case(two(FIRST, back), fidelity="beam")
+    told = [one for case in result.load_cases.values() for one in case.checks if one.quantity is Quantity.SAFETY_FACTOR]
+    assert [(one.verdict, one.reason.kind) for one in told] == [(Verdict.UNDECIDED, "nothing_acts")] * 2
+    assert stated_size(two(FIRST), "stand") >= 1200.0
+
+
+def test_rigid_levers_and_what_is_not_modelled_are_told_once():
+    case = two(load_cases={"stand": {"load_lines": [FIRST, SECOND]}, "lift": {"load_lines": [SECOND, FIRST]}})
+    told = [caveat(one) for one in caveats(case) if one.topic is Topic.LOADS]
+    assert told == [
+        "rigid levers between load lines and T of pylon, B of foot, M of pylon",
+        "sockets and soft parts at T of pylon, B of foot, M of pylon (they are not modelled)",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from alula.reports.figures.sheet import plot, style
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.labels import along, place_labels
 from alula.reports.figures.sheet.marks import Area, Stroke
+from alula.reports.turnable.linkage import _loads as model_loads
 
 
 def drawn(result, load_case="weight"):
@@ -69,6 +70,44 @@ def test_a_load_points_where_it_acts(result, axes, turned, kind):
     away = at["H"] - at["C"]
     expected = -(turned * math.atan2(away[1], away[0]) - math.pi / 2.0)  # y runs down on the sheet
     assert (end - start) / np.linalg.norm(end - start) == pytest.approx([math.cos(expected), math.sin(expected)])
+
+
+def test_a_load_line_is_drawn_with_its_force_its_way_and_its_levers(result):
+    """Two of them, far off the links; each force is told in space and begins where its lever does, not at the link."""
+    one = {"from": ["-90 mm", "200 mm", "0 mm"], "to": ["40 mm", "-80 mm", "60 mm"], "force": "0.25 N"}
+    other = {"from": ["-320 mm", "-60 mm"], "to": ["10 mm", "180 mm"], "force": "0.2 N"}
+    ends = {"link": "CH", "at": "H"}, {"link": "AE", "at": "E", "leaves": {"link": "CH", "at": "H"}}
+    drawing, sheet = drawn(loaded(result, load_lines=[one | ends[0], other | ends[1]]))
+    assert written(sheet) >= {"0.250 N\non CH", "0.200 N\non AE", "0.200 N\non CH"}
+    at = {name: drawing.axes.at(result.pose.position(*name.split())) for name in ("CH H", "AE E")}
+    lines = [[drawing.axes.at([float(v.split()[0]) for v in line[key][:2]]) for key in ("from", "to")]
+             for line in (one, other)]  # fmt: skip
+    expected = [lines[0], (lines[0][0], at["CH H"]), lines[1], (lines[1][0], at["AE E"]), (lines[1][1], at["CH H"])]
+    dashed = [mark for mark in strokes(sheet, style.LOAD) if mark.dashes is not None]
+    assert np.array([mark.points for mark in dashed]) == pytest.approx(np.array(expected))
+    ways = {(0.0, 1.0): lines[0], (1.0, 1.0): lines[1], (1.0, -1.0): lines[1]}
+    for (start, tip), ((end, sense), line) in zip(arrows(sheet, style.LOAD), ways.items(), strict=True):
+        assert start == pytest.approx(line[int(end and sense < 0.0)])
+        way = sense * (line[1] - line[0])
+        assert (tip - start) / np.linalg.norm(tip - start) == pytest.approx(way / np.linalg.norm(way))
+    assert_legible(sheet)
+
+
+def test_the_model_of_the_linkage_has_load_lines_where_they_enter(result):
+    """One turns with its link, so that its force is in the link's axes; what leaves by another link does not."""
+    line = {"from": ["-90 mm", "0 mm"], "to": ["-90 mm", "50 mm"], "force": "2 N", "link": "CH", "at": "H"}
+    leaving = {**line, "axes": "link", "leaves": {"link": "AE", "at": "E"}}
+    stated = loaded(result, load_lines=[line, leaving]).case
+    found = [(one["link"], one["place"], one["turns"], one["force"]) for one in model_loads(stated)]
+    points = result.case.link_points
+    assert [one[:3] for one in found] == [
+        ("CH", list(points["CH"]["H"]), False),
+        ("CH", list(points["CH"]["H"]), True),
+        ("AE", list(points["AE"]["E"]), False),
+    ]
+    turned = -2.0 * result.pose.rotation("CH")[:, 1]
+    for one, force in zip(found, ([0.0, 2.0, 0.0], [0.0, 2.0, 0.0], [*turned, 0.0]), strict=True):
+        assert one[3] == pytest.approx(force, abs=1e-3)
 
 
 @pytest.mark.parametrize(("moment", "sense"), [("5 N*mm", "counter-clockwise"), ("-5 N*mm", "clockwise")])

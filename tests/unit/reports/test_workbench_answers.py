@@ -65,6 +65,28 @@ def test_loads_have_the_path_of_their_entry():
     assert force["vector"] == pytest.approx([5.0 * math.sin(along), -5.0 * math.cos(along)])
 
 
+LINE = """
+[[load_cases.lift.load_lines]]
+from = ["150 mm", "200 mm"]
+to = ["90 mm", "120 mm"]
+force = "10 N"
+link = "rocker"
+at = "P"
+leaves = { link = "coupler", at = "Q" }
+"""
+
+
+def test_both_ends_of_a_load_line_have_the_path_of_its_entry_and_stand_beside_the_links():
+    toml = ("[links.coupler]\n", '[links.coupler]\npoints.Q = ["60 mm", "0 mm"]\n')
+    answer = posed("four-bar", toml, ("[drive]\n", LINE + "[drive]\n"))
+    assert answer["problem"] is None
+    entering, leaving = (load for load in answer["drawn"]["loads"] if load["kind"] == "load line")
+    for load, link, sense, at in ((entering, "rocker", 1.0, [150.0, 200.0]), (leaving, "coupler", -1.0, [90.0, 120.0])):
+        assert (load["path"], load["link"]) == (["load_cases", "lift", "load_lines", 0], link)
+        assert (load["at"], load["moment"], load["point"]) == (at, 0.0, None), "not at a point, where the page puts it"
+        assert load["vector"] == pytest.approx([-6.0 * sense, -8.0 * sense])
+
+
 def test_what_balances_by_itself_is_drawn_where_it_stands():
     answer = posed("spring-pedal")
     case = read_case("spring-pedal")

@@ -346,6 +346,25 @@ def test_what_is_removed_is_named_nowhere(name: str) -> None:
         assert document.text == before
 
 
+def test_a_load_line_goes_with_either_of_its_links_and_does_not_end_in_the_ground_instead() -> None:
+    line = """
+[[load_cases.lift.load_lines]]
+from = ["0 mm", "9 mm"]
+to = ["5 mm", "0 mm"]
+force = "1 N"
+link = "rocker"
+at = "P"
+leaves = { link = "crank", at = "A" }
+"""
+    for link, left in (("crank", 1), ("rocker", 0), ("coupler", 1)):
+        document = Document(opened("four-bar").text + line + line.replace("crank", "coupler"))
+        document.apply([{"op": "rename", "path": ["links", link], "to": "other"}], None)
+        document.apply([{"op": "remove", "path": ["links", "other"]}], None)
+        lines = document.tables()["load_cases"]["lift"].get("load_lines", [])
+        assert len(lines) == left
+        assert all("leaves" in one for one in lines)
+
+
 def test_every_name_of_the_records_is_known() -> None:
     schema = Case.model_json_schema()
 
