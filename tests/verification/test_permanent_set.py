@@ -7,10 +7,18 @@ deflection that stays: with s = √(3 - 2 m) at the root, κ_y (L/m)² (5/3 - 3 
 
 import numpy as np
 import pytest
+from lever_on_tie import lever_on_tie
 from plastic_problems import YIELD, E, law
 from scipy.integrate import quad
 from solid_problems import Problem, even, graded, single
 
+from alula.fea.check import deciding
+from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity
+from alula.fea.judging import plastic_collapse
+from alula.fea.links.fidelity import by_hand
+from alula.fea.plastic import link_collapse
+from alula.fea.plastic.link_collapse import collapse_of
 from alula.fea.plastic.load_path import LoadPath, ProportionalLoad, follow, what_stays
 from alula.fea.plastic.plastic_body import PlasticBody
 from alula.fea.plastic.yield_law import YieldLaw
@@ -122,3 +130,49 @@ def test_a_force_on_two_ties_stays_displaced_by_what_geometry_says(stresses, dir
     moves = np.linalg.solve(-ties, longer)
     works = [bar(*one) for one in zip(pulls, areas, lengths, strict=True)]
     assert sum(works) / force == pytest.approx(float(moves @ along), rel=2e-3)
+
+
+@pytest.mark.converged
+def test_a_lever_on_a_tie_stays_where_the_shapes_of_its_links_put_it(monkeypatch):
+    """Both links by their solids: where bores stay, as means of their nodes, and how both links then fit together."""
+    force, fields = 260.0, []
+    found = link_collapse._stays
+
+    def kept(paths, *more):
+        [(held, path)] = paths
+        _, state = held.stays(path, 1.0)
+        fields.append(held.displacement(state) - held.displacement(held.problem.elastic(1.0)))
+        return found(paths, *more)
+
+    def followed(link, law, loads, mesh, **more):
+        one = collapse_of(link, law, loads, mesh, **more)
+        fields[-1] = loads.link, one.nodes, fields[-1]
+        return one
+
+    def harden(tables):
+        tables["materials"]["own"]["hardening_factors"] = [[0.05, 1.5]]
+        tables["parts"]["tie"] |= {"width": "2.2 mm", "eye_diameter": "12 mm"}
+        tables["load_cases"]["proof"]["forces"][0]["force"] = ["0 N", f"-{force} N"]
+        del tables["load_cases"]["aside"]
+        tables["solid"] = {"mesh_size": 3.0}
+
+    monkeypatch.setattr(link_collapse, "_stays", kept)
+    monkeypatch.setattr(plastic_collapse, "collapse_of", followed)
+    monkeypatch.setattr(
+        deciding, "decide", lambda tasks, beams, *more, **others: {x: by_hand(tasks[x], beams[x]) for x in tasks}
+    )
+    result = check_case(lever_on_tie(harden)).load_cases["proof"]
+    [stays] = [one.value for one in result.checks if one.quantity is Quantity.PERMANENT_SET]
+    (_, *lever), (_, *tie) = sorted(fields, key=lambda of: of[0])
+
+    def bore(nodes, moved, x):
+        return moved[np.abs(np.hypot(nodes[:, 0] - x, nodes[:, 1]) - 2.0) < 0.02].mean(axis=0)[:2]
+
+    long = np.hypot(60.0, 120.0)
+    longer = (bore(*tie, long) - bore(*tie, 0.0))[0]
+    at_b, at_p = (bore(*lever, x) - bore(*lever, 0.0) for x in (100.0, 160.0))
+    along = np.array([-60.0, 120.0]) / long  # the tie, from the lever to the wall
+    turn = (-longer - at_b @ along) / (100.0 * along[1])
+    assert stays.value == pytest.approx(-(at_p[1] + 160.0 * turn), rel=0.005)
+    assert 0.5 < longer < 1.0
+    assert stays.low < stays.value < stays.high < 1.02 * stays.value

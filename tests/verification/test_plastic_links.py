@@ -281,6 +281,13 @@ def test_each_end_of_what_stays_is_read_at_a_load_of_its_own():
     assert _stays(ways, (2.5, 3.0), [(1.0, 0.0), (2.0, 0.1)], 1.0, 0.0)[0][1] == np.inf
 
 
+def test_what_flow_takes_back_lowers_the_low_end_alone():
+    held = Mock(stays=lambda path, factor: (4.0 * factor, "loaded"), work=8.0)
+    held.problem.loaded = lambda state, factor: Mock(control=0.45 if (state, factor) == ("loaded", 0.0) else np.nan)
+    works, back = _stays([(held, Mock(low=2.0, high=2.0))], (0.5, 1.5), [(2.0, 0.0)], 1.0, 0.0)
+    assert (works, back) == (pytest.approx((4.0, 0.9 * 2.0, 6.0)), pytest.approx(0.1))
+
+
 def test_errors_of_the_load_are_those_of_two_meshes_in_the_same_states():
     """Where one has not flowed; they never fall along the path."""
     path = Mock(states=[Mock(factor=f, control=c) for f, c in ((1.0, 1.0), (1.5, 2.0), (1.8, 4.0))])
