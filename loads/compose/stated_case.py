@@ -30,11 +30,13 @@ from alula.loads.case.case_file import (
     changed_tables,
     folder_of,
     keys_of,
+    parse_tables,
     read_tables,
     stated_tables,
 )
 from alula.loads.compose.case_text import case_text, name_files, write_case
 from alula.loads.compose.plain import mapping_of, path_text, plain, text_of
+from alula.loads.stated.level_file import with_level_file
 from alula.loads.stated.part_points import FROM_PART
 from alula.loads.text.entries import alike
 from alula.loads.text.explain import printable, sentence
@@ -554,7 +556,7 @@ class StatedCase:
         ----------
         folder : str or path, optional
             In which the file is to stand; the present folder when left out. Files of parts below it are named from
-            there, others by their whole path.
+            there, others by their whole path; what a level file states stands in the tables themselves.
 
         Returns
         -------
@@ -574,7 +576,7 @@ class StatedCase:
                 f'without("{table}")'
             )
         name_files(tables, self._folder, Path(_absolute(folder)))
-        return tables
+        return with_level_file(tables, self._folder, parse_tables)
 
     def of_study(self) -> Tables:
         """Return what a study's plan says of its case: the file, or the tables where none states this case.
@@ -701,6 +703,7 @@ def _check(tables: Tables, folder: str) -> None:
         tables = {table: {name: _with_any_points(link) for name, link in tables[table].items()}}
     if of_cycle(table, tables[table]):  # only the file of the cycle tells what it is
         return
+    tables = with_level_file(tables, folder, parse_tables)
     try:
         _model_of(table).model_validate(tables, context={"folder": folder, BODY_WEIGHT: 1.0})  # of any body
     except ValidationError as error:

@@ -152,8 +152,8 @@ class LevelSpec(CaseModel):
     """Where the upper end of every load line enters."""
     leaves: Attachment | None = None
     """Where the lower end leaves; where left out, the ground holds against it."""
-    origin: tuple[Length, Length, Length] = (0.0, 0.0, 0.0)
-    """Where the origin of the standard's axes lies: x, y, z."""
+    origin: tuple[Length, Length, Length] | None = None
+    """Where the origin of the standard's axes lies: x, y, z; that of the case where left out."""
     forward: Axis
     """The global axis along which the standard's forward lies, such as "+x"."""
     up: Axis
@@ -181,7 +181,7 @@ class LevelSpec(CaseModel):
         array (3,)
             In global axes [mm].
         """
-        return np.array(self.origin) + point.vector @ self.axes
+        return np.array(self.origin or (0.0, 0.0, 0.0)) + point.vector @ self.axes
 
     @property
     def title(self) -> str:

@@ -92,8 +92,11 @@ def test_a_file_beside_the_case_states_the_tests(tmp_path):
     assert heavier.load_cases["proof"].load_lines[0].force == 1100.0
     assert case.with_values({"level.test": "cyclic"}).conditions.cycles == 1e6
     (tmp_path / "other").mkdir()
-    StatedCase.read(path).to_toml(tmp_path / "other" / "copy.toml")
-    assert read_case(str(tmp_path / "other" / "copy.toml")).level == case.level
+    made = StatedCase.from_dict(pylon(), folder=tmp_path).with_entries(level={"file": "level.toml", **PLACED})
+    for number, one in enumerate((StatedCase.read(path), made)):
+        copy = tmp_path / "other" / f"copy{number}.toml"
+        one.to_toml(copy)
+        assert read_case(str(copy)).level == case.level
 
 
 def test_a_force_may_be_a_share_of_the_body_weight():
