@@ -166,9 +166,9 @@ class _Drawing:
         for stated in self.lines:
             starts = zip(stated.ends, stated.loads, strict=False)
             levers = [((place, self.points[one.link, one.point]), 1.3, (1.2, 2.4)) for place, one in starts]
-            for ends, width, dashes in ((stated.ends, 0.9, (6.0, 3.0)), *levers):
-                sheet.line(at(np.array(ends)), LOAD, width, dashes)
-                obstacles.append(along(*ends))
+            for (one, other), width, dashes in (((stated.ends[0], stated.ends[1]), 0.9, (6.0, 3.0)), *levers):
+                sheet.line(at(np.array([one, other])), LOAD, width, dashes)
+                obstacles.append(along(one, other))
         arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
         arrows += [(*entry, LOAD) for entry in self._loads()]
         for text, place, force, colour in arrows:

@@ -164,6 +164,10 @@ def test_the_lever_leans_with_the_pylon_and_brings_it_down_sooner():
     off = beside / (np.cos(k * free) - k * above * np.sin(k * free))
     assert found.points["pylon", "T"][0] == pytest.approx(off * (1.0 - np.cos(k * free)), rel=0.01)
     assert off * (1.0 - np.cos(k * free)) > 1.2 * beside * (k * free) ** 2 / 2.0, "it grows"
+    assert found.reactions.joints["O"].wrench[5] == pytest.approx(force * off, rel=0.01)
+    bent = link_by_hand(case, "pylon", found.links["pylon"]).check.forces
+    top, mouth = off * np.cos(k * free), off  # how far the line is beside the pylon
+    assert [bent.at(at)[5] for at in (LENGTH - 1e-6, HELD)] == pytest.approx([-force * top, -force * mouth], rel=0.01)
     ends = brentq(lambda x: x * above / free * np.tan(x) - 1.0, 0.5, 1.5)
     assert found.buckling == pytest.approx((ends / (k * free)) ** 2, rel=0.02)
 

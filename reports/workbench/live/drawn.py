@@ -234,7 +234,7 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
     for i, line in enumerate(map(ForceOnLine, stated.load_lines)):
         for load, at in zip(line.loads(pose.placement), line.ends(pose.placement), strict=False):
             path = ["load_cases", own, "load_lines", i]
-            yield _load(path, name, "load line", load.link, at[:2], load.wrench[:3], load.point)
+            yield _load(path, name, "load line", load.link, at[:2], load.wrench[:3])
     for i, (air, forces) in enumerate(zip(stated.air, case.air_forces(own), strict=True)):
         for patch, share in zip(air.spread, shares(air, case.link_points), strict=True):
             ends = [pose.position(patch.link, p) for p in (patch.at, patch.start, patch.end) if p is not None]

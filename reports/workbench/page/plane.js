@@ -59,7 +59,7 @@ export function fitAll() {
   if (!width) return;
   if (!now?.at.size) return void store.put("view", { scale: 4, left: width / 4, top: height / 2 });
   perNewton = arrowScale(now);
-  const tips = [...now.loads.map((load) => plus(load.at, load.vector, perNewton)), ...forcesOf(now).map((one) => plus(one.at, one.force, perNewton))];
+  const tips = [...now.loads.flatMap((load) => [load.at, plus(load.at, load.vector, perNewton)]), ...forcesOf(now).map((one) => plus(one.at, one.force, perNewton))];
   const rings = now.links.flatMap((link) => (link.ground ? [] : link.rings?.[0] ?? []));
   const paths = store.state.paths && store.state.motion?.points ? Object.values(store.state.motion.points).flat() : [];
   const places = [...now.at.values()];

@@ -124,6 +124,7 @@ def test_the_root_holds_what_lies_beyond(arm: tuple[float, ...]) -> None:
     out = solve_large_displacement(model, 8)
     end = np.array([100.0, 0, 0]) + out.displacements[1] + out.rotations[1] @ arm
     assert out.end_forces[0, 0] == pytest.approx([*-force, *-(moment + np.cross(end, force))], abs=1e-5)
+    assert out.joint_wrenches[1] == pytest.approx(np.zeros(6), abs=1e-5), "nothing but the load is joined to the tip"
 
 
 def test_the_tangent_of_a_lever_is_the_derivative_of_what_is_left_over() -> None:

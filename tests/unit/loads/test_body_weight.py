@@ -66,8 +66,11 @@ def test_another_mass_is_another_case_with_the_same_text():
     ],
 )
 def test_a_body_that_is_not_stated_is_asked_for(change, message):
-    with pytest.raises(CaseError, match=message):
+    with pytest.raises(CaseError, match=message) as refused:
         validate(tables(**change))
+    assert ("more problems" in str(refused.value)) == (change["mass"] is None), (
+        "a mass that is none is the only problem"
+    )
 
 
 @pytest.mark.parametrize(
@@ -92,7 +95,7 @@ def test_it_is_a_unit_of_force_alone(text, dimension):
 def test_what_cannot_be_calculated_yet_is_drawn_with_its_weight():
     text = STARTER.replace('force = ["0 N", "-5 N"]', 'force = ["0 N", "-1 body_weight"]')
     broken = text.replace("[drive]\n", "[drive]\ntransfer = 5\n")
-    [force] = [load for load in pose_answer(f'body_mass = "80 kg"\n{broken}', "x")["drawn"]["loads"]]
+    [force] = pose_answer(f'body_mass = "80 kg"\n{broken}', "x")["drawn"]["loads"]
     assert force["vector"] == pytest.approx([0.0, -784.532])
     assert "body_mass" in pose_answer(text, "x")["problem"]
 

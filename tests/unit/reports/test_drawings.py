@@ -16,6 +16,7 @@ from alula.reports.figures.sheet import plot, style
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.labels import along, place_labels
 from alula.reports.figures.sheet.marks import Area, Stroke
+from alula.reports.turnable.linkage import _loads as model_loads
 
 
 def drawn(result, load_case="weight"):
@@ -90,6 +91,23 @@ def test_a_load_line_is_drawn_with_its_force_its_way_and_its_levers(result):
         way = sense * (line[1] - line[0])
         assert (tip - start) / np.linalg.norm(tip - start) == pytest.approx(way / np.linalg.norm(way))
     assert_legible(sheet)
+
+
+def test_the_model_of_the_linkage_has_load_lines_where_they_enter(result):
+    """One turns with its link, so that its force is in the link's axes; what leaves by another link does not."""
+    line = {"from": ["-90 mm", "0 mm"], "to": ["-90 mm", "50 mm"], "force": "2 N", "link": "CH", "at": "H"}
+    leaving = {**line, "axes": "link", "leaves": {"link": "AE", "at": "E"}}
+    stated = loaded(result, load_lines=[line, leaving]).case
+    found = [(one["link"], one["place"], one["turns"], one["force"]) for one in model_loads(stated)]
+    points = result.case.link_points
+    assert [one[:3] for one in found] == [
+        ("CH", list(points["CH"]["H"]), False),
+        ("CH", list(points["CH"]["H"]), True),
+        ("AE", list(points["AE"]["E"]), False),
+    ]
+    turned = -2.0 * result.pose.rotation("CH")[:, 1]
+    for one, force in zip(found, ([0.0, 2.0, 0.0], [0.0, 2.0, 0.0], [*turned, 0.0]), strict=True):
+        assert one[3] == pytest.approx(force, abs=1e-3)
 
 
 @pytest.mark.parametrize(("moment", "sense"), [("5 N*mm", "counter-clockwise"), ("-5 N*mm", "clockwise")])
