@@ -34,6 +34,7 @@ from alula.loads.states.case_motion import solve_case_motion, step_caveats
 from alula.loads.states.clearance import way_of
 from alula.reports.figures.motion.motion_figures import torque_figure
 from alula.reports.sentences import told as sentence_of
+from alula.reports.turnable.moving import motion_linkage
 
 GAIT = """cycle [%];flexion [deg];Fy [N];M [N*m]
 0;10;300;-6
@@ -417,6 +418,9 @@ def test_reports_tell_where_in_the_cycle(tmp_path):
     assert told["motion"]["cycle"] == moved.motion.progress.tolist()
     assert told["load_cases"]["stride"]["drive_torque"]["largest_at"] == 12.0
     assert [float(row["cycle [%]"]) for row in told_motion.rows(moved, "torque.csv")] == told["motion"]["cycle"]
+    assert "1100 N at 48 % of the cycle" in [
+        x["text"] for x in motion_linkage(solve_case_motion(knee(tmp_path, instant="48 %")))["loads"]
+    ]
     axes = torque_figure(moved).axes[0]
     assert axes.get_xlabel() == "cycle [%]"
     assert axes.get_xlim() == (0.0, 100.0)
