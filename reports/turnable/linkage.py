@@ -303,6 +303,9 @@ def _loads(case: Case) -> list[dict[str, Any]]:
     """Return the stated forces, as arrows at the points of links."""
     found, several = [], len(case.load_cases) > 1
     for name, load_case in case.load_cases.items():
+        told = f", {name}" if several else ""
+        if load_case.rows and case.cycle is not None:  # which changes, while arrows do not
+            told += f" at {plain(case.cycle.instant)} % of the cycle"
         for load in (*stated_loads(case, load_case.model_copy(update={"air": ()})), *_on_lines(case, load_case)):
             if isinstance(load, PointLoad):
                 force, (x, y) = load.wrench[:3], case.links[load.link].points[load.point]
@@ -319,7 +322,7 @@ def _loads(case: Case) -> list[dict[str, Any]]:
                         "place": [_short(x), _short(y)],
                         "force": [_short(float(v)) for v in force],
                         "turns": load.axes == "link",
-                        "text": f"{plain(float(f'{size:.4g}'))} N" + (f", {name}" if several else ""),
+                        "text": f"{plain(float(f'{size:.4g}'))} N{told}",
                     }
                 )
     return found

@@ -12,11 +12,12 @@ import told_motion
 
 from alula.fea.elements.space import displacement_space
 from alula.fea.findings.of_motion import motion_findings
-from alula.fea.motion.envelope import _Envelope
+from alula.fea.motion import envelope
 from alula.fea.motion.layered import with_couples
 from alula.fea.motion.link_history import link_histories
-from alula.fea.motion.linkage_history import when
+from alula.fea.motion.linkage_history import _worst, when
 from alula.fea.outcomes.fatigue import closed_history, repeated_cycles
+from alula.fea.outcomes.unloaded import stated_size
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.study.evaluate import evaluate
 from alula.fea.study.study import task_of
@@ -33,6 +34,7 @@ from alula.loads.states.case_motion import solve_case_motion, step_caveats
 from alula.loads.states.clearance import way_of
 from alula.reports.figures.motion.motion_figures import torque_figure
 from alula.reports.sentences import told as sentence_of
+from alula.reports.turnable.moving import motion_linkage
 
 GAIT = """cycle [%];flexion [deg];Fy [N];M [N*m]
 0;10;300;-6
@@ -375,6 +377,7 @@ def test_a_structure_bears_a_cycle_of_oblique_loads(tmp_path):
         force = forces[row] * along / np.linalg.norm(along)
         assert wrench[row] == pytest.approx(-np.r_[force, np.cross([ahead, 400.0, 30.0], force)], abs=1e-3)
     assert not moved.case.inert
+    assert _worst(found, "walk", np.ones(6, dtype=bool)) == [1]  # of 1000 N
     [history] = link_histories(moved, "pylon")
     assert history.size(300.0)[[0, 4, 5]] == pytest.approx([history.size(300.0)[0]] * 3)
     with pytest.raises(CaseError, match="the linkage cannot move"):
@@ -386,7 +389,7 @@ def test_two_peaks_of_a_cycle_are_two_cycles_of_stress(tmp_path):
     line = WALK.replace("-20", "0").replace(",10\n", ",0\n").replace(",40\n", ",0\n")
     moved = solve_case_motion(pylon(tmp_path, line, periodic=False))
     n = len(moved.motion.angles)
-    over = _Envelope(moved, np.ones(n, dtype=bool), 1, lambda told: None)
+    over = envelope._Envelope(moved, np.ones(n, dtype=bool), 1, lambda told: None)
     space = displacement_space(mesh_body(moved.case.body("pylon"), COARSE.scaled(3.0)))
     fatigue = over._motion("pylon", space).envelope(repetitions=1e6).load_cases["walk"].fatigue
     sizes, means, counts = np.transpose(fatigue.life.cycles)
@@ -395,12 +398,29 @@ def test_two_peaks_of_a_cycle_are_two_cycles_of_stress(tmp_path):
     assert means[1] / means[0] == pytest.approx(600.0 / 525.0)
 
 
+def test_no_cycle_goes_there_and_back(tmp_path, monkeypatch):
+    """One that ends elsewhere jumps to its first row; a motion over a range goes back."""
+    monkeypatch.setattr(envelope, "LinkMotion", lambda space, **stated: stated["returns"])
+    ordinary = validate(tables("knee", motion={"range": ["81 deg", "60 deg"], "poses": 3}))
+    for case, returns in ((knee(tmp_path, periodic=False), True), (ordinary, False)):
+        moved = solve_case_motion(case)
+        assert not moved.motion.returns
+        over = envelope._Envelope(moved, np.ones(len(moved.motion.angles), dtype=bool), 1, lambda told: None)
+        assert over._motion("rear", None) is returns
+
+
 def test_reports_tell_where_in_the_cycle(tmp_path):
     moved = solve_case_motion(knee(tmp_path))
     told = told_motion.record(moved)
+    assert stated_size(knee(tmp_path, instant="80 %"), "stride") == stated_size(
+        knee(tmp_path, instant="48 %"), "stride"
+    )
     assert told["motion"]["cycle"] == moved.motion.progress.tolist()
     assert told["load_cases"]["stride"]["drive_torque"]["largest_at"] == 12.0
     assert [float(row["cycle [%]"]) for row in told_motion.rows(moved, "torque.csv")] == told["motion"]["cycle"]
+    assert "1100 N at 48 % of the cycle" in [
+        x["text"] for x in motion_linkage(solve_case_motion(knee(tmp_path, instant="48 %")))["loads"]
+    ]
     axes = torque_figure(moved).axes[0]
     assert axes.get_xlabel() == "cycle [%]"
     assert axes.get_xlim() == (0.0, 100.0)
