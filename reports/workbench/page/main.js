@@ -83,8 +83,8 @@ function asked(now) {
 
 tabs();
 said();
+tools.mount(find("tools")); // first: it chooses the load case of what is drawn
 gestures.mount(plane.mount(find("plane")));
-tools.mount(find("tools"));
 side.mount(find("side"));
 motion.mount(find("motion"));
 start.mount(find("start"));
