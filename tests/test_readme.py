@@ -46,8 +46,8 @@ def is_slow(command: str) -> bool:
 
 
 def serves(command: str) -> bool:
-    """Whether it runs until it is ended; its page has tests in a browser."""
-    return words(command)[0] == "open"
+    """Whether it runs until it is ended; these have tests of their own."""
+    return words(command)[0] in ("open", "mcp")
 
 
 def writes_a_case(command: str) -> bool:

@@ -29,6 +29,8 @@ def write_whole(path: Path, *content: bytes, lasting: bool = True) -> None:
         the same; the file is as it was then.
     """
     target = Path(os.path.realpath(path))
+    if not target.name or target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "it is a folder")
     made = target.with_name(f".{target.name[:80]}.{secrets.token_hex(4)}")
     if target.exists() and not (target.stat().st_mode & 0o222 and os.access(target, os.W_OK)):
         raise PermissionError(errno.EACCES, "it is read-only")

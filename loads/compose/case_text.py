@@ -38,7 +38,9 @@ def name_files(tables: dict[str, Any], sought: str, folder: Path) -> None:
     folder : Path
         Absolute.
     """
-    for _, table in named_files(tables):
+    for entry, table in named_files(tables):
+        if entry == "level.file":  # that of a standard stands beside its case
+            continue
         table["file"] = _named(Path(sought, table["file"]).absolute(), folder)
 
 

@@ -181,7 +181,26 @@ class LevelSpec(CaseModel):
         array (3,)
             In global axes [mm].
         """
-        return np.array(self.origin or (0.0, 0.0, 0.0)) + point.vector @ self.axes
+        return self._from + point.vector @ self.axes
+
+    def seen(self, place: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return a place in the standard's axes.
+
+        Parameters
+        ----------
+        place : array (3,)
+            In global axes [mm].
+
+        Returns
+        -------
+        array (3,)
+            Forward, outward, up [mm].
+        """
+        return np.asarray(self.axes @ (place - self._from))
+
+    @property
+    def _from(self) -> NDArray[np.float64]:
+        return np.array(self.origin or (0.0, 0.0, 0.0))
 
     @property
     def title(self) -> str:

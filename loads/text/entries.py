@@ -147,6 +147,8 @@ def file_schema(model: type[BaseModel]) -> Schema:
                 entry["x-refers"] = REFERS[name]
             if isinstance(entry.get("default"), float) and entry.get("format") in INTERNAL_UNITS:
                 entry["default"] = as_text(entry["default"], entry["format"])
+            elif isinstance(entry.get("default"), float) and entry.get("format") == "percentage":
+                entry["default"] = f"{entry['default']:g} %"
             elif isinstance(entry.get("default"), dict):
                 entry["default"] = {}  # a table whose own entries have their defaults
     return schema

@@ -85,7 +85,7 @@ def _lines(result: LevelResult) -> list[tuple[Real, list[str]]]:
 def _place(level: LevelSpec, pose: Pose, link: str, point: str) -> Real:
     """Return where a point of a link lies (3,) in the axes of the standard."""
     at = np.array([*pose.position(link, point), pose.linkage.heights.get(link, 0.0)])
-    return np.asarray(level.axes @ (at - np.array(level.origin)))
+    return level.seen(at)
 
 
 def _entry(places: Mapping[tuple[str, str], Real], at: Attachment | None) -> Real | None:

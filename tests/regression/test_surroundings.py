@@ -43,7 +43,10 @@ def test_poor_encodings(encoding: str, command: tuple[str, ...]) -> None:
     assert poor.returncode == 0, poor.stderr
     assert "fault" not in poor.stderr
     if "--json" in command:
-        assert json.loads(poor.stdout) == json.loads(programs.inside(*command).stdout)
+        told, other = (json.loads(text) for text in (poor.stdout, programs.inside(*command).stdout))
+        for one in (told, other):
+            del one["provenance"]["date"]
+        assert told == other
 
 
 def test_a_reader_that_reads_no_further_ends_the_run_as_the_shell_says() -> None:

@@ -104,9 +104,9 @@ def test_of_both_plates_and_all_poses_the_least_factor_is_told_where_it_is(
 ) -> None:
     """Three records of what acts on a link under one load case; poses that were left out leave it open."""
     case = read_case("owl-wing-static", [PLANAR])
-    moved = SimpleNamespace(
-        case=case, motion=SimpleNamespace(coordinate=Coordinate("GF"), angles=np.radians([10, 20, 30, 40]))
-    )
+    degrees = np.array([10.0, 20.0, 30.0, 40.0])
+    motion = SimpleNamespace(coordinate=Coordinate("GF"), angles=np.radians(degrees), progress=degrees, instants=None)
+    moved = SimpleNamespace(case=case, motion=motion)
     histories = [SimpleNamespace(name="weight", number=i) for i in range(3)]
 
     def factors(_: Case, __: str, history: SimpleNamespace) -> ColumnFactors:

@@ -214,7 +214,8 @@ def test_peaks_over_many_loads_are_those_of_all_nodes():
 
 
 def over_motion(case, factor):
-    motion = SimpleNamespace(coordinate=Coordinate("GF"), angles=np.radians([0.0, 45.0]))
+    angles = np.radians([0.0, 45.0])
+    motion = SimpleNamespace(coordinate=Coordinate("GF"), angles=angles, progress=np.degrees(angles), instants=None)
     layers = (
         {"weight": LayerEnvelope(safety_factor=factor, pose=1, location=np.zeros(3), fatigue=None, no_fatigue="")}
         if factor

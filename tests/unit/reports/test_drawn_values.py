@@ -105,7 +105,8 @@ def test_the_safety_factor_over_the_motion():
     checks = [SimpleNamespace(subject=Subject.link("rod"), quantity=Quantity.SAFETY_FACTOR, limit=1.7)]
     result = SimpleNamespace(
         case=SimpleNamespace(load_cases={"turn": None}), links=links, checks=checks, drive_angles=angles, angles=angles,
-        drive=SimpleNamespace(link="crank"), moved=SimpleNamespace(motion=SimpleNamespace(coordinate="crank")),
+        drive=SimpleNamespace(link="crank"),
+        moved=SimpleNamespace(motion=SimpleNamespace(coordinate="crank", instants=None)),
     )  # fmt: skip
     picture = envelope_figure(result)
     lines = [one for one in picture.plotted if len(one.y) == len(angles)]
