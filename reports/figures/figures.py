@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.geometry.base import child
 from alula.geometry.base.child_server import ChildEndedError, ServerPool
-from alula.geometry.base.system_libraries import OSMESA, loads
+from alula.geometry.base.system_libraries import OSMESA, advice, loads
 from alula.reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
 from alula.reports.figures.sheet.canvas import Canvas, faint
 from alula.reports.figures.sheet.labels import heights, stacked, write_stacked
@@ -197,8 +197,7 @@ def _ask(requests: Mapping[_Key, bytes], choice: Mapping[str, str], time_limit: 
         return found, f"rendering was stopped after {time_limit:g} s"
     except ChildEndedError as ended:
         if ended.status < 0:
-            advice = "check that the system libraries in the README are there"
-            return found, f"rendering crashed (signal {-ended.status}); {advice}"
+            return found, f"rendering crashed (signal {-ended.status}); {advice()}"
         return found, f"rendering failed ({ended.told})"
     except OSError as error:
         return found, f"rendering could not be started ({error.strerror})"
