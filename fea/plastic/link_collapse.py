@@ -255,7 +255,8 @@ def collapse_of(
     ratio = _ratio(fine, coarse)
     if ratio < LEAST_RATIO:
         raise CannotRunError(
-            "meshes of the link are alike whatever size is asked for, so that their error is not known"
+            "meshes of the link are alike whatever size is asked for, so that their error is not known; halve "
+            "solid.mesh_size"
         )
     each = tractions_of(fine).variants(pose, (WIDE,), transfers)
     found = [(variant, *path(fine, variant.load)) for variant in each]

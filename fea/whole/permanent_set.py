@@ -132,10 +132,32 @@ def of_one_force(case: Case, load_case: str, forces: JointForces, loads: Sequenc
     -------
     Reason or None
     """
-    if not forces.by_equilibrium:
+    if not (forces.by_equilibrium or clamped_tree(case)):
         return reason("set_by_stiffness", why=forces.reason)
     stated = 1 + sum(line.leaves is not None for line in case.load_cases[load_case].load_lines)
     return reason("set_of_others") if len(loads) > stated else None
+
+
+def clamped_tree(case: Case) -> bool:
+    """Return True if links hang on the ground by one bonded joint each, so that equilibrium in space gives all forces.
+
+    Such as a pylon between foot and adapter. Pairs of plates are not such: they share what acts out of the plane by
+    their stiffness.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    bool
+    """
+    joints, links = case.linkage.joints.values(), case.linkage.links.values()
+    return (
+        all(joint.fixed for joint in joints)
+        and len(joints) == len(links) - 1
+        and all(link.count == 1 for link in links)
+    )
 
 
 def ends_of_load(case: Case, link: str, load_case: str, result: LinkResult, uneven: Growths, shares: Shares) -> Scatter:
@@ -199,7 +221,7 @@ def judge_permanent_set(here: SolvedLinks, one: Asked) -> Judged:
         high=sum(part.set.high for part in found),
         sources=distinct(*(part.set.sources for part in found)),
     )
-    outcome, most = one.outcome(load_case, whole), max(found, key=lambda part: part.set.value)
+    outcome, most = one.outcome(load_case, whole), max(found, key=lambda part: (part.set.value, -part.factor))
     back = max(part.regained for part in found)
     said = reason(
         "set_judged",

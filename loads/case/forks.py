@@ -197,7 +197,7 @@ def check_pair(case: CoreCase, link: str) -> None:
     distance, high = apart(case, link), thickness(record, case.parts)
     assert distance is not None
     body = case.body(link)
-    high = max(high or 0.0, *(body.ring(pin).height for pin in body.pins))
+    high = max([high or 0.0, *(body.ring(pin).height for pin in body.pins)])
     if not distance > high:
         raise CaseError(
             f"links.{link}.apart: {distance:.4g} mm from mid-plane to mid-plane leave no room between two plates that "
@@ -245,7 +245,8 @@ def check_fork(case: CoreCase, joint: str) -> None:
     if link is None:
         return
     if case.links[link].count == 2:
-        _check_gap(case, joint, link)
+        if not case.joints[joint].clamped:
+            _check_gap(case, joint, link)
         return
     point = case.linkage.point_of(joint, link)
     entry, part = f"links.{link}.eyes.{point}.fork", case.parts[case.links[link].part or ""]

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from levels import pylon
 from lever_on_tie import lever_on_tie
 from plastic_problems import FOUND
 
@@ -27,6 +28,7 @@ from alula.fea.motion.envelope_outcomes import _sets
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.whole.permanent_set import judge_permanent_set, of_one_force
 from alula.geometry.base.errors import CaseError
+from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import PermanentSetCheck
 from alula.reports.check.modes import mode_parts, mode_records
 from alula.reports.sentences import told
@@ -107,6 +109,15 @@ def test_a_load_that_is_not_borne_leaves_no_set_below_any_limit(plain, low, verd
     assert "∞" in told(found.outcome.reason) or "inf" in told(found.outcome.reason)
 
 
+@pytest.mark.parametrize("weakest", ["lever", "tie"])
+def test_of_links_that_do_not_bear_their_load_the_weakest_is_named(plain, weakest):
+    paths = {link: moved(math.inf, math.inf, math.inf) for link in ("lever", "tie")}
+    factors = {"lever": 0.9, "tie": 0.9} | {weakest: 0.8}
+    paths = {link: replace(path, factor=factors[link]) for link, path in paths.items()}
+    found = judged(plain, lever_on_tie(), "proof", dict.fromkeys(paths, YIELDS), paths)
+    assert f"most of it stays in {weakest}" in told(found.outcome.reason)
+
+
 @pytest.mark.parametrize("brittle", ["lever", "tie"])
 def test_brittle_and_printed_links_must_stay_elastic(plain, brittle):
     def edit(tables):
@@ -165,6 +176,29 @@ def test_other_loads_and_stiffness_take_the_proportion_away():
     assert "weight" in told(said(weigh, "aside"))
     stiff = SimpleNamespace(by_equilibrium=False, reason="a redundant joint")
     assert "a redundant joint" in told(of_one_force(lever_on_tie(), "proof", stiff, [None]))
+
+
+@pytest.mark.parametrize("held", ["once", "twice", "by a pair"])
+def test_an_oblique_load_line_on_links_that_hang_by_one_clamp_each_needs_no_stiffness(held):
+    """Of the forces in a tree of clamps nothing changes as a link yields; of a loop, and of two plates, it does."""
+    tables = pylon(level={"test": "proof"})
+    if held == "twice":
+        tables["links"]["foot"]["points"]["T"] = ["0 mm", "380 mm"]
+        tables["joints"]["T"] = {
+            "links": ["foot", "pylon"],
+            "clamped": True,
+            "clamp_length": "10 mm",
+            "angle": "90 deg",
+        }
+    if held == "by a pair":
+        tables["parts"]["tube"] = {"shape": "bar", "material": "aluminium-6061-t6", "width": "20 mm"}
+        tables["parts"]["tube"] |= {"thickness": "5 mm", "fillet_radius": "1 mm"}
+        tables["links"]["pylon"] |= {"count": 2, "apart": "20 mm"}
+    statics = solve_case_statics(validate(tables))
+    forces = statics.forces["proof"]
+    assert not forces.by_equilibrium
+    open_by = of_one_force(statics.case, "proof", forces, statics.loads["proof"])
+    assert (open_by is None) == (held == "once")
 
 
 @pytest.mark.parametrize("load_case", ["proof", "aside"])
