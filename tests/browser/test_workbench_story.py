@@ -127,6 +127,17 @@ class Page:
         """Wait until joint A is drawn at a height [mm]."""
         self.until(f"Math.abs(now.drawn.joints.find((one) => one.name === 'A').at[1] - {y}) < 1e-6")
 
+    def on_top(self, selector):
+        """Return whether nothing is painted over the middle of an element."""
+        return self.browser.run(
+            "const one = document.querySelector(arguments[0]), { x, y, width, height } = one.getBoundingClientRect();"
+            "one.style.pointerEvents = 'auto';"
+            "const seen = document.elementFromPoint(x + width / 2, y + height / 2);"
+            "one.style.pointerEvents = '';"
+            "return seen === one",
+            selector,
+        )
+
     def stamp(self):
         return self.browser.element("#panel-verdict .stamp").text.lower()
 
@@ -161,6 +172,7 @@ def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tm
         page.pull((20, 36), (90, 50))
         page.drawn(2)
         assert "2 ways" in hint.text
+        assert page.on_top("#hint"), "the drawing hides what is wanted next"
         assert not page.browser.element("#problem").is_displayed(), "what is only begun is no mistake"
         page.picture("workbench-links")
         page.pull((90, 50), (100, 0))
