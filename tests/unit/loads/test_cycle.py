@@ -264,6 +264,9 @@ def test_points_of_a_load_line_may_be_columns(tmp_path):
     size = np.array([300.0, 1000.0, 700.5, 1100.0, 100.0, 0.0, 0.0, 300.0])
     assert np.linalg.norm(load.wrench[:, :2], axis=1) == pytest.approx(size)
     assert load.wrench[:, 5] == pytest.approx(-x * size)
+    short = line | {"from": ["column x", "0 mm"], "to": ["-5 mm", "0 mm"]}
+    with pytest.raises(CaseError, match=r"row 4, column Fy and x: load_cases\.stride\.load_lines\.0: from and to are"):
+        knee(tmp_path, table, {"own_weight": False, "load_lines": [short]})
 
 
 @pytest.mark.parametrize(
