@@ -431,5 +431,7 @@ def test_reports_tell_where_in_the_cycle(tmp_path):
     assert sentence_of(when(moved, 3)) == "48 % of the cycle"
     over = {"limit_load": Band.exact(5.0), "limit_pose": 3, "displacement": Band.exact(0.25), "displacement_pose": -1}
     text = linkage_text(moved, LinkageOverMotion(poses=(2, 3), where="D of thigh", **over)).text
-    assert text.startswith("The linkage as a whole, in 2 of 8 poses: least limit-load factor 5.00 at 48 % of the cycle, ")
+    assert text.startswith(
+        "The linkage as a whole, in 2 of 8 poses: least limit-load factor 5.00 at 48 % of the cycle, "
+    )
     assert text.endswith("largest displacement 0.250 mm (D of thigh).")
