@@ -10,7 +10,7 @@ from docs.extensions.gallery import SLOW
 FOLDER = ROOT / "docs" / "gallery"
 WANTED = {
     "owl_wing", "owl_wing_braking", "flapping_wing", "ornithopter", "synthesis_to_stress", "polycentric_knee", "finger",
-    "slider_crank_friction", "spring_in_layers", "step_part", "tolerances", "study", "printed_part", "compose",
+    "pylon", "slider_crank_friction", "spring_in_layers", "step_part", "tolerances", "study", "printed_part", "compose",
 }  # fmt: skip
 SCRIPTS = {file.stem: file.read_text(encoding="utf-8") for file in sorted(FOLDER.glob("*.py"))}
 

@@ -75,7 +75,7 @@ computed from sizes between them stays finite (measured: statics, motion and han
 quantities at either end)."""
 BODY_WEIGHT = "body_weight"
 """The unit of force that is the weight of the body whose mass a case states, and its key in a validation's context."""
-_STANDARD_GRAVITY = 9806.65
+STANDARD_GRAVITY = 9806.65
 """By definition (3rd CGPM, 1901) [mm/s²]."""
 _LONGEST_TEXT = 64
 _UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?(?:[01]\.5|[1-4]))?"
@@ -159,7 +159,7 @@ def weight_of(body_mass: object) -> float | None:
         [N]; None where no mass is stated. Of what is no mass any, since that is refused by itself.
     """
     try:
-        return None if body_mass is None else parse(body_mass, "mass") * _STANDARD_GRAVITY
+        return None if body_mass is None else parse(body_mass, "mass") * STANDARD_GRAVITY
     except PydanticCustomError:
         return 1.0
 

@@ -338,13 +338,9 @@ def _row(
         return LoadCase.model_validate(_stated(only, own, table, row, mass)["load_cases"][name], context=context)
     except ValidationError as error:
         told = f"load_cases.{name}.{sentence(error, LoadCase)}"
-        of = next((one for one in own if told.startswith((one.entry, f"{_above(one)} "))), None)
-        raise (CaseError(told) if of is None else table.wrong(table.rows[row], of.column, told)) from None
-
-
-def _above(reference: ColumnReference) -> str:
-    """Return the entry of a list in which a reference stands."""
-    return reference.entry.rpartition(".")[0]
+        entry = told.partition(":")[0].partition(" ")[0]  # that of a column, or one in which it stands
+        of = dict.fromkeys(one.column for one in own if f"{one.entry}.".startswith(f"{entry}."))
+        raise (table.wrong(table.rows[row], " and ".join(of), told) if of else CaseError(told)) from None
 
 
 def _moved(data: Mapping[str, Any], pose: PoseSpec, values: Real, at: float) -> dict[str, Any]:

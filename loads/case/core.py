@@ -9,7 +9,7 @@ from pydantic import Field
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import Name, Text
-from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Length, Mass
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, STANDARD_GRAVITY, Length, Mass
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.bodies.features import FlatFace
 from alula.geometry.joints.joint import Joint
@@ -234,6 +234,11 @@ class CoreCase(Revisable):
         """The drive as statics needs it."""
         drive = self.drive
         return Drive(link=drive.link, joint=drive.joint, stop=drive.stop, idle=drive.idle) if drive else None
+
+    @property
+    def body_weight(self) -> float | None:
+        """What the unit ``body_weight`` stands for [N]; None where no body is stated."""
+        return None if self.body_mass is None else self.body_mass * STANDARD_GRAVITY
 
     @property
     def sprung(self) -> bool:

@@ -159,7 +159,7 @@ def _load(case: CoreCase, entry: str, path: str, load_case: str, rest: list[str]
             return make(kind="load", target=(load_case, number), half=_half(entry, tolerance, None, 1.0))
         case ["force", ("0" | "1") as component] if rest[0] == "forces":
             nominal = record.forces[int(rest[1])].force[int(component)]
-            half = _half(entry, tolerance, "force", nominal)
+            half = _half(entry, tolerance, "force", nominal, case.body_weight)
             return make(kind="force", target=(load_case, number, int(component)), half=half)
     raise CaseError(f"{entry}: this entry cannot have a tolerance; choose one of {KNOWN}")
 
@@ -184,9 +184,11 @@ def _size(case: CoreCase, entry: str, path: str, tolerance: Tolerance) -> Variab
     )
 
 
-def _half(entry: str, tolerance: Tolerance, dimension: str | None, nominal: float) -> float:
+def _half(
+    entry: str, tolerance: Tolerance, dimension: str | None, nominal: float, body_weight: float | None = None
+) -> float:
     try:
-        return tolerance.half_width(dimension, nominal)
+        return tolerance.half_width(dimension, nominal, body_weight)
     except PydanticCustomError as error:
         raise CaseError(f"{entry}: it is '{printable(tolerance.plus_minus)}', but {error.message()}") from None
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.units import TYPOGRAPHY
+from alula.geometry.base.units import BODY_WEIGHT, TYPOGRAPHY
 from alula.loads.sources.quantity import UNIT, unit_of
 from alula.loads.text.explain import printable
 
@@ -169,7 +169,7 @@ def number_of(stated: object) -> tuple[float, str] | None:
     text = stated.strip()
     number = _NUMBER.match(text)
     unit = text[number.end() :].strip() if number else ""
-    if number is None or (unit and not UNIT.fullmatch(unit)) or not math.isfinite(float(number[0])):
+    if number is None or (unit and not UNIT.fullmatch(_as_force(unit))) or not math.isfinite(float(number[0])):
         return None
     return float(number[0]), unit
 
@@ -178,10 +178,15 @@ def _factor(unit: str, to: str, named: str) -> float:
     """How many of one unit another is."""
     if unit == to:
         return 1.0
-    (size, what), (other, expected) = unit_of(unit), unit_of(to)
-    if what != expected:
+    (size, what), (other, expected) = unit_of(_as_force(unit)), unit_of(_as_force(to))
+    if what != expected or (BODY_WEIGHT in unit) != (BODY_WEIGHT in to):  # how much a body weighs, the case says
         raise CaseError(f"{named} '{printable(unit) or 'no unit'}' and '{printable(to)}' differ in kind; use one unit")
     return size / other
+
+
+def _as_force(unit: str) -> str:
+    """Return a unit in which newton stands for the weight of the body."""
+    return unit.replace(BODY_WEIGHT, "N", 1)
 
 
 def _count(text: str, named: str) -> int:

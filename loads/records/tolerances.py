@@ -21,7 +21,7 @@ class Tolerance(CaseModel):
     """uniform: everywhere between both ends alike. normal: plus_minus is three standard deviations, and 0.3 % lie
     beyond. worst case: at either end, with equal probability."""
 
-    def half_width(self, dimension: str | None, nominal: float) -> float:
+    def half_width(self, dimension: str | None, nominal: float, body_weight: float | None = None) -> float:
         """Return half the width in alula's unit, or as a share where the entry has no dimension.
 
         Parameters
@@ -30,6 +30,8 @@ class Tolerance(CaseModel):
             Such as "length"; None where only a share makes sense.
         nominal : float
             The entry's own value, of which a share is taken.
+        body_weight : float, optional
+            What the unit ``body_weight`` stands for [N].
 
         Returns
         -------
@@ -46,7 +48,7 @@ class Tolerance(CaseModel):
         elif dimension is None:
             raise refusal('it must be a share of the entry; write for example "10 %"')
         else:
-            half = parse(self.plus_minus, dimension)
+            half = parse(self.plus_minus, dimension, body_weight)
         if half <= 0.0:
             raise refusal("a tolerance must be above zero, and a share needs an entry that is not zero; state its size")
         return half

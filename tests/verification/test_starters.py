@@ -104,19 +104,31 @@ def test_six_bar() -> None:
 
 
 def test_finger() -> None:
-    """Three forces on the distal phalanx: the grip, the coupler's pull and one through P; torque by virtual work."""
-    found = statics("finger")["grip"]
-    s, p = -3.0 + 11.0j, 45.0 * exp(-1j * math.radians(30.0))
-    q = meet(s, 52.0, p, 9.0, -1.0)
-    turned = (q - p) / -9.0j  # x of the distal phalanx
-    t, grip = p + (42.0 - 2.0j) * turned, 10.0j * turned
-    pull = -cross(t - p, grip) / cross(q - p, (s - q) / 52.0)
-    assert pull > 0.0  # the coupler pulls
-    assert inplane(found, "S") == pytest.approx(pull, rel=1e-9)
-    centre = crossing(0j, p, s, q)  # about which the distal phalanx turns
-    speed = (p / (p - centre)).real  # of its angle to the proximal one's
-    assert found.driving[0] == pytest.approx(-cross(t - centre, grip) * speed, rel=1e-9)
-    assert inplane(found, "P") == pytest.approx(abs(grip + pull * (s - q) / 52.0), rel=1e-9)
+    """Pull of the tendon and grip at the tip by their arms about both joints, and the rest by lines of force."""
+    found = solve_case_statics(read_case("finger"), "finger")
+    middle = exp(1j * found.pose.angles["middle"])
+    s, d = -3.0 - 5.2j, 22.0 * middle
+    q = meet(s, 25.06, d, math.hypot(3.0, 5.2), 1.0)
+    turned = (q - d) / (-3.0 + 5.2j)  # x of the distal phalanx
+    h, t = d + (3.0 - 8.6j) * turned, d + (23.0 - 3.0j) * turned
+    pull, cord = -9.7 - 1.04j - h, 80.0 - 2.4j - t
+    pull, grip = 61.6 * pull / abs(pull), 10.0 * (abs(cord) - 58.8) * cord / abs(cord)
+    efforts = {spring.name: spring.effort for spring in found.standing["grip"].springs}
+    assert efforts["gauge"] == pytest.approx(abs(grip), rel=1e-9)
+    coupler = -(cross(h - d, pull) + cross(t - d, grip)) / cross(q - d, (s - q) / 25.06)  # moments about D
+    assert coupler > 0.0  # it pulls
+    reactions = found.reactions["grip"]
+    assert inplane(reactions, "S") == pytest.approx(coupler, rel=1e-8)
+    line = coupler * (s - q) / 25.06
+    assert inplane(reactions, "D") == pytest.approx(abs(pull + grip + line), rel=1e-8)
+    spring = 182.0 + 36.0 * (math.radians(-25.0) - phase(middle))
+    assert cross(h, pull) + cross(t, grip) + cross(q, line) + spring == pytest.approx(0.0, abs=1e-5)  # about P
+    # At 30 deg one joint bends as far as the other, so that arms about both add up, as the source adds its own.
+    assert math.degrees(phase(turned / middle)) == pytest.approx(-30.0, abs=0.2)
+    arm, lever = (-(cross(x, force) + cross(x - d, force)) / abs(force) for x, force in ((h, pull), (t, -grip)))
+    assert abs(arm / (7.3211 + 9.0) - 1.0) < 0.05
+    assert 61.6 * arm == pytest.approx(12.0 * lever + spring, rel=0.003)
+    assert abs(grip) == pytest.approx(12.0, abs=0.05)  # of the source
 
 
 def test_knee() -> None:
@@ -172,12 +184,17 @@ def test_pylon() -> None:
 
 
 def test_numbers_of_prostheses_have_a_source_or_are_assumed() -> None:
-    """What a source gives stands beside its number, in inches; what none gives is said to be assumed, once for all."""
+    """What a source gives stands beside its number; what none gives is said to be assumed, once for all."""
     for name in ("finger", "knee", "pylon"):
         told = " ".join(read_case(name).assumptions)
         assert re.search(r"All (other )?dimensions[^.;:]*assumed", told), name
     stated = re.findall(r'"([\d.]+) mm".*# US 5,746,774: ([\d.]+) in', read_text("knee")[0])
     assert [float(inches) for _, inches in stated] == [2.5, 3.75, 3.575, 1.0]
+    # Metres of the source, in the frames of its links; its pulley stands 43 mm along and 1.4554 mm below the knuckle.
+    finger, pulley = read_text("finger")[0], (0.0333 - 0.043, -0.0025 + 0.0014554)
+    for point, of in {"G": pulley, "D": (0.022, 0.0), "H": (0.003, -0.0086), "T": (0.023, -0.003)}.items():
+        x, y = re.search(rf'points.{point} = \["(.*) mm", "(.*) mm"\] +# \[1\]', finger).groups()
+        assert (float(x), float(y)) == pytest.approx([1000.0 * one for one in of], abs=0.005), point
     shares = [
         float(mm) / float(inches) / 25.4 for mm, inches in stated
     ]  # the shin's pins stand either side of its middle

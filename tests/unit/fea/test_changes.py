@@ -189,7 +189,7 @@ def test_a_check_open_for_its_model_is_not_sized_and_one_open_for_its_band_is(th
     """No size calibrates hand calculation: by solids the finger's plate has a number at the size that it has."""
     finger = by_hand("finger")
     opened = [check for check in finger.load_cases["grip"].checks if "run the solid model" in in_words(check.reason)]
-    assert {str(check.subject) for check in opened} == {"distal", "proximal"}
+    assert {str(check.subject) for check in opened} == {"distal", "middle"}
     assert not any(_change(finger, check).sizable for check in opened)
     result, found = thick
     check = found[Quantity.SAFETY_FACTOR, "crank"]

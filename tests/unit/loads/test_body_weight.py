@@ -8,6 +8,7 @@ import pytest
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import parse
 from alula.loads.case.case_file import built_in_cases, read_case, validate
+from alula.loads.case.toleranced import toleranced
 from alula.loads.compose.stated_case import StatedCase
 from alula.reports.workbench.live.answers import pose_answer
 
@@ -42,6 +43,11 @@ def test_forces_and_moments_are_shares_of_the_weight(mass, weight):
     assert stand.spread[0].total == pytest.approx((0.0, 2.0 * weight), rel=1e-12)
     assert stand.load_lines[0].force == pytest.approx(-0.5 * weight, rel=1e-12)
     assert case.tendons["cord"].tension == pytest.approx(0.25 * weight, rel=1e-12)
+
+
+def test_a_tolerance_in_body_weights():
+    [found] = toleranced(validate(tables(tolerances={"load_cases.stand.forces.0.force.1": "0.1 body_weight"})))
+    assert found.half == pytest.approx(78.4532, rel=1e-12)
 
 
 def test_another_mass_is_another_case_with_the_same_text():

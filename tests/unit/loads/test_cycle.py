@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 import told_motion
 
+from alula.fea.common.band import Band
 from alula.fea.elements.space import displacement_space
 from alula.fea.findings.of_motion import motion_findings
 from alula.fea.motion import envelope
 from alula.fea.motion.layered import with_couples
 from alula.fea.motion.link_history import link_histories
-from alula.fea.motion.linkage_history import _worst, when
+from alula.fea.motion.linkage_history import LinkageOverMotion, _worst, when
 from alula.fea.outcomes.fatigue import closed_history, repeated_cycles
 from alula.fea.outcomes.unloaded import stated_size
 from alula.fea.standing.case_statics import solve_case_statics
@@ -33,6 +34,7 @@ from alula.loads.records.cycle_spec import states
 from alula.loads.states.case_motion import solve_case_motion, step_caveats
 from alula.loads.states.clearance import way_of
 from alula.reports.figures.motion.motion_figures import torque_figure
+from alula.reports.motion.linkage import linkage_text
 from alula.reports.sentences import told as sentence_of
 from alula.reports.turnable.moving import motion_linkage
 
@@ -262,6 +264,9 @@ def test_points_of_a_load_line_may_be_columns(tmp_path):
     size = np.array([300.0, 1000.0, 700.5, 1100.0, 100.0, 0.0, 0.0, 300.0])
     assert np.linalg.norm(load.wrench[:, :2], axis=1) == pytest.approx(size)
     assert load.wrench[:, 5] == pytest.approx(-x * size)
+    short = line | {"from": ["column x", "0 mm"], "to": ["-5 mm", "0 mm"]}
+    with pytest.raises(CaseError, match=r"row 4, column Fy and x: load_cases\.stride\.load_lines\.0: from and to are"):
+        knee(tmp_path, table, {"own_weight": False, "load_lines": [short]})
 
 
 @pytest.mark.parametrize(
@@ -424,3 +429,9 @@ def test_reports_tell_where_in_the_cycle(tmp_path):
     assert axes.get_xlim() == (0.0, 100.0)
     assert axes.lines[0].get_xdata() == pytest.approx(moved.motion.progress)
     assert sentence_of(when(moved, 3)) == "48 % of the cycle"
+    over = {"limit_load": Band.exact(5.0), "limit_pose": 3, "displacement": Band.exact(0.25), "displacement_pose": -1}
+    text = linkage_text(moved, LinkageOverMotion(poses=(2, 3), where="D of thigh", **over)).text
+    assert text.startswith(
+        "The linkage as a whole, in 2 of 8 poses: least limit-load factor 5.00 at 48 % of the cycle, "
+    )
+    assert text.endswith("largest displacement 0.250 mm (D of thigh).")

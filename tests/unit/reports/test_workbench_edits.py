@@ -131,10 +131,10 @@ def test_points_without_joint_keep_their_distance_and_slide_along_a_bar() -> Non
 def test_the_origin_of_a_plate_stays_its_origin() -> None:
     case = read_case("finger")
     pose, document = case.solve_pose(), opened("finger")
-    to = pose.position("distal", "P") + np.array([2.0, 1.0])
-    document.apply([{"op": "move", "joint": "P", "to": to.tolist()}], pose)
+    to = pose.position("distal", "D") + np.array([2.0, 1.0])
+    document.apply([{"op": "move", "joint": "D", "to": to.tolist()}], pose)
     new = stated(document, "finger")
-    assert new.links["distal"].points["P"] == (0.0, 0.0)
+    assert new.links["distal"].points["D"] == (0.0, 0.0)
     assert new.solve_pose().position("distal", "T") == pytest.approx(pose.position("distal", "T"), abs=1e-5)
 
 
@@ -308,12 +308,12 @@ def test_a_renamed_thing_is_renamed_everywhere_and_the_pose_is_the_same(name: st
 
 
 def test_numbers_of_the_verdict_stay_and_its_subjects_are_renamed() -> None:
-    document, names = opened("finger"), {"distal": "tip of it", "P": "knuckle"}
-    document.apply([{"op": "rename", "path": ["joints", "P"], "to": "knuckle"}], None)
+    document, names = opened("finger"), {"distal": "tip of it", "D": "knuckle"}
+    document.apply([{"op": "rename", "path": ["joints", "D"], "to": "knuckle"}], None)
     document.apply([{"op": "rename", "path": ["links", "distal"], "to": "tip of it"}], None)
     new = stated(document, "finger")
-    assert new.joints["knuckle"].links == ("proximal", "tip of it")
-    assert list(new.links["tip of it"].points) == ["knuckle", "Q", "T"]
+    assert new.joints["knuckle"].links == ("middle", "tip of it")
+    assert list(new.links["tip of it"].points) == ["knuckle", "Q", "H", "T"]
     before, after = (
         {(one.name, one.subject.kind, one.subject.name): one.value.value for one in result.load_cases["grip"].checks}
         for result in (by_hand("finger"), check_case(new, fidelity="beam"))
