@@ -1,17 +1,19 @@
 """``level.html``: one page for all tests of a level, what they stand on first, as it is printed and signed."""
 
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 from urllib.parse import quote
 
-from alula.fea.check.level import LevelResult, Statement, TestResult
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import Verdict
+from alula.fea.motion.level import LevelResult, Statement, TestResult
 from alula.loads.case.level_case import Demand
+from alula.loads.stated.level_spec import LevelStep
 from alula.reports.check.folder import REPORT
 from alula.reports.check.stated import materials_section
 from alula.reports.check.whole_check import check_sections
 from alula.reports.figures.set_up import set_up_drawing
-from alula.reports.level.tests import OWN, TESTS, level_caveats, level_section, statement_words
+from alula.reports.level.tests import OWN, TESTS, at_state, level_caveats, level_section, statement_words
 from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
 from alula.reports.sections.checks import JUDGED, against
@@ -153,7 +155,7 @@ def _tests(result: LevelResult) -> Section:
     """Return test by test its steps, what it asks for, and what was found."""
     records = {
         name: {
-            "steps": [entries(step, "force least cycles duration") for step in test.spec.steps],
+            "steps": [_step(step) for step in test.spec.steps],
             "offsets": {end: entries(getattr(test.spec, end), " ".join(_AXES)) for end in ("top", "bottom")},
         }
         for name, test in result.tests.items()
@@ -167,12 +169,21 @@ def _tests(result: LevelResult) -> Section:
     )
 
 
+def _step(step: LevelStep) -> dict[str, Any]:
+    """Return a step as data; with the rows of its profile, where it has one."""
+    rows = [{"time": row.time, "force": row.force, "tilt": row.tilt} for row in step.rows]
+    found = entries(step, "force least cycles duration profile scale")
+    return found | ({"rows": rows} if rows else {})
+
+
 def _test(result: LevelResult, name: str, test: TestResult) -> Group:
     """Return one test; the places of its numbers lead into its own report."""
     steps = Table.by_columns(
         {
             words("step"): [str(k) for k in range(1, len(test.spec.steps) + 1)],
-            Column("force", "N"): [Number(step.force, stated=True) for step in test.spec.steps],
+            Column("largest force" if test.spec.profiled else "force", "N"): [
+                Number(step.most, stated=True) for step in test.spec.steps
+            ],
             Column("least force", "N"): [Number(step.least, stated=True) for step in test.spec.steps],
             Column("cycles"): [Number(step.cycles, digits=3) for step in test.spec.steps],
             Column("held for", "s"): [Number(step.duration, stated=True) for step in test.spec.steps],
@@ -188,7 +199,8 @@ def _test(result: LevelResult, name: str, test: TestResult) -> Group:
             below[len(rows)] = sentence(told(decides.reason))
         place = f"#link-{quote(decides.link)}" if decides.link in result.case.links else ""
         where = link(decides.link, f"{TESTS}/{quote(name)}/{REPORT}{place}")
-        rows.append((statement_words(test, one), str(decides.quantity), *against(decides), mark, where))
+        by = f"{decides.quantity}{at_state(test, decides)}"
+        rows.append((statement_words(test, one), by, *against(decides), mark, where))
     columns = (words("says", role="what", wraps=True), words("by", wraps=True), *JUDGED, words("where"))
     return Group(
         f"Test {name}",

@@ -11,6 +11,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.case.level_case import Demand, demanded, level_caveats
 from alula.loads.compose.stated_case import StatedCase
+from alula.loads.records.load_case import Block
 from alula.loads.stated.level_spec import LevelSpec
 from alula.reports.sentences.caveats import caveat
 
@@ -47,7 +48,7 @@ def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
     )
     case = validate(stated)
     assert list(case.load_cases) == ["cyclic"]
-    assert case.least_share("cyclic") == pytest.approx(0.1)
+    assert case.repeated("cyclic") == ((pytest.approx(0.1), 1.0), (Block((0, 1), 1.0),))
     assert (case.conditions.cycles, case.conditions.reverses, case.conditions.temperature) == (1e6, False, 20.0)
     assert {name: check.type for name, check in case.checks.items()} == {"lasts": "fatigue"}
     assert case.checks["lasts"].minimum == 1.0
@@ -141,7 +142,7 @@ SECOND = "level.tests.second"
         (with_test(PROOF, top={**TOP, "up": "4,0 mm"}), f"{SECOND}.top.up (it is '4,0 mm'): "),
         (with_test(PROOF, bottom=TOP), f"{SECOND}: top and bottom are one point"),
         (with_test(PROOF, steps=[]), f"{SECOND}.steps (it is []): it has 0, but at least 1"),
-        (with_test(PROOF, steps=[{"duration": "30 s"}]), f"{SECOND}.steps.0.force: this entry is missing"),
+        (with_test(PROOF, steps=[{"duration": "30 s"}]), f"{SECOND}.steps.0: a step is of a force or of a profile; state"),
         (with_test(PROOF, steps=[{"force": 1000}]), f"{SECOND}.steps.0.force (it is 1000): "),
         (with_test(PROOF, steps=[{"force": "1.1 body_weight"}]), "no body is stated that weighs so much"),
         (with_test(PROOF, steps=[{"force": "nan N"}]), f"{SECOND}.steps.0.force (it is 'nan N'): "),
@@ -150,8 +151,6 @@ SECOND = "level.tests.second"
         (with_test(PROOF, permanent_set="0 mm"), f"{SECOND}.permanent_set (it is '0 mm'): "),
         (with_test(PROOF, lasts=True), f"{SECOND}: lasts = true needs a step with cycles"),
         (with_test(CYCLIC, lasts=False, elastic=True), f"{SECOND}: a step has cycles, but that they are borne"),
-        (with_test(CYCLIC, steps=CYCLIC["steps"] * 2), f"{SECOND}: 2 steps have cycles, but one is judged"),
-        (with_test(CYCLIC, steps=[*CYCLIC["steps"], {"force": "700 N"}]), f"{SECOND}: a step of 700 N is held besides"),
         (with_test(CYCLIC, steps=[{"force": "5 N", "cycles": float("nan")}]), f"{SECOND}.steps.0.cycles (it is nan)"),
         (
             with_test(CYCLIC, steps=[{"force": "5 N", "cycles": 2, "least": "5 N"}]),
@@ -162,7 +161,8 @@ SECOND = "level.tests.second"
             with_test(CYCLIC, steps=[{"force": "5 N", "cycles": 2, "duration": "1 s"}]),
             f"{SECOND}.steps.0: a step is held for a duration or has cycles",
         ),
-        (with_test(PROOF, steps=[{"profile": "x.csv"}]), f"{SECOND}.steps.0: a profile of force and tilt over time is"),
+        (with_test(PROOF, steps=[{"force": "5 N", "scale": 1.1}]), f"{SECOND}.steps.0: scale is that of a profile"),
+        (with_test(PROOF, tilts_about=TOP), f"{SECOND}: tilts_about is that of a profile with a tilt"),
     ],
 )
 def test_what_a_level_must_not_state_is_one_sentence(level, sentence, tmp_path):
@@ -182,9 +182,9 @@ def test_what_a_level_must_not_state_is_one_sentence(level, sentence, tmp_path):
             "level file 'level.toml': tests.second.steps.0.force (it is '1,000 N'): ",
         ),
         (
-            {**LEVEL, **with_test(PROOF, steps=[{"duration": "5 s"}], top=None)},
+            {**LEVEL, **with_test(PROOF, bottom=None, top=None)},
             {},
-            "level file 'level.toml': tests.second.top, tests.second.steps.0.force: these entries are missing",
+            "level file 'level.toml': tests.second.top, tests.second.bottom: these entries are missing",
         ),
         ({**LEVEL, "test": "proof"}, {}, "level file 'level.toml': test: this key is unknown; did you mean 'tests'?"),
         ({**LEVEL, "level": LEVEL}, {}, "level file 'level.toml': level: this key is unknown; a level file has"),
