@@ -12,7 +12,7 @@ from alula.loads.stated.level_spec import LevelStep
 from alula.reports.check.folder import REPORT
 from alula.reports.check.stated import materials_section
 from alula.reports.check.whole_check import check_sections
-from alula.reports.figures.set_up import set_up_drawing
+from alula.reports.figures.set_up import profile_drawing, set_up_drawing
 from alula.reports.level.tests import OWN, TESTS, at_state, level_caveats, level_section, statement_words
 from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
@@ -137,6 +137,14 @@ def _set_up(result: LevelResult) -> Section:
         ends = (getattr(end, axis) for end in (test.spec.top, test.spec.bottom) for axis in _AXES)
         rows.append((name, *(Number(value, stated=True) for value in ends)))
     columns = [Column(f"{end} {axis}", "mm") for end in ("top", "bottom") for axis in _AXES]
+    about = [
+        Text(
+            f"The load line of test {name} is tilted about an axis along outward through "
+            f"forward {plain(point.forward)} mm, up {plain(point.up)} mm."
+        )
+        for name, test in result.tests.items()
+        if (point := test.spec.tilts_about) is not None
+    ]
     table = Table(
         columns=(words("test"), *columns),
         rows=tuple(rows),
@@ -148,7 +156,7 @@ def _set_up(result: LevelResult) -> Section:
         caption="Arrows show the force; tests with one load line share a colour.",
         draw=lambda: set_up_drawing(result),
     )
-    return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table))
+    return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table, *about))
 
 
 def _tests(result: LevelResult) -> Section:
@@ -156,7 +164,11 @@ def _tests(result: LevelResult) -> Section:
     records = {
         name: {
             "steps": [_step(step) for step in test.spec.steps],
-            "offsets": {end: entries(getattr(test.spec, end), " ".join(_AXES)) for end in ("top", "bottom")},
+            "offsets": {
+                end: entries(point, " ".join(_AXES))
+                for end in ("top", "bottom", "tilts_about")
+                if (point := getattr(test.spec, end)) is not None
+            },
         }
         for name, test in result.tests.items()
     }
@@ -174,6 +186,17 @@ def _step(step: LevelStep) -> dict[str, Any]:
     rows = [{"time": row.time, "force": row.force, "tilt": row.tilt} for row in step.rows]
     found = entries(step, "force least cycles duration profile scale")
     return found | ({"rows": rows} if rows else {})
+
+
+def _profile(test: str, number: int, step: LevelStep) -> Picture:
+    """Return force and tilt of the profile of a step over time."""
+    scaled = "" if step.scale is None else f", its forces times {plain(step.scale)}"
+    return Picture(
+        name=f"profile-{test}-{number}",
+        alt=f"Force and tilt over time of step {number} of test {test}",
+        caption=f"Step {number}: {step.profile}{scaled}.",
+        draw=lambda: profile_drawing(step),
+    )
 
 
 def _test(result: LevelResult, name: str, test: TestResult) -> Group:
@@ -202,11 +225,13 @@ def _test(result: LevelResult, name: str, test: TestResult) -> Group:
         by = f"{decides.quantity}{at_state(test, decides)}"
         rows.append((statement_words(test, one), by, *against(decides), mark, where))
     columns = (words("says", role="what", wraps=True), words("by", wraps=True), *JUDGED, words("where"))
+    profiles = [_profile(name, k, step) for k, step in enumerate(test.spec.steps, 1) if step.rows]
     return Group(
         f"Test {name}",
         (
             Text(f"Source of its numbers: {test.spec.source or result.level.source}.", "note"),
             steps,
+            *profiles,
             Table(columns=columns, rows=tuple(rows), below=below, kind="keep"),
         ),
         key=f"test-{name}",
