@@ -297,6 +297,8 @@ class FatigueLife:
         Cycles as bad as the worst that one repetition's make together, by Miner's sum; all of them, without exponent.
     repetitions : float or None
         Of the motion until Miner's sum is 1; None where the card has no exponent.
+    harm : tuple of float
+        Of each block its share of Miner's sum; empty where that is 0 or not known.
     """
 
     smallest: float
@@ -305,6 +307,7 @@ class FatigueLife:
     stress: float
     count: float
     repetitions: float | None
+    harm: tuple[float, ...] = ()
 
     @property
     def stress_range(self) -> float:
@@ -335,15 +338,18 @@ def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()
         found = repeated_cycles(history[list(states)])
         found = found[found[:, 0] >= NEGLIGIBLE * found[:, 0].max(initial=0.0)]
         every.append(found * (1.0, 1.0, share))
-    cycles = np.concatenate(every)
-    cycles = cycles[np.argsort(-cycles[:, 0], kind="stable")]
+    cycles, of_block = np.concatenate(every), np.repeat(np.arange(len(every)), [len(found) for found in every])
+    order = np.argsort(-cycles[:, 0], kind="stable")
+    cycles, of_block = cycles[order], of_block[order]
     stress = equivalent_peak(cycles, fatigue, material.ultimate_strength)
-    repetitions, worst = None, float(stress.max(initial=0.0))
+    repetitions, harm, worst = None, np.zeros(0), float(stress.max(initial=0.0))
     share = stress / worst if worst > 0.0 else np.zeros_like(stress)
     count = float((cycles[:, 2] * share ** (fatigue.exponent or 0.0)).sum()) or 1.0
     if fatigue.exponent is not None:
-        damage = float((cycles[:, 2] / cycles_to_failure(stress, fatigue)).sum())
+        each = cycles[:, 2] / cycles_to_failure(stress, fatigue)
+        damage = float(each.sum())
         repetitions = 1.0 / damage if damage > 0.0 else math.inf
+        harm = np.bincount(of_block, each / damage, len(every)) if damage > 0.0 else harm
     return FatigueLife(
         smallest=float(history.min()),
         largest=float(history.max()),
@@ -351,6 +357,7 @@ def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()
         stress=worst,
         count=count,
         repetitions=repetitions,
+        harm=tuple(harm.tolist()),
     )
 
 

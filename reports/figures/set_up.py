@@ -88,12 +88,12 @@ def profile_drawing(step: LevelStep) -> Canvas:
     curves = [("force [N]", np.array([row.force for row in step.rows]), _COLOURS[0])]
     if any(row.tilt for row in step.rows):
         curves.append(("tilt [deg]", np.degrees([row.tilt for row in step.rows]), _COLOURS[1]))
-    sheet = Canvas(72.0 * WIDTH, _ABOVE + len(curves) * (_PLOT + _ABOVE) + _BELOW)
+    sheet = Canvas(72.0 * WIDTH, len(curves) * (_PLOT + _ABOVE) + _BELOW)
     for k, (label, values, colour) in enumerate(curves):
         top, low = _ABOVE + k * (_PLOT + _ABOVE), min(float(values.min()), 0.0)
         room = _PAD * (float(values.max()) - low)
         axes = Axes(
-            box=(_LEFT, top, 72.0 * WIDTH - _RIGHT, top + _PLOT),
+            box=(_LEFT, top, 72.0 * WIDTH - 2.0 * _RIGHT, top + _PLOT),
             x=(float(times[0]), float(times[-1])),
             y=(low - room, float(values.max()) + room),
         )

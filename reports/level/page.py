@@ -7,6 +7,7 @@ from urllib.parse import quote
 from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import Verdict
 from alula.fea.motion.level import LevelResult, Statement, TestResult
+from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.loads.case.level_case import Demand
 from alula.loads.stated.level_spec import LevelStep
 from alula.reports.check.folder import REPORT
@@ -24,7 +25,7 @@ from alula.reports.sections.table import Cell, Column, Mark, Number, Table, word
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import caveat
 from alula.reports.sentences.verdicts import besides
-from alula.reports.words.numbers import joined, plain, sentence
+from alula.reports.words.numbers import joined, number, plain, sentence
 
 PAGE = "level.html"
 SET_UP = "set-up"
@@ -164,6 +165,7 @@ def _tests(result: LevelResult) -> Section:
     records = {
         name: {
             "steps": [_step(step) for step in test.spec.steps],
+            "harm": list(_harm(test)),
             "offsets": {
                 end: entries(point, " ".join(_AXES))
                 for end in ("top", "bottom", "tilts_about")
@@ -186,6 +188,24 @@ def _step(step: LevelStep) -> dict[str, Any]:
     rows = [{"time": row.time, "force": row.force, "tilt": row.tilt} for row in step.rows]
     found = entries(step, "force least cycles duration profile scale")
     return found | ({"rows": rows} if rows else {})
+
+
+def _harm(test: TestResult) -> tuple[float, ...]:
+    """Return the share of the harm that each step with cycles does, and the whole test; empty of one step alone."""
+    decides = next((one.decides for one in test.statements if one.demand is Demand.LASTS), None)
+    if decides is None or len(test.spec.counted) < 2:
+        return ()
+    found = test.result.load_cases[decides.load_case].of_links(LinkFatigue).get(decides.link)
+    return () if found is None else found.life.harm
+
+
+def _harm_words(test: TestResult) -> Iterator[Text]:
+    """Yield what part of the harm of its cycles each step does."""
+    if harm := _harm(test):
+        names = [f"step {k}" for k, step in test.spec.counted if step.cycles]
+        names.append("the whole test from no load and back, once")
+        told = (f"{name} {number(100.0 * share, 3)} %" for name, share in zip(names, harm, strict=True))
+        yield Text(f"Harm of its cycles, by Miner's sum: {'; '.join(told)}.", "note")
 
 
 def _profile(test: str, number: int, step: LevelStep) -> Picture:
@@ -231,6 +251,7 @@ def _test(result: LevelResult, name: str, test: TestResult) -> Group:
         (
             Text(f"Source of its numbers: {test.spec.source or result.level.source}.", "note"),
             steps,
+            *_harm_words(test),
             *profiles,
             Table(columns=columns, rows=tuple(rows), below=below, kind="keep"),
         ),
