@@ -280,8 +280,8 @@ class LinkMotion:
         for variant in load_case.variants:
             part = solved.combination[:, variant.first : variant.first + count]
             lives = []
-            for states in [list(block.states) for block in blocks] or [slice(None)]:
-                number, _ = critical_node(self.measure.decisive, stress, part[:, states], self.material)
+            for states in [block.states for block in blocks] or [tuple(range(count))]:
+                number, _ = critical_node(self.measure.decisive, stress, part[:, list(states)], self.material)
                 history = signed_stress((stress[number] @ part).T, brittle=self.material.brittle)
                 closed = closed_history(history, returns=self.returns)
                 lives.append((fatigue_life(closed, self.material, blocks), number, history, closed))

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.motion.level import LevelResult
+from alula.fea.level.check_level import LevelResult
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.attachment import Attachment
 from alula.loads.stated.level_spec import LevelSpec, LevelStep, turned

@@ -1,12 +1,12 @@
 """``level.html``: one page for all tests of a level, what they stand on first, as it is printed and signed."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 from urllib.parse import quote
 
-from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import Verdict
-from alula.fea.motion.level import LevelResult, Statement, TestResult
+from alula.fea.level.check_level import LevelResult, Statement, TestResult
 from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.loads.case.level_case import Demand
 from alula.loads.stated.level_spec import LevelStep
@@ -14,7 +14,7 @@ from alula.reports.check.folder import REPORT
 from alula.reports.check.stated import materials_section
 from alula.reports.check.whole_check import check_sections
 from alula.reports.figures.set_up import profile_drawing, set_up_drawing
-from alula.reports.level.tests import OWN, TESTS, at_state, level_caveats, level_section, statement_words
+from alula.reports.level.tests import OWN, TESTS, at_state, level_caveats, level_section, plain_warning, statement_words
 from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
 from alula.reports.sections.checks import JUDGED, against
@@ -103,7 +103,7 @@ def _stands_on(result: LevelResult) -> Section:
     )
     besides_it = _shared(result, lambda test: [(str(one.heading), caveat(one)) for one in test.result.caveats])
     limits = _shared(result, lambda test: [one for part in check_sections(test.result) for one in part.not_covered])
-    warnings = _shared(result, lambda test: [("warning", _plain(test, one)) for one in test.result.warnings])
+    warnings = _shared(result, lambda test: [("warning", plain_warning(test, one)) for one in test.result.warnings])
     parts: list[Part] = [Items(besides_it), Items((friction, *case.assumptions))]
     if warnings:
         parts.append(Items(tuple(f"{title}: {text}" for title, text in warnings), "warnings"))
@@ -124,11 +124,6 @@ def _shared(
         of = "" if len(names) == len(result.tests) else f" ({joined(names)})"
         texts.setdefault(f"{title[:1].upper()}{title[1:]}{of}", []).append(sentence(text))
     return tuple((title, " ".join(own)) for title, own in texts.items())
-
-
-def _plain(test: TestResult, warning: Reason | str) -> str:
-    """Return a warning without the load case that it is of, which has the name of the test."""
-    return told(warning).removeprefix(f"load case {test.name}: ")
 
 
 def _set_up(result: LevelResult) -> Section:
@@ -185,7 +180,7 @@ def _tests(result: LevelResult) -> Section:
 
 def _step(step: LevelStep) -> dict[str, Any]:
     """Return a step as data; with the rows of its profile, where it has one."""
-    rows = [{"time": row.time, "force": row.force, "tilt": row.tilt} for row in step.rows]
+    rows = [{"time": row.time, "force": row.force, "tilt": math.degrees(row.tilt)} for row in step.rows]
     found = entries(step, "force least cycles duration profile scale")
     return found | ({"rows": rows} if rows else {})
 

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.motion.level import FATIGUE, LevelResult, Statement, TestResult
+from alula.fea.level.check_level import FATIGUE, LevelResult, Statement, TestResult
 from alula.loads.case.level_case import Demand
 from alula.loads.text.caveat import Caveat
 from alula.reports.renderers.console import print_parts, verdict_line
@@ -170,10 +171,26 @@ def print_level(result: LevelResult, sections: Sequence[Section], console: "Cons
     if line := besides(level_caveats(result)):
         say(console, line)
     every = {name: test.result.warnings for name, test in result.tests.items()}
-    alike = (told(one).removeprefix(f"load case {name}: ") for name, found in every.items() for one in found)
+    alike = (plain_warning(result.tests[name], one) for name, found in every.items() for one in found)
     for warning in dict.fromkeys(alike):
         say(console, f"Warning: {warning}", style="yellow")
     say(console, 'All numbers of a test: --set level.test="..." with its name, and --verbose')
+
+
+def plain_warning(test: TestResult, warning: Reason | str) -> str:
+    """Return a warning without the load cases that it is of, where these are all of the test.
+
+    Parameters
+    ----------
+    test : TestResult
+    warning : Reason or str
+
+    Returns
+    -------
+    str
+    """
+    names = tuple(test.result.load_cases)
+    return told(warning).removeprefix(f"load case{'s' * (len(names) > 1)} {', '.join(names)}: ")
 
 
 def level_record(result: LevelResult, sections: Sequence[Section]) -> dict[str, Any]:

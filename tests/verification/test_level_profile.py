@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from levels import BOTTOM, TOP, pylon
 
+from alula.fea.level.check_level import check_level
 from alula.fea.motion.envelope import envelope_case
-from alula.fea.motion.level import check_level
 from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.fea.refine.refinement import Effort
 from alula.loads.case.level_case import over_states

@@ -9,7 +9,7 @@ import pytest
 from levels import CYCLIC, PROOF, pylon
 from told import ends_of, flat, numbers_of, values_of
 
-from alula.fea.motion.level import check_level
+from alula.fea.level.check_level import check_level
 from alula.loads.compose.stated_case import StatedCase
 from alula.reports.figures.set_up import set_up_drawing
 from alula.reports.level.page import level_page, level_sections
