@@ -171,8 +171,8 @@ def check(
     >>> round(report.drive_torques["weight"], 1)  # N·mm
     -19.9
     """
-    from alula.fea.check.level import check_level, has_tests
     from alula.fea.check.run import check_case, effort_of
+    from alula.fea.level.check_level import check_level, has_tests
     from alula.reports.notebook.check_report import CheckReport
     from alula.reports.notebook.level_report import LevelReport
 

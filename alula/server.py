@@ -156,13 +156,13 @@ def _plain(parameter: inspect.Parameter) -> inspect.Parameter:
 def _case(name: str, values: Mapping[str, object] | None, home: Path) -> "alula.Case":
     """Return a case of the folder or a built-in one; the files that it names lie beside it."""
     stated = values or {}
-    named = [value for entry, value in stated.items() if entry.rpartition(".")[2] == "file"]
+    named = [value for entry, value in stated.items() if entry.rpartition(".")[2] in ("file", "profile")]
     place: Path | str = name
     if name not in alula.cases():
         place = _below(name, home)
         with suppress(ValueError, OSError):  # ``read_case`` says what is wrong
             tables = tomllib.loads(place.read_text(encoding="utf-8"))
-            named += [table["file"] for _, table in named_files(tables)]
+            named += [table[key] for _, table, key in named_files(tables)]
     for file in named:
         _below(str(file), home if place == name else Path(place).parent, home)
     return alula.read_case(place, values)

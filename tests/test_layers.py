@@ -25,7 +25,7 @@ LAYERS = {
         *("common", "asked", "elements", "tractions", "solvers", "solid", "beam", "frame", "pins"),
         *("standing", "nonlinear", "buckling", "modes"),
         *("refine", "plastic", "superposition", "vibration", "outcomes", "links", "doubts", "judging", "whole"),
-        *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
+        *("check", "motion", "level", "calculix", "claims", "study", "sizing", "tolerance", "findings"),
     ),
     "reports": (
         *("words", "sentences", "figures", "turnable", "sections", "page", "renderers"),

@@ -49,7 +49,8 @@ def fatigue_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
     moving, cycles = any(one.speed != 0.0 for one in case.load_cases.values()), case.conditions.cycles
     if not case.checked_links or not (moving or cycles is not None):
         return
-    if cycles is not None and len(case.load_cases) > 1:
+    alone = not any(one.blocks for one in case.load_cases.values())  # states of a profile are followed together
+    if cycles is not None and len(case.load_cases) > 1 and alone:
         yield Caveat(topic=Topic.FATIGUE, what=reason("fatigue_of_load_cases"), why=reason("each_comes_and_goes_alone"))
     if not over_motion:
         judged = asked_of(case, FatigueCheck)

@@ -1,7 +1,8 @@
 """Fatigue of links: under the load of a pose that comes and goes, and the outcome of either that or of a motion.
 
 In a pose all stress goes with the load, so that one cycle at every place stands for all: from nothing to its stress and
-back, to its opposite, or to the share of it that the load case states. Of a solid it is that of its worst node, pulled
+back, to its opposite, or to the share of it that the load case states; of a test of a level with several steps, the
+cycles of each. Of a solid it is that of its worst node, pulled
 or pressed. Where it has pins, the stress under an opposite load is not the opposite one, since they press on the other
 side of their holes: the band goes down to the cycle from nothing, which is there in any case, and none passes. By hand
 the place is not known, so that the largest stress counts as if it pulled; the band goes down to what bending and axial
@@ -151,18 +152,23 @@ def pulsating(case: Case, load_case: str, link: str, result: LinkResult) -> Link
     LinkFatigue or Reason
         Why it is not known, where it is not.
     """
-    material = case.material_of(link)
+    material, (stated, blocks) = case.material_of(link), case.repeated(load_case)
     data, lacking = material.fatigue, missing_data(material)
     if lacking or data is None:
         return lacking or reason("no_fatigue_data")
+    if not stated:
+        return reason("fatigue_over_profile")
     if result.decisive.unknowable or result.von_mises_max.unknowable:
         return reason("peak_not_known")
     found = _of_solid(case, result, data) if isinstance(result, SolidResult) else _by_hand(case, result, data)
     extremes, location, counted, notched = found
-    least = case.least_share(load_case)
-    shares = (least, 0.0 if _presses_elsewhere(case, load_case, result) else least, least)
+    shares = np.array(stated)
+    pressed = np.maximum(shares, 0.0) if _presses_elsewhere(case, load_case, result) else shares
     lives = [
-        [fatigue_life(np.array([0.0 + share * end, end]), material) for end, share in zip(ends, shares, strict=True)]
+        [
+            fatigue_life(0.0 + of * end, material, blocks)
+            for end, of in zip(ends, (shares, pressed, shares), strict=True)
+        ]
         for ends in extremes
     ]
     worst = max(range(len(lives)), key=lambda i: lives[i][0].stress)
@@ -170,7 +176,7 @@ def pulsating(case: Case, load_case: str, link: str, result: LinkResult) -> Link
     return LinkFatigue.of(
         ends,
         lives[worst][0],
-        np.array([0.0 + least * extremes[worst][0], extremes[worst][0]]),
+        0.0 + shares * extremes[worst][0],
         location[worst],
         distinct(result.decisive.sources, (NOTCH,) if notched else ()),
         material=material,
@@ -182,7 +188,9 @@ def pulsating(case: Case, load_case: str, link: str, result: LinkResult) -> Link
 
 def _presses_elsewhere(case: Case, load_case: str, result: LinkResult) -> bool:
     """Return True where an opposite load does not make an opposite stress: pins press on the other side of holes."""
-    return case.least_share(load_case) < 0.0 and isinstance(result, SolidResult) and bool(case.body(result.link).pins)
+    return (
+        min(case.repeated(load_case)[0]) < 0.0 and isinstance(result, SolidResult) and bool(case.body(result.link).pins)
+    )
 
 
 def _of_solid(case: Case, result: SolidResult, data: Fatigue) -> Extremes:

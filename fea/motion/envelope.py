@@ -179,6 +179,7 @@ class _Envelope:
             stated=case.torque_transfer,
             returns=self.moved.motion.returns or self.moved.motion.instants is not None,
             layers=layers_of(case, link),
+            blocks={name: load_case.blocks for name, load_case in case.load_cases.items()},
         )
 
     def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool = False) -> list[CheckOutcome]:

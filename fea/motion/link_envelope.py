@@ -26,6 +26,7 @@ from alula.fea.outcomes.fatigue import (
     missing_data,
     not_closed,
     notch_factors,
+    signed_stress,
 )
 from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.link_task import ElasticLink
@@ -39,6 +40,7 @@ from alula.geometry.base.errors import CannotRunError
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Material, stress_measure
 from alula.geometry.parts.part import Body
+from alula.loads.records.load_case import Block
 
 Real = NDArray[np.float64]
 
@@ -80,6 +82,8 @@ class LinkMotion:
         True where the last pose is the first again, or goes on to it; else the motion goes there and back.
     layers : Layers, optional
         Of a printed part.
+    blocks : mapping of str to sequence of Block, optional
+        Load case -> how often which poses follow each other; all of them once where left out.
 
     Attributes
     ----------
@@ -106,7 +110,9 @@ class LinkMotion:
         stated: Transfer,
         returns: bool,
         layers: Layers | None = None,
+        blocks: Mapping[str, Sequence[Block]] | None = None,
     ) -> None:
+        self.blocks = blocks or {}
         self.link, self.body, self.material, self.evaluated = link, body, material, evaluated
         self.stated, self.returns = stated, returns
         chosen = [history.chosen(evaluated) for history in histories]
@@ -262,18 +268,25 @@ class LinkMotion:
     def _fatigue(
         self, load_case: LoadCaseEnvelope, series: MeshFactors, load: Scatter, repetitions: float | None
     ) -> LinkFatigue:
-        """Return the fatigue under a load case, at the critical node of the variant that governs."""
+        """Return the fatigue under a load case, at the critical node of the variant that governs.
+
+        Of blocks of poses each has a node that its largest cycle harms most; that counts which all blocks harm most.
+        """
         assert self.material.fatigue is not None
         every, found, meshes, count = list[FatigueLife](), [], list(series.sources), int(self.evaluated.sum())
-        solved = self.measure.solved
+        solved, blocks = self.measure.solved, self.blocks.get(load_case.name, ())
         least, most = notch_factors(self.body, solved.space.nodes[solved.nodes], self.material.fatigue)
         stress = solved.stress if (most == 1.0).all() else most[:, None, None] * solved.stress
         for variant in load_case.variants:
             part = solved.combination[:, variant.first : variant.first + count]
-            number, history = critical_node(self.measure.decisive, stress, part, self.material)
+            lives = []
+            for states in [block.states for block in blocks] or [tuple(range(count))]:
+                number, _ = critical_node(self.measure.decisive, stress, part[:, list(states)], self.material)
+                history = signed_stress((stress[number] @ part).T, brittle=self.material.brittle)
+                closed = closed_history(history, returns=self.returns)
+                lives.append((fatigue_life(closed, self.material, blocks), number, history, closed))
+            life, number, history, closed = max(lives, key=lambda one: _harm(one[0]))
             node, notch = int(solved.nodes[number]), float(least[number] / most[number])
-            closed = closed_history(history, returns=self.returns)
-            life = fatigue_life(closed, self.material)
             factors = series.of_variant(variant)
             if series.discretisation is not None and not series.holds_at(variant, solved.space.nodes, node):
                 factors = self._fatigue_factors(variant, node, history / most[number])
@@ -281,7 +294,7 @@ class LinkMotion:
             if notch < 1.0:
                 meshes.append(NOTCH)
             ends = (factors[0] * load.low * notch, factors[1] * load.high)
-            every += [life, *(fatigue_life(factor * closed, self.material) for factor in ends)]
+            every += [life, *(fatigue_life(factor * closed, self.material, blocks) for factor in ends)]
             if variant.transfer in (None, self.stated):
                 found.append((life, node, history, float(most[number])))
         life, node, history, share = max(found, key=lambda f: f[0].stress)
@@ -299,6 +312,11 @@ class LinkMotion:
             return 1.0, 1.0
         low, high = self.measure.ends(STRESS[self.material.brittle], variant.first + pose, node, stress)
         return low / stress, high / stress
+
+
+def _harm(life: FatigueLife) -> tuple[float, float]:
+    """Miner's sum of a repetition, and the stress of its worst cycle where that is alike or not known."""
+    return (0.0 if life.repetitions is None else 1.0 / life.repetitions), life.stress
 
 
 def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -> LoadCaseEnvelope:

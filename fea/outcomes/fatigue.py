@@ -17,6 +17,7 @@ alloys, 0.25 mm for low-carbon steels, 0.064 mm for quenched and tempered ones.
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,6 +32,7 @@ from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
 from alula.geometry.parts.part import Body
 from alula.loads.records.check_spec import FatigueCheck
+from alula.loads.records.load_case import Block
 
 Real = NDArray[np.float64]
 
@@ -295,6 +297,8 @@ class FatigueLife:
         Cycles as bad as the worst that one repetition's make together, by Miner's sum; all of them, without exponent.
     repetitions : float or None
         Of the motion until Miner's sum is 1; None where the card has no exponent.
+    harm : tuple of float
+        Of each block its share of Miner's sum; empty where that is 0 or not known.
     """
 
     smallest: float
@@ -303,6 +307,7 @@ class FatigueLife:
     stress: float
     count: float
     repetitions: float | None
+    harm: tuple[float, ...] = ()
 
     @property
     def stress_range(self) -> float:
@@ -310,8 +315,8 @@ class FatigueLife:
         return self.largest - self.smallest
 
 
-def fatigue_life(history: Real, material: Material) -> FatigueLife:
-    """Return the fatigue under repetitions of a closed history.
+def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()) -> FatigueLife:
+    """Return the fatigue under repetitions of a closed history, or of blocks of it, whose harm adds up.
 
     Parameters
     ----------
@@ -319,6 +324,8 @@ def fatigue_life(history: Real, material: Material) -> FatigueLife:
         Of the signed stress [MPa].
     material : Material
         Whose card is complete: see ``missing_data``.
+    blocks : sequence of Block, optional
+        Which of its states follow each other, and how often in each repetition; all of them once where left out.
 
     Returns
     -------
@@ -326,17 +333,23 @@ def fatigue_life(history: Real, material: Material) -> FatigueLife:
     """
     fatigue = material.fatigue
     assert fatigue is not None
-    cycles = repeated_cycles(history)
-    cycles = cycles[np.argsort(-cycles[:, 0], kind="stable")]
-    if len(cycles):
-        cycles = cycles[cycles[:, 0] >= NEGLIGIBLE * cycles[0, 0]]
+    every = []
+    for states, share in blocks or (Block(tuple(range(len(history))), 1.0),):
+        found = repeated_cycles(history[list(states)])
+        found = found[found[:, 0] >= NEGLIGIBLE * found[:, 0].max(initial=0.0)]
+        every.append(found * (1.0, 1.0, share))
+    cycles, of_block = np.concatenate(every), np.repeat(np.arange(len(every)), [len(found) for found in every])
+    order = np.argsort(-cycles[:, 0], kind="stable")
+    cycles, of_block = cycles[order], of_block[order]
     stress = equivalent_peak(cycles, fatigue, material.ultimate_strength)
-    repetitions, worst = None, float(stress.max(initial=0.0))
-    share = stress / worst if worst > 0.0 else np.zeros_like(stress)
-    count = float((cycles[:, 2] * share ** (fatigue.exponent or 0.0)).sum()) or 1.0
+    repetitions, harm, worst = None, list[float](), float(stress.max(initial=0.0))
+    of_worst = stress / worst if worst > 0.0 else np.zeros_like(stress)
+    count = float((cycles[:, 2] * of_worst ** (fatigue.exponent or 0.0)).sum()) or 1.0
     if fatigue.exponent is not None:
-        damage = float((cycles[:, 2] / cycles_to_failure(stress, fatigue)).sum())
+        each = cycles[:, 2] / cycles_to_failure(stress, fatigue)
+        damage = float(each.sum())
         repetitions = 1.0 / damage if damage > 0.0 else math.inf
+        harm = np.bincount(of_block, each / damage, len(every)).tolist() if damage > 0.0 else harm
     return FatigueLife(
         smallest=float(history.min()),
         largest=float(history.max()),
@@ -344,6 +357,7 @@ def fatigue_life(history: Real, material: Material) -> FatigueLife:
         stress=worst,
         count=count,
         repetitions=repetitions,
+        harm=tuple(harm),
     )
 
 
@@ -388,7 +402,9 @@ def borne(material: Material, cycles: float) -> float | None:
     return None if found is None else min(found, material.ultimate_strength or material.allowable)
 
 
-def borne_pulsating(material: Material, cycles: float, factor: float, *, least: float) -> float | None:
+def borne_repeated(
+    material: Material, cycles: float, factor: float, shares: Sequence[float], blocks: Sequence[Block]
+) -> float | None:
     """Return the largest stress of a load that comes and goes at which a material keeps a factor on fatigue strength.
 
     Parameters
@@ -398,22 +414,28 @@ def borne_pulsating(material: Material, cycles: float, factor: float, *, least: 
         How often.
     factor : float
         Strength over the equivalent peak stress.
-    least : float
-        What is left of the load at the least point of a cycle, as a share of it.
+    shares : sequence of float
+        What is left of the load at the states of its cycles.
+    blocks : sequence of Block
+        How these follow each other.
 
     Returns
     -------
     float or None
-        [MPa]; None where the card does not tell.
+        [MPa], by halving; None where the card does not tell.
     """
-    strength = None if missing_data(material) else borne(material, cycles)
-    if strength is None or material.fatigue is None:
+    if missing_data(material) or borne(material, cycles) is None:
         return None
-    data, ultimate, peak = material.fatigue, material.ultimate_strength, strength / factor
-    if data.rule == "peak-stress" or ultimate is None:
-        return peak
-    cycle = np.array([[peak * (1.0 - data.stress_ratio), peak * (1.0 + data.stress_ratio) / 2.0, 1.0]])
-    return float(_peak(reversed_amplitude(cycle, ultimate), least, ultimate)[0])
+
+    def keeps(stress: float) -> bool:
+        life = fatigue_life(stress * np.array(shares), material, blocks)
+        return factor * life.stress <= (borne(material, cycles * life.count) or 0.0)
+
+    low, high = 0.0, 2.0 * (material.ultimate_strength or material.allowable)
+    while high - low > 1e-9 * high:
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if keeps(middle) else (low, middle)
+    return low
 
 
 def notch_factors(body: Body, places: Real, fatigue: Fatigue) -> tuple[Real, Real]:

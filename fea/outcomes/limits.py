@@ -14,7 +14,7 @@ from alula.fea.common.scatter import (
     strength_scatter,
 )
 from alula.fea.common.verdict import Quantity, Sense, Subject
-from alula.fea.outcomes.fatigue import borne_pulsating
+from alula.fea.outcomes.fatigue import borne_repeated
 from alula.fea.solid.layers import Layers
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed, is_solid_stock
@@ -70,8 +70,8 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
     repeated = case.conditions
     for one in asked(case, FatigueCheck, subject=Subject.link(link)):
         assert repeated.cycles is not None
-        for least in dict.fromkeys(map(case.least_share, case.load_cases)):
-            limit = borne_pulsating(material, repeated.cycles, one.limit, least=least)
+        for shares, blocks in dict.fromkeys(map(case.repeated, case.load_cases)):
+            limit = borne_repeated(material, repeated.cycles, one.limit, shares, blocks) if shares else None
             if limit is not None:
                 found.append(_spread(limit, fatigue_scatter(material.fatigue).times(load.inverse)))
     return tuple(found)

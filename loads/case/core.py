@@ -39,7 +39,7 @@ from alula.loads.records.check_spec import (
 from alula.loads.records.conditions import Conditions, at_temperature, under
 from alula.loads.records.cycle_spec import CycleSpec
 from alula.loads.records.flapping import Wing
-from alula.loads.records.load_case import LoadCase
+from alula.loads.records.load_case import Block, LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
 from alula.loads.records.tolerances import TolerancesTable
@@ -154,8 +154,8 @@ class CoreCase(Revisable):
         """True where all load cases are those of tests of the level."""
         return self.level is not None and (self.level.test is not None or "load_cases" not in self.model_fields_set)
 
-    def least_share(self, load_case: str) -> float:
-        """Return what is left of a load case at the least point of its cycles in a pose, as a share of it.
+    def repeated(self, load_case: str) -> tuple[tuple[float, ...], tuple[Block, ...]]:
+        """Return what is left of a load case at the states of its cycles in a pose, and how these follow each other.
 
         Parameters
         ----------
@@ -164,11 +164,15 @@ class CoreCase(Revisable):
 
         Returns
         -------
-        float
-            The stress ratio R of what its loads make alone.
+        tuple of (tuple of float, tuple of Block)
+            Shares of the load, and blocks of the states. Where it comes and goes the first share is the stress ratio R
+            of what its loads make alone, the second 1. No shares of a state of a profile, which others follow.
         """
-        stated = self.load_cases[load_case].least
-        return stated if stated is not None else -1.0 if self.conditions.reverses else 0.0
+        stated = self.load_cases[load_case]
+        if stated.blocks:
+            return stated.shares, stated.blocks
+        least = stated.least if stated.least is not None else -1.0 if self.conditions.reverses else 0.0
+        return (least, 1.0), (Block((0, 1), 1.0),)
 
     @property
     def inert(self) -> bool:
@@ -312,9 +316,12 @@ class CoreCase(Revisable):
     def all_checks(self) -> dict[str, Check]:
         """The stated checks, or the safety factor of every link where none is, and what is checked without being asked.
 
-        That is whether loads may stay as long and come as often as they do, and whether links in layers touch.
+        That is whether loads may stay as long and come as often as they do, and whether links in layers touch. A test
+        of a level asks for no more than it states.
         """
-        checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
+        checks = dict(self.checks)
+        if not checks and (self.level is None or self.level.test is None):
+            checks["safety factor"] = SafetyFactorCheck(type="safety-factor")
         if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
             checks["sustained load"] = SustainedCheck(type="sustained")
         if self.conditions.cycles is not None and not any(isinstance(c, FatigueCheck) for c in checks.values()):

@@ -1,20 +1,26 @@
 """What a level makes of a case: each test is a variant of it, with a load case, checks and conditions of its own."""
 
+import math
 from collections.abc import Iterator
 from enum import StrEnum
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
+import numpy as np
 from pydantic import TypeAdapter
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_rules import check_check
 from alula.loads.case.core import CoreCase
-from alula.loads.records.check_spec import Check
+from alula.loads.records.check_spec import Check, FatigueCheck
+from alula.loads.records.cycle_spec import CycleMotion
 from alula.loads.records.load_case import LoadCase
-from alula.loads.stated.level_spec import LevelSpec
+from alula.loads.records.motion_spec import MotionSpec
+from alula.loads.stated.level_spec import LevelSpec, LoadState
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.reason import reason
+
+AnyCase = TypeVar("AnyCase", bound=CoreCase)
 
 
 class Demand(StrEnum):
@@ -39,18 +45,27 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
     Returns
     -------
     dict of str to object
-        Of the chosen test its load case and conditions, and no checks: ``demanded`` has them once all names fit. Where
-        none is chosen, the load cases of all tests, if the case states none.
+        Of the chosen test its load case and conditions, and no checks: ``demanded`` has them once all names fit. With a
+        profile, a load case for each of its states that loads. Where no test is chosen, the load cases of all tests, if
+        the case states none.
     """
     level = case.level
     assert level is not None
     if level.test is None:
         own = {} if case.tests_alone else case.load_cases
         return {"load_cases": own or {name: _load_case(level, name) for name in level.tests}}
-    step = level.tests[level.test].decisive
-    kept = {"cycles": step.cycles, "duration": None, "reverses": False}
+    test = level.tests[level.test]
+    kept = {"cycles": test.cycles, "duration": None, "reverses": False}
+    if test.profiled:
+        loading = [state for state in test.states if state.force > 0.0]
+        load_cases = {one.name: _at_state(level, level.test, one).over(blocks=test.blocks) for one in loading}
+    else:
+        load_cases = {level.test: _load_case(level, level.test)}
+        if test.blocks:
+            shares = tuple(state.force / test.decisive.most for state in test.states)
+            load_cases[level.test] = load_cases[level.test].over(blocks=test.blocks, shares=shares)
     return {
-        "load_cases": {level.test: _load_case(level, level.test)},
+        "load_cases": load_cases,
         "conditions": case.conditions.model_copy(update=kept),
         "checks": {},
         "ways_to_hold": None,
@@ -58,20 +73,63 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
 
 
 def _load_case(level: LevelSpec, name: str) -> LoadCase:
-    """Return the load case of a test: its decisive force along its load line, on a linkage that stands still."""
+    """Return the load case of a test: its largest force along its load line, on a linkage that stands still."""
+    return _at_state(level, name, max(level.tests[name].states, key=lambda state: state.force))
+
+
+def _at_state(level: LevelSpec, name: str, state: LoadState) -> LoadCase:
+    """Return the load case of one state of a test."""
     test = level.tests[name]
-    step = test.decisive
+    start, end = level.line(test, state).tolist()
     line = {
-        "from": [f"{x!r} mm" for x in level.place(test.top).tolist()],
-        "to": [f"{x!r} mm" for x in level.place(test.bottom).tolist()],
-        "force": f"{step.force!r} N",
+        "from": [f"{x!r} mm" for x in start],
+        "to": [f"{x!r} mm" for x in end],
+        "force": f"{state.force!r} N",
         **level.enters.model_dump(),
         **({} if level.leaves is None else {"leaves": level.leaves.model_dump()}),
     }
-    cyclic = {"least": (step.least or 0.0) / step.force} if level.test is not None and step.cycles is not None else {}
     title = test.title or f"Test {name} of {level.title}"
-    return LoadCase.model_validate(
-        {"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line], **cyclic}
+    if state.time is not None:
+        title += f": {state.name}, {state.time:.4g} s, tilted by {math.degrees(state.tilt):.4g}°"
+    return LoadCase.model_validate({"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line]})
+
+
+def over_states(case: AnyCase) -> AnyCase:
+    """Return a test with a profile as a case under a cycle of loads, which stands in its pose and is asked for fatigue.
+
+    Parameters
+    ----------
+    case : Case
+        With a chosen test that has a profile and cycles.
+
+    Returns
+    -------
+    Case
+        With one load case, of the name of the test, whose rows are the states of the test.
+    """
+    level = case.level
+    assert level is not None
+    assert level.test is not None
+    name, test = level.test, level.tests[level.test]
+    rows = tuple(_at_state(level, name, state) for state in test.states)
+    slides = case.pose.travel is not None
+    value = case.pose.travel if case.pose.travel is not None else case.pose.angle
+    ends: dict[str, Any] = {} if case.pose.coordinate is None else {"travel" if slides else "range": (value, value)}
+    none = np.zeros(len(rows))
+    still = CycleMotion(
+        percent=np.linspace(0.0, 100.0, len(rows)),
+        times=None,
+        values=none + value,
+        speed=none,
+        acceleration=none,
+        sense=none + 1.0,
+    )
+    return case.model_copy(
+        update={
+            "load_cases": {name: _load_case(level, name).over(rows, blocks=test.blocks)},
+            "checks": {x: check for x, check in case.checks.items() if isinstance(check, FatigueCheck)},
+            "motion": MotionSpec.model_construct(poses=len(rows), **ends).through(still),
+        }
     )
 
 
@@ -170,9 +228,12 @@ def level_caveats(case: CoreCase) -> Iterator[Caveat]:
         yield Caveat(topic=Topic.LOADS, what=what, why=reason("alula_check_runs_tests", first=next(iter(level.tests))))
         return
     test = level.tests[level.test]
-    smaller = tuple(step.force for step in test.steps if step is not test.decisive and step.force < test.decisive.force)
-    if smaller:
-        why = reason("larger_step_decides", force=test.decisive.force)
+    most = test.decisive.most
+    smaller = tuple(
+        step.force for step in test.steps if step.force is not None and not step.cycles and step.force < most
+    )
+    if smaller and not test.profiled:
+        why = reason("larger_step_decides", force=most)
         yield Caveat(heading=Heading.ASSUMED, topic=Topic.LOADS, what=reason("steps_of", forces=smaller), why=why)
     if test.hold is not None:
         what = reason("held_for", duration=test.hold)

@@ -38,10 +38,8 @@ def name_files(tables: dict[str, Any], sought: str, folder: Path) -> None:
     folder : Path
         Absolute.
     """
-    for entry, table in named_files(tables):
-        if entry == "level.file":  # that of a standard stands beside its case
-            continue
-        table["file"] = _named(Path(sought, table["file"]).absolute(), folder)
+    for _, table, key in named_files(tables):
+        table[key] = _named(Path(sought, table[key]).absolute(), folder)
 
 
 def _named(file: Path, folder: Path) -> str:

@@ -575,8 +575,9 @@ class StatedCase:
                 f"{table}: this table sets entries that were changed, and would set them again; remove it with "
                 f'without("{table}")'
             )
+        tables = with_level_file(tables, self._folder, parse_tables)
         name_files(tables, self._folder, Path(_absolute(folder)))
-        return with_level_file(tables, self._folder, parse_tables)
+        return tables
 
     def of_study(self) -> Tables:
         """Return what a study's plan says of its case: the file, or the tables where none states this case.

@@ -89,8 +89,8 @@ class Variants:
             found = changed_tables(found, _changes({path: value}, "link"))
 
         in_turn(self.plan.link, follow)
-        for entry, table in named_files(found):
-            table["file"] = self._digest(entry, table["file"])
+        for entry, table, key in named_files(found):
+            table[key] = self._digest(entry, table[key])
         return found
 
     def _digest(self, entry: str, stated: str) -> str:

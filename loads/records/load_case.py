@@ -1,7 +1,7 @@
 """Load cases as a user states them: forces, moments, spread loads, air, weight and speed."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field, PlainValidator, PrivateAttr, ValidationInfo, WithJsonSchema, model_validator
@@ -141,6 +141,21 @@ class LoadLine(CaseModel):
         return self
 
 
+class Block(NamedTuple):
+    """States of a load that follow each other, the first after the last, and how often in each cycle that is asked for.
+
+    Attributes
+    ----------
+    states : tuple of int
+        Their numbers, in their order.
+    share : float
+        How often they are gone through in each cycle; a block of 1e6 cycles among 2e6 has 0.5.
+    """
+
+    states: tuple[int, ...]
+    share: float
+
+
 class LoadCase(CaseModel):
     """One set of loads that act at the same time."""
 
@@ -184,25 +199,41 @@ class LoadCase(CaseModel):
     flapping: Flapping | None = None
     """Air at rest in which the wings flap; without it they meet none."""
     _rows: tuple["LoadCase", ...] = PrivateAttr(())
+    _blocks: tuple[Block, ...] = PrivateAttr(())
+    _shares: tuple[float, ...] = PrivateAttr(())
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """How its cycles are made of its states: rows, or ``shares``; empty where it does no more than come and go."""
+        return self._blocks
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """What is left of the loads at each of the states that its cycles are made of, in a pose; empty for rows."""
+        return self._shares
 
     @property
     def rows(self) -> tuple["LoadCase", ...]:
         """The load case at every instant of a cycle; empty where none of its loads changes over one."""
         return self._rows
 
-    def over(self, rows: tuple["LoadCase", ...]) -> "LoadCase":
-        """Return the load case with what it is at every instant of a cycle.
+    def over(
+        self, rows: tuple["LoadCase", ...] = (), *, blocks: tuple[Block, ...] = (), shares: tuple[float, ...] = ()
+    ) -> "LoadCase":
+        """Return the load case with what it is at every instant of a cycle, and how often which instants follow.
 
         Parameters
         ----------
-        rows : tuple of LoadCase
+        rows : tuple of LoadCase, optional
+        blocks, shares : tuple, optional
+            As the properties.
 
         Returns
         -------
         LoadCase
         """
         found = self.model_copy()
-        found._rows = rows
+        found._rows, found._blocks, found._shares = rows, blocks, shares
         return found
 
 

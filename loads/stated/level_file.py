@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -42,8 +42,7 @@ def with_level_file(tables: Tables, folder: str, parse: Callable[[str, str], Tab
     if not isinstance(level, dict) or not isinstance(level.get("file"), str):
         return tables
     name = level["file"]
-    if not name or Path(name).name != name or name.startswith(".") or "\0" in name or "\\" in name:
-        raise CaseError(f"level.file: '{printable(name)}' must be the plain name of a file beside the case file")
+    _refuse_path("level.file", name)
     text = file_text(
         str(Path(folder) / name),
         "level file",
@@ -58,9 +57,39 @@ def with_level_file(tables: Tables, folder: str, parse: Callable[[str, str], Tab
             raise CaseError(f"{shown}: {printable(key)}: this key is unknown{meant}")
         if key in level:
             raise CaseError(f"level.{key}: it stands in {shown} too; state it in one of the two")
+    for entry, step in profiled_steps(stated):
+        _refuse_path(f"{shown}: {entry}", step["profile"])
     digest = hashlib.sha256(text.encode()).hexdigest()
     rest = {key: value for key, value in level.items() if key != "file"}
     return tables | {"level": rest | stated | {"read_from": f"{name}, SHA-256 {digest}"}}
+
+
+def profiled_steps(level: object, path: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the steps of the tests of a level that name the file of a profile.
+
+    Parameters
+    ----------
+    level : object
+        What is stated, not validated.
+    path : str, optional
+        Of it.
+
+    Yields
+    ------
+    tuple of (str, dict)
+        The entry that names the file, and its table.
+    """
+    tests = level.get("tests") if isinstance(level, dict) else None
+    for name, test in tests.items() if isinstance(tests, dict) else ():
+        steps = test.get("steps") if isinstance(test, dict) else None
+        for i, step in enumerate(steps if isinstance(steps, list) else ()):
+            if isinstance(step, dict) and isinstance(step.get("profile"), str):
+                yield f"{path}{'.' if path else ''}tests.{name}.steps.{i}.profile", step
+
+
+def _refuse_path(entry: str, name: str) -> None:
+    if not name or Path(name).name != name or name.startswith(".") or "\0" in name or "\\" in name:
+        raise CaseError(f"{entry}: '{printable(name)}' must be the plain name of a file beside the case file")
 
 
 def in_level_file(sentence: str, tables: Mapping[str, Any]) -> str:

@@ -24,6 +24,7 @@ from alula.geometry.placement.fit import Fit, Wanted
 from alula.geometry.placement.load_faces import load_faces
 from alula.geometry.placement.match import place, points_of_part, with_loaded_bores
 from alula.geometry.placement.placed_body import bores_of
+from alula.loads.stated.level_file import profiled_steps
 from alula.loads.text.explain import sentence
 
 FROM_PART = "from-part"
@@ -71,7 +72,7 @@ def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> d
     return tables | {"links": changed}
 
 
-def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], str]]:
     """Yield the tables of a case that name a file beside it.
 
     Parameters
@@ -81,15 +82,18 @@ def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]
 
     Yields
     ------
-    tuple of (str, dict)
-        The entry that names the file, and its table: of imported parts, of a cycle, and of a level.
+    tuple of (str, dict, str)
+        The entry that names the file, its table, and its key there: of imported parts, of a cycle, of a level, and of
+        steps of a level's tests.
     """
     parts = tables.get("parts")
     every = {f"parts.{name}": part for name, part in parts.items()} if isinstance(parts, dict) else {}
     every = {name: part for name, part in every.items() if isinstance(part, dict) and part.get("shape") in tuple(KINDS)}
     for name, table in (*every.items(), *((name, tables.get(name)) for name in ("cycle", "level"))):
         if isinstance(table, dict) and isinstance(table.get("file"), str):
-            yield f"{name}.file", table
+            yield f"{name}.file", table, "file"
+    for name, step in profiled_steps(tables.get("level"), "level"):
+        yield name, step, "profile"
 
 
 def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> FilePart:

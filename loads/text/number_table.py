@@ -70,7 +70,7 @@ class NumberTable:
             raise CaseError(f"'{self.name}' has no column '{printable(name)}'; its columns are {known}")
         return name
 
-    def quantity(self, name: str, dimension: str) -> Real:
+    def quantity(self, name: str, dimension: str, body_weight: float | None = None) -> Real:
         """Return a column in alula's unit of a dimension.
 
         Parameters
@@ -79,6 +79,8 @@ class NumberTable:
             Of the column.
         dimension : str
             A key of ``INTERNAL_UNITS``.
+        body_weight : float, optional
+            What the unit ``body_weight`` stands for [N]; it is refused where left out.
 
         Returns
         -------
@@ -93,7 +95,7 @@ class NumberTable:
         found = np.empty(len(self.rows))
         for i, value in enumerate(self.values[name].tolist()):
             try:
-                found[i] = parse(f"{value!r} {unit}", dimension)
+                found[i] = parse(f"{value!r} {unit}", dimension, body_weight)
             except PydanticCustomError as error:
                 raise self.wrong(self.rows[i], name, error.message()) from None
         return found

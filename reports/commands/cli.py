@@ -92,9 +92,9 @@ def check(
     ] = False,
 ) -> None:
     """Check a case: pose, joint forces, stress, verdict; of a case with a level all tests, one after the other."""
-    from alula.fea.check.level import has_tests
     from alula.fea.check.run import check_case, effort_of
     from alula.fea.findings.of_check import with_findings
+    from alula.fea.level.check_level import has_tests
     from alula.geometry.keeping.kept import keeping
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
@@ -139,8 +139,8 @@ def _check_tests(
     case: "Case", name: str, options: dict[str, Any], output: Path | None, *, json: bool, second_opinion: bool
 ) -> int:
     """Check all tests of a case, tell what they say and write their reports; return the exit status of the worst."""
-    from alula.fea.check.level import check_level
     from alula.fea.findings.of_check import with_findings
+    from alula.fea.level.check_level import check_level
     from alula.geometry.base.errors import CaseError
     from alula.reports.level.folder import write_level
     from alula.reports.level.page import level_sections

@@ -1,23 +1,26 @@
-"""The set-up of the tests of a level: their load lines about the links, from the side and from the front."""
+"""The set-up of the tests of a level: their load lines about the links, and profiles of force and tilt over time."""
 
 from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.check.level import LevelResult
+from alula.fea.level.check_level import LevelResult
 from alula.geometry.linkage.pose import Pose
 from alula.loads.records.attachment import Attachment
-from alula.loads.stated.level_spec import LevelSpec
+from alula.loads.stated.level_spec import LevelSpec, LevelStep, turned
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.plot import Axes
 from alula.reports.figures.sheet.style import GROUND, INK, LINK, WIDTH
+from alula.reports.words.numbers import plain
 
 Real = NDArray[np.float64]
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a5200", "#5d6b78")
 _TALLEST, _NARROWEST = 330.0, 150.0
 """Height of a view at most, and its width at least [points]."""
 _LEFT, _RIGHT, _ABOVE, _BELOW, _ROW = 52.0, 10.0, 18.0, 44.0, 13.0
+_PLOT = 96.0
+"""Height of a curve over time [points]."""
 _PAD = 0.08
 """Room about what is drawn, as a share of its largest extent."""
 
@@ -69,16 +72,58 @@ def set_up_drawing(result: LevelResult) -> Canvas:
     return sheet
 
 
+def profile_drawing(step: LevelStep) -> Canvas:
+    """Draw force and tilt of a profile over time, row by row.
+
+    Parameters
+    ----------
+    step : LevelStep
+        With a profile.
+
+    Returns
+    -------
+    Canvas
+    """
+    times = np.array([row.time for row in step.rows])
+    curves = [("force [N]", np.array([row.force for row in step.rows]), _COLOURS[0])]
+    if any(row.tilt for row in step.rows):
+        curves.append(("tilt [deg]", np.degrees([row.tilt for row in step.rows]), _COLOURS[1]))
+    sheet = Canvas(72.0 * WIDTH, len(curves) * (_PLOT + _ABOVE) + _BELOW)
+    for k, (label, values, colour) in enumerate(curves):
+        top, low = _ABOVE + k * (_PLOT + _ABOVE), min(float(values.min()), 0.0)
+        room = _PAD * (float(values.max()) - low)
+        axes = Axes(
+            box=(_LEFT, top, 72.0 * WIDTH - 2.0 * _RIGHT, top + _PLOT),
+            x=(float(times[0]), float(times[-1])),
+            y=(low - room, float(values.max()) + room),
+        )
+        axes.scale_y(sheet, label, label_at=_LEFT - 42.0, most=4, grid=True)
+        if k == len(curves) - 1:
+            axes.scale_x(sheet, "time [s]", grid=True)
+        axes.frame(sheet)
+        points = axes.at(np.column_stack([times, values]))
+        sheet.line(points, colour, 1.6)
+        for at in points:
+            sheet.disc(at, 1.8, colour)
+    return sheet
+
+
 def _lines(result: LevelResult) -> list[tuple[Real, list[str]]]:
-    """Return the ends of each load line (2, 3) in the axes of the standard, and the tests that have it."""
+    """Return the ends of each load line (2, 3) in the axes of the standard, and the tests that have it.
+
+    Of a profile those of the least and of the largest tilt of all states that load.
+    """
     found: list[tuple[Real, list[str]]] = []
     for name, test in result.tests.items():
-        ends = np.array([test.spec.top.vector, test.spec.bottom.vector])
-        alike = next((names for other, names in found if np.array_equal(other, ends)), None)
-        if alike is None:
-            found.append((ends, [name]))
-        else:
-            alike.append(name)
+        tilts = [state.tilt for state in test.spec.states if state.force > 0.0]
+        for tilt in dict.fromkeys((min(tilts), max(tilts))):
+            ends = turned(test.spec, tilt)
+            told = f"{name}, tilted by {plain(float(np.degrees(tilt)))}°" if tilt else name
+            alike = next((names for other, names in found if np.array_equal(other, ends)), None)
+            if alike is None:
+                found.append((ends, [told]))
+            else:
+                alike.append(told)
     return found
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from alula.fea.check.level import LevelResult, has_tests
+from alula.fea.level.check_level import LevelResult, has_tests
 from alula.fea.outcomes.result import CheckResult
 from alula.loads.case.case import Case
 from alula.reports.check.folder import PICTURES, fill_report, report_names

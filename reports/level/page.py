@@ -1,17 +1,20 @@
 """``level.html``: one page for all tests of a level, what they stand on first, as it is printed and signed."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 from urllib.parse import quote
 
-from alula.fea.check.level import LevelResult, Statement, TestResult
-from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import Verdict
+from alula.fea.level.check_level import LevelResult, Statement, TestResult
+from alula.fea.outcomes.fatigue import LinkFatigue
 from alula.loads.case.level_case import Demand
+from alula.loads.stated.level_spec import LevelStep
 from alula.reports.check.folder import REPORT
 from alula.reports.check.stated import materials_section
 from alula.reports.check.whole_check import check_sections
-from alula.reports.figures.set_up import set_up_drawing
-from alula.reports.level.tests import OWN, TESTS, level_caveats, level_section, statement_words
+from alula.reports.figures.set_up import profile_drawing, set_up_drawing
+from alula.reports.level.tests import OWN, TESTS, at_state, level_caveats, level_section, plain_warning, statement_words
 from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
 from alula.reports.sections.checks import JUDGED, against
@@ -22,7 +25,7 @@ from alula.reports.sections.table import Cell, Column, Mark, Number, Table, word
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import caveat
 from alula.reports.sentences.verdicts import besides
-from alula.reports.words.numbers import joined, plain, sentence
+from alula.reports.words.numbers import joined, number, plain, sentence
 
 PAGE = "level.html"
 SET_UP = "set-up"
@@ -100,7 +103,7 @@ def _stands_on(result: LevelResult) -> Section:
     )
     besides_it = _shared(result, lambda test: [(str(one.heading), caveat(one)) for one in test.result.caveats])
     limits = _shared(result, lambda test: [one for part in check_sections(test.result) for one in part.not_covered])
-    warnings = _shared(result, lambda test: [("warning", _plain(test, one)) for one in test.result.warnings])
+    warnings = _shared(result, lambda test: [("warning", plain_warning(test, one)) for one in test.result.warnings])
     parts: list[Part] = [Items(besides_it), Items((friction, *case.assumptions))]
     if warnings:
         parts.append(Items(tuple(f"{title}: {text}" for title, text in warnings), "warnings"))
@@ -123,11 +126,6 @@ def _shared(
     return tuple((title, " ".join(own)) for title, own in texts.items())
 
 
-def _plain(test: TestResult, warning: Reason | str) -> str:
-    """Return a warning without the load case that it is of, which has the name of the test."""
-    return told(warning).removeprefix(f"load case {test.name}: ")
-
-
 def _set_up(result: LevelResult) -> Section:
     """Return the load lines of all tests, drawn and as they are stated."""
     rows = list[tuple[Cell, ...]]()
@@ -135,6 +133,14 @@ def _set_up(result: LevelResult) -> Section:
         ends = (getattr(end, axis) for end in (test.spec.top, test.spec.bottom) for axis in _AXES)
         rows.append((name, *(Number(value, stated=True) for value in ends)))
     columns = [Column(f"{end} {axis}", "mm") for end in ("top", "bottom") for axis in _AXES]
+    about = [
+        Text(
+            f"The load line of test {name} is tilted about an axis along outward through "
+            f"forward {plain(point.forward)} mm, up {plain(point.up)} mm."
+        )
+        for name, test in result.tests.items()
+        if (point := test.spec.tilts_about) is not None
+    ]
     table = Table(
         columns=(words("test"), *columns),
         rows=tuple(rows),
@@ -146,15 +152,20 @@ def _set_up(result: LevelResult) -> Section:
         caption="Arrows show the force; tests with one load line share a colour.",
         draw=lambda: set_up_drawing(result),
     )
-    return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table))
+    return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table, *about))
 
 
 def _tests(result: LevelResult) -> Section:
     """Return test by test its steps, what it asks for, and what was found."""
     records = {
         name: {
-            "steps": [entries(step, "force least cycles duration") for step in test.spec.steps],
-            "offsets": {end: entries(getattr(test.spec, end), " ".join(_AXES)) for end in ("top", "bottom")},
+            "steps": [_step(step) for step in test.spec.steps],
+            "harm": list(_harm(test)),
+            "offsets": {
+                end: entries(point, " ".join(_AXES))
+                for end in ("top", "bottom", "tilts_about")
+                if (point := getattr(test.spec, end)) is not None
+            },
         }
         for name, test in result.tests.items()
     }
@@ -167,12 +178,50 @@ def _tests(result: LevelResult) -> Section:
     )
 
 
+def _step(step: LevelStep) -> dict[str, Any]:
+    """Return a step as data; with the rows of its profile, where it has one."""
+    rows = [{"time": row.time, "force": row.force, "tilt": math.degrees(row.tilt)} for row in step.rows]
+    found = entries(step, "force least cycles duration profile scale")
+    return found | ({"rows": rows} if rows else {})
+
+
+def _harm(test: TestResult) -> tuple[float, ...]:
+    """Return the share of the harm that each step with cycles does, and the whole test; empty of one step alone."""
+    decides = next((one.decides for one in test.statements if one.demand is Demand.LASTS), None)
+    if decides is None or len(test.spec.counted) < 2:
+        return ()
+    found = test.result.load_cases[decides.load_case].of_links(LinkFatigue).get(decides.link)
+    return () if found is None else found.life.harm
+
+
+def _harm_words(test: TestResult) -> Iterator[Text]:
+    """Yield what part of the harm of its cycles each step does."""
+    if harm := _harm(test):
+        names = [f"step {k}" for k, step in test.spec.counted if step.cycles]
+        names.append("the whole test from no load and back, once")
+        told = (f"{name} {number(100.0 * share, 3)} %" for name, share in zip(names, harm, strict=True))
+        yield Text(f"Harm of its cycles, by Miner's sum: {'; '.join(told)}.", "note")
+
+
+def _profile(test: str, number: int, step: LevelStep) -> Picture:
+    """Return force and tilt of the profile of a step over time."""
+    scaled = "" if step.scale is None else f", its forces times {plain(step.scale)}"
+    return Picture(
+        name=f"profile-{test}-{number}",
+        alt=f"Force and tilt over time of step {number} of test {test}",
+        caption=f"Step {number}: {step.profile}{scaled}.",
+        draw=lambda: profile_drawing(step),
+    )
+
+
 def _test(result: LevelResult, name: str, test: TestResult) -> Group:
     """Return one test; the places of its numbers lead into its own report."""
     steps = Table.by_columns(
         {
             words("step"): [str(k) for k in range(1, len(test.spec.steps) + 1)],
-            Column("force", "N"): [Number(step.force, stated=True) for step in test.spec.steps],
+            Column("largest force" if test.spec.profiled else "force", "N"): [
+                Number(step.most, stated=True) for step in test.spec.steps
+            ],
             Column("least force", "N"): [Number(step.least, stated=True) for step in test.spec.steps],
             Column("cycles"): [Number(step.cycles, digits=3) for step in test.spec.steps],
             Column("held for", "s"): [Number(step.duration, stated=True) for step in test.spec.steps],
@@ -188,13 +237,17 @@ def _test(result: LevelResult, name: str, test: TestResult) -> Group:
             below[len(rows)] = sentence(told(decides.reason))
         place = f"#link-{quote(decides.link)}" if decides.link in result.case.links else ""
         where = link(decides.link, f"{TESTS}/{quote(name)}/{REPORT}{place}")
-        rows.append((statement_words(test, one), str(decides.quantity), *against(decides), mark, where))
+        by = f"{decides.quantity}{at_state(test, decides)}"
+        rows.append((statement_words(test, one), by, *against(decides), mark, where))
     columns = (words("says", role="what", wraps=True), words("by", wraps=True), *JUDGED, words("where"))
+    profiles = [_profile(name, k, step) for k, step in enumerate(test.spec.steps, 1) if step.rows]
     return Group(
         f"Test {name}",
         (
             Text(f"Source of its numbers: {test.spec.source or result.level.source}.", "note"),
             steps,
+            *_harm_words(test),
+            *profiles,
             Table(columns=columns, rows=tuple(rows), below=below, kind="keep"),
         ),
         key=f"test-{name}",

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from alula.fea.check.level import LevelResult, Statement, TestResult
-from alula.fea.common.verdict import Verdict
+from alula.fea.common.reason import Reason
+from alula.fea.common.verdict import CheckOutcome, Verdict
+from alula.fea.level.check_level import FATIGUE, LevelResult, Statement, TestResult
 from alula.loads.case.level_case import Demand
 from alula.loads.text.caveat import Caveat
 from alula.reports.renderers.console import print_parts, verdict_line
@@ -67,7 +68,7 @@ def _table(result: LevelResult) -> Table:
                 continue
             if statement.verdict is not Verdict.PASS:
                 below[len(rows)] = sentence(f"{name}: {told(decides.reason)}")
-            subject = f"{decides.quantity} of {decides.subject}"
+            subject = f"{decides.quantity} of {decides.subject}{at_state(test, decides)}"
             mark = Mark(statement.verdict.value, statement.verdict.value)
             rows.append((name, statement_words(test, statement), subject, *against(decides), mark))
     heads = words("test", role="under"), words("says", wraps=True), words("by", role="what", wraps=True)
@@ -88,7 +89,7 @@ def statement_words(test: TestResult, statement: Statement) -> str:
         What is asked, followed by ``?``, where that is open.
     """
     demand, verdict = statement.demand, statement.verdict
-    cycles = f" {number(test.spec.decisive.cycles or 0.0, 3)} cycles"
+    cycles = f" {number(test.spec.cycles or 0.0, 3)} cycles"
     passed, failed = {
         Demand.ELASTIC: ("stays elastic", "yields"),
         Demand.PERMANENT_SET: ("permanent set kept", "permanent set too large"),
@@ -99,27 +100,45 @@ def statement_words(test: TestResult, statement: Statement) -> str:
     return {Verdict.PASS: passed, Verdict.FAIL: failed, Verdict.UNDECIDED: f"{passed}?"}[verdict]
 
 
+def at_state(test: TestResult, decides: CheckOutcome) -> str:
+    """Return at which state of a profile something is decided, with a comma before it; "" of other tests.
+
+    Parameters
+    ----------
+    test : TestResult
+    decides : CheckOutcome
+
+    Returns
+    -------
+    str
+        "" of fatigue as well, which all states make together.
+    """
+    return f", {decides.load_case}" if test.spec.profiled and decides.quantity not in FATIGUE else ""
+
+
 def _record(result: LevelResult, test: TestResult) -> dict[str, Any]:
-    step = test.spec.decisive
-    return (
-        {"title": test.spec.title, "source": test.spec.source or result.level.source, "verdict": test.verdict.value}
-        | entries(step, "force least cycles")
-        | {
-            "hold": test.spec.hold,
-            "top": data(result.level.place(test.spec.top)),
-            "bottom": data(result.level.place(test.spec.bottom)),
-            "statements": [
-                {
-                    "asks": one.demand.value,
-                    "says": statement_words(test, one),
-                    "verdict": one.verdict.value,
-                    "judged": len(one.outcomes),
-                    "decides": None if one.decides is None else check_records([one.decides])[0],
-                }
-                for one in test.statements
-            ],
-        }
-    )
+    return {
+        "title": test.spec.title,
+        "source": test.spec.source or result.level.source,
+        "verdict": test.verdict.value,
+    } | {
+        "force": test.spec.decisive.most,
+        "least": test.spec.decisive.least,
+        "cycles": test.spec.cycles,
+        "hold": test.spec.hold,
+        "top": data(result.level.place(test.spec.top)),
+        "bottom": data(result.level.place(test.spec.bottom)),
+        "statements": [
+            {
+                "asks": one.demand.value,
+                "says": statement_words(test, one),
+                "verdict": one.verdict.value,
+                "judged": len(one.outcomes),
+                "decides": None if one.decides is None else check_records([one.decides])[0],
+            }
+            for one in test.statements
+        ],
+    }
 
 
 def level_caveats(result: LevelResult) -> tuple[Caveat, ...]:
@@ -152,10 +171,26 @@ def print_level(result: LevelResult, sections: Sequence[Section], console: "Cons
     if line := besides(level_caveats(result)):
         say(console, line)
     every = {name: test.result.warnings for name, test in result.tests.items()}
-    alike = (told(one).removeprefix(f"load case {name}: ") for name, found in every.items() for one in found)
+    alike = (plain_warning(result.tests[name], one) for name, found in every.items() for one in found)
     for warning in dict.fromkeys(alike):
         say(console, f"Warning: {warning}", style="yellow")
     say(console, 'All numbers of a test: --set level.test="..." with its name, and --verbose')
+
+
+def plain_warning(test: TestResult, warning: Reason | str) -> str:
+    """Return a warning without the load cases that it is of, where these are all of the test.
+
+    Parameters
+    ----------
+    test : TestResult
+    warning : Reason or str
+
+    Returns
+    -------
+    str
+    """
+    names = tuple(test.result.load_cases)
+    return told(warning).removeprefix(f"load case{'s' * (len(names) > 1)} {', '.join(names)}: ")
 
 
 def level_record(result: LevelResult, sections: Sequence[Section]) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from alula.fea.check.level import LevelResult
 from alula.fea.common.verdict import Verdict
+from alula.fea.level.check_level import LevelResult
 from alula.reports.level.folder import write_level
 from alula.reports.level.page import level_sections
 from alula.reports.notebook.check_report import CheckReport

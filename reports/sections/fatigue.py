@@ -34,6 +34,7 @@ def fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
         "largest": life.largest,
         "range": life.stress_range,
         "cycles": [{"range": size, "mean": mean, "count": count} for size, mean, count in life.cycles],
+        "harm_of_blocks": list(life.harm),
         "equivalent_peak_stress": data(fatigue.stress),
         "wanted_repetitions": fatigue.wanted,
         "strength_at_wanted": fatigue.strength,

@@ -124,8 +124,8 @@ def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
     CaseError
     """
     home = Path(os.path.realpath(folder))
-    for entry, table in named_files(tables):
-        file = table["file"].replace("\0", "")
+    for entry, table, key in named_files(tables):
+        file = table[key].replace("\0", "")
         if not Path(os.path.realpath(home / file)).is_relative_to(home):
             raise CaseError(
                 f"{printable(entry)}: '{printable(file)}' is not in the folder of the case, and nothing else is read "

@@ -3,7 +3,7 @@
 import chromium
 from levels import pylon
 
-from alula.fea.check.level import check_level
+from alula.fea.level.check_level import check_level
 from alula.loads.compose.stated_case import StatedCase
 from alula.reports.level.page import level_page, level_sections
 from alula.reports.renderers.folder import drawn_pictures

@@ -20,7 +20,7 @@ from alula.fea.judging.fatigue import asked_fatigue, judge_fatigue, link_fatigue
 from alula.fea.links.link_by_hand import cut_link
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.link_envelope import LinkMotion
-from alula.fea.outcomes.fatigue import LinkFatigue, borne_pulsating, notch_factors, signed_stress
+from alula.fea.outcomes.fatigue import LinkFatigue, borne_repeated, notch_factors, signed_stress
 from alula.fea.outcomes.limits import stress_limits
 from alula.fea.refine.refinement import Effort
 from alula.geometry.base.errors import CaseError
@@ -153,7 +153,7 @@ def test_meshes_are_refined_for_the_stress_at_which_the_limit_is_met(changed, le
         tables["load_cases"]["lift"]["least"] = least
 
     case = repeated(changed, change=back)
-    limit = borne_pulsating(case.material_of("level"), 1e5, 1.5, least=least)
+    limit = borne_repeated(case.material_of("level"), 1e5, 1.5, *case.repeated("lift"))
     assert (limit, limit) in stress_limits(case, "level")
     if not changed:
         assert factor(limit, least) == pytest.approx(1.5)

@@ -11,9 +11,9 @@ from levels import LEVEL, PLACED, PROOF, PYLON, pylon
 from typer.testing import CliRunner
 
 import alula
-from alula.fea.check.level import check_level
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.level.check_level import check_level
 from alula.fea.refine.refinement import Effort
 from alula.loads.case.case_file import validate
 from alula.loads.case.level_case import Demand

@@ -4,13 +4,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
+from alula.fea.asked.asked import asked
 from alula.fea.asked.tiers import tier_of, worst_of
+from alula.fea.check.deciding import BY_HAND
 from alula.fea.check.run import check_case
-from alula.fea.common.verdict import CheckOutcome, Tier, Verdict, overall
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Tier, Verdict, overall
+from alula.fea.motion.envelope import envelope_case
+from alula.fea.outcomes.found import Found
 from alula.fea.outcomes.result import CheckResult
+from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
-from alula.loads.case.level_case import Demand, demanded
+from alula.loads.case.level_case import Demand, demanded, over_states
+from alula.loads.records.check_spec import FatigueCheck
 from alula.loads.stated.level_spec import LevelSpec, LevelTest
+
+FATIGUE = (Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,8 +177,46 @@ def check_level(
     for test, spec in level.tests.items():
         progress(f"Test {test} of {level.title} ...")
         variant = case.with_values({"level.test": test})
-        tests[test] = TestResult(
-            name=test, spec=spec, result=check_case(variant, name=name, progress=progress, **options)
-        )
+        result = check_case(variant, name=name, progress=progress, **options)
+        if spec.profiled and spec.lasts and options.get("fidelity") not in BY_HAND:
+            result = _with_fatigue(result, test, progress, options)
+        tests[test] = TestResult(name=test, spec=spec, result=result)
     own = None if case.tests_alone else check_case(case, name=name, progress=progress, **options)
     return LevelResult(case=case, name=name, level=level, tests=tests, own=own)
+
+
+def _with_fatigue(
+    result: CheckResult, test: str, progress: Callable[[str], None], options: Mapping[str, Any]
+) -> CheckResult:
+    """Return the check of a test with a profile with the fatigue of its states in their order, on solids.
+
+    Each outcome stands with the state in which the link is stressed most. Where no stress can be followed over the
+    states, fatigue stays undecided for that reason.
+    """
+    case, given = result.case, {key: value for key, value in options.items() if key in ("threads", "effort")}
+    states = case.level.tests[test].states if case.level else ()
+    kept = {
+        x: ([one for one in of.checks if one.quantity not in FATIGUE], list(of.found))
+        for x, of in result.load_cases.items()
+    }
+    try:
+        over = envelope_case(over_states(case), name=result.name, progress=progress, **given)
+    except CaseError as error:
+        first, why = next(iter(kept)), str(error)
+        for one in asked(case, FatigueCheck):
+            kept[first][0].append(one.outcome(first, Band.unknown(why), why))
+        warnings = result.warnings
+    else:
+        for outcome in over.checks:
+            if outcome.quantity in FATIGUE:
+                found = over.links[outcome.link].load_cases[test]
+                at = states[found.pose].name
+                kept[at][0].append(replace(outcome, load_case=at))
+                if found.fatigue is not None and outcome.name in case.checks:
+                    kept[at][1].append(Found(check=outcome.name, subject=outcome.subject, numbers=found.fatigue))
+        warnings = tuple(dict.fromkeys((*result.warnings, *over.warnings)))
+    load_cases = {
+        x: replace(of, checks=tuple(kept[x][0]), found=tuple(kept[x][1])) for x, of in result.load_cases.items()
+    }
+    verdict = overall(one.verdict for of in load_cases.values() for one in of.checks)
+    return replace(result, load_cases=load_cases, verdict=verdict, warnings=warnings)
