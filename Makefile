@@ -13,7 +13,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) PYTHONDONTWRITEBYTECODE= $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo docs test lint tests verify bench coverage fuzz golden planted texts viewer dist clean distclean
+.PHONY: help setup libraries demo docs test lint tests verify bench coverage numbers fuzz golden planted texts viewer dist clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -48,10 +48,13 @@ verify: setup ## the converged studies, on fine meshes
 	$(PYTEST) -m converged
 
 bench: setup ## measure speed, accuracy and growth: an hour or so (BENCH="--quick": minutes)
-	$(BIN)/python benchmarks/run.py $(BENCH)
+	$(BIN)/python -m benchmarks.run $(BENCH)
 
 coverage: setup ## how many error bands of drawn links hold the truth, and how wide they are: an hour or so
 	$(ONE_THREAD) $(BIN)/python -m benchmarks.coverage $(or $(COVERAGE),--anew)
+
+numbers: setup ## which printed numbers are older than the code (RENEW=stale, all or a name: measures them anew)
+	@$(BIN)/python -m benchmarks.renew $(RENEW)
 
 golden: setup ## renew the golden results, after a change that is meant (GOLDEN="hand-*": only those)
 	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m golden $(GOLDEN)

@@ -20,10 +20,9 @@ from benchmarks.coverage_parts import PLANE, YOUNG, Drawn, drawn
 from benchmarks.coverage_plane import plane_truths
 from benchmarks.coverage_table import HEADER, judged, rows
 from benchmarks.coverage_truth import truths
+from benchmarks.record import RESULTS, between, save, stamp
 
-RESULTS = Path(__file__).with_name("results")
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "verification.md"
-START, END = "<!-- coverage: begin -->\n", "<!-- coverage: end -->\n"
 SETS = {"training": (1, 2, 2), "held-out": (2, 7, 3)}
 """Seed, and how often each of the six flat kinds is drawn, and each of the six others."""
 EFFORT = {"stated": True, "max_unknowns": 60_000, "max_meshes": 4, "time_limit": 1e9}
@@ -117,7 +116,8 @@ def table() -> str:
             f"{count} {reason}" for reason, count in left.items()
         )
         notes += ".\n"
-    return f"{text}\n{notes}"
+    made = RESULTS / "coverage.json"
+    return f"{text}\n{notes}" + (f"\n{stamp(json.loads(made.read_text()))}" if made.exists() else "")
 
 
 def main() -> None:
@@ -125,8 +125,9 @@ def main() -> None:
     if "--table" not in sys.argv[1:]:
         for what in ("truth", "series"):
             keep(what, list(SETS), anew="--anew" in sys.argv[1:])
-    before, _, rest = PAGE.read_text().partition(START)
-    PAGE.write_text(f"{before}{START}\n{table()}\n{END}{rest.partition(END)[2]}")
+        if "--anew" in sys.argv[1:]:
+            save("coverage", {})
+    between(PAGE, "coverage", table())
 
 
 if __name__ == "__main__":

@@ -10,11 +10,9 @@ of links' stress by hand, of the displacement of a point, and of the lowest freq
 
 import argparse
 import cmath
-import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,9 +34,9 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.masses import part_masses
+from benchmarks.record import save
 
 Real = NDArray[np.float64]
-RESULTS = Path(__file__).with_name("results") / "draws.json"
 SAME = 2e-3
 """Share of a band's larger end by which a draw may lie outside without being told."""
 TRIED = 5
@@ -339,7 +337,7 @@ def main() -> None:
         kept[seed] = {"links": len(case.links), "draws": asked.draws, "outside": [vars(one) for one in found]}
         told = "; ".join(f"{one.of}: {one.draws} by up to {one.excess:.2%}" for one in found)
         print(f"linkage {seed}, {len(case.links)} links: {told or 'none outside'}", flush=True)
-    RESULTS.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    save("draws", {"linkages": kept})
 
 
 if __name__ == "__main__":

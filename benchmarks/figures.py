@@ -1,4 +1,4 @@
-"""Draws benchmarks/figures/*.png from what results there are: python benchmarks/figures.py."""
+"""Draws benchmarks/figures/*.png from what results there are: python -m benchmarks.figures."""
 
 import json
 from collections.abc import Callable, Iterator

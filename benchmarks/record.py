@@ -1,4 +1,4 @@
-"""What every result records beside its numbers: when, on what, in which versions."""
+"""What every result records beside its numbers: when, on what, in which versions, of which sources of alula."""
 
 import json
 import os
@@ -8,6 +8,8 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+
+from alula.geometry.keeping.kept import sources_digest
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
@@ -24,9 +26,28 @@ def circumstances() -> dict[str, Any]:
         "machine": f"{platform.machine()}, {os.cpu_count()} cores",
         "processor": processor(),
         "load_average": round(LOAD, 2),
+        "alula": {"version": version("alula"), "sources": sources()},
         "versions": f"Python {platform.python_version()}, "
         + ", ".join(f"{name} {version(name)}" for name in ("alula", "numpy", "scipy", "scikit-fem", "gmsh")),
     }
+
+
+def sources() -> str:
+    """Digest of all of alula's own sources: a result of others is older than the code."""
+    return sources_digest(("geometry", "loads", "fea", "reports"))
+
+
+def stamp(record: dict[str, Any]) -> str:
+    """When, on what and of which sources; the load average tells whether the machine was quiet."""
+    told = [str(record[key]) for key in ("date", "processor", "machine", "versions") if key in record]
+    if "threads" in record:
+        told.append(f"{record['threads']} thread{'s' if str(record['threads']) != '1' else ''}")
+    if "load_average" in record:
+        busy = record["load_average"] > QUIET
+        told.append(f"load average before {record['load_average']:.1f}{', a busy machine' if busy else ''}")
+    if "alula" in record:
+        told.append(f"sources {record['alula']['sources'][:12]}")
+    return f"Measured: {'; '.join(told)}.\n"
 
 
 def processor() -> str:
@@ -44,6 +65,30 @@ def save(name: str, record: dict[str, Any]) -> Path:
     path = RESULTS / f"{name}.json"
     path.write_text(json.dumps(circumstances() | record, indent=1) + "\n", encoding="utf-8")
     return path
+
+
+def stamped(name: str) -> str:
+    """Keep with what a table was made that has no result beside it, and return the line to put below it."""
+    return stamp(json.loads(save(name, {}).read_text(encoding="utf-8")))
+
+
+def between(page: Path, name: str, told: str) -> None:
+    """Write a table between the marks of its name on a page."""
+    before, _, after = _parts(page, name)
+    page.write_text(f"{before}\n{told.strip()}\n\n{after}", encoding="utf-8")
+
+
+def printed(page: Path, name: str) -> str:
+    """What stands between the marks of a name on a page."""
+    return _parts(page, name)[1].strip()
+
+
+def _parts(page: Path, name: str) -> tuple[str, str, str]:
+    """A page up to the mark where a table begins, the table, and the page from the mark where it ends."""
+    begin, end = (f"<!-- {name}: {side} -->\n" for side in ("begin", "end"))
+    before, rest = page.read_text(encoding="utf-8").split(begin)
+    told, after = rest.split(end)
+    return before + begin, told, end + after
 
 
 class Stopwatch:

@@ -1,6 +1,6 @@
 """Runs every benchmark in turn, draws the figures and fills in the tables of benchmarks/README.md.
 
-    python benchmarks/run.py [--quick] [--only accuracy peers ...] [--ngsolve PYTHON]
+    python -m benchmarks.run [--quick] [--only accuracy peers ...] [--ngsolve PYTHON]
 
 On two quiet cores all of it takes an hour or so, most of it the slowest peers at 1.5 million unknowns; ``--quick``
 keeps to small sizes. A benchmark that fails is named at the end; the others run all the same. On a machine whose load
@@ -15,7 +15,7 @@ import sys
 import time
 from pathlib import Path
 
-from record import LOAD, QUIET, save
+from benchmarks.record import LOAD, QUIET, save
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -71,8 +71,8 @@ def main() -> None:
         print(f"== {name} {' '.join(arguments)}", flush=True)
         summary.append((name, *run(name, arguments)))
     # Imported late: figures need matplotlib, the benchmarks do not.
-    import tables
-    from figures import drawn
+    from benchmarks import tables
+    from benchmarks.figures import drawn
 
     print("== figures and tables", flush=True)
     for path in (*drawn(), tables.filled_in()):

@@ -6,12 +6,12 @@ Rows: see ``ROWS``; all of them without argument. Times were measured on one cor
 else repeats. Guards of the program are switched off here, and only here, to show what they guard against.
 """
 
-import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks import stability_frames, stability_linkages, stability_scale, stability_solids
+from benchmarks.record import between, stamped
 from benchmarks.stability_report import Row
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
@@ -33,18 +33,8 @@ def main() -> None:
     for name in sys.argv[1:] or ROWS:
         row = ROWS[name]()
         row.figure.savefig(DOCS / "images" / f"stability-{name}.png", dpi=110)
-        _replace(DOCS / "stability.md", name, row.table)
+        between(DOCS / "stability.md", name, f"{row.table}\n\n{stamped(f'stability-{name}')}")
         print(f"{name}\n{row.table}", flush=True)
-
-
-def _replace(path: Path, name: str, table: str) -> None:
-    """Put a table between the marks of its name."""
-    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-    text = path.read_text(encoding="utf-8")
-    new, count = re.subn(f"{begin}.*{end}", lambda _: f"{begin}\n{table}\n{end}", text, flags=re.DOTALL)
-    if count != 1:
-        raise SystemExit(f"{path} has {count} places for {name}, not one")
-    path.write_text(new, encoding="utf-8")
 
 
 if __name__ == "__main__":

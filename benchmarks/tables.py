@@ -1,12 +1,12 @@
-"""Fills the tables of benchmarks/README.md in from benchmarks/results/*.json: python benchmarks/tables.py."""
+"""Fills the tables of benchmarks/README.md in from benchmarks/results/*.json: python -m benchmarks.tables."""
 
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from figures import HERE, loaded, power, seconds, unknowns_of
-from record import QUIET
+from benchmarks.figures import HERE, loaded, power, seconds, unknowns_of
+from benchmarks.record import between, stamp
 
 PAGE = HERE / "README.md"
 MISSING = "Not measured yet.\n"
@@ -18,17 +18,6 @@ def table(header: str, rows: list[list[str]]) -> str:
     names = header.split("|")
     lines = [names, ["---"] + ["--:"] * (len(names) - 1), *rows]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def stamp(record: Record) -> str:
-    """When and on what; the load average tells whether the machine was quiet."""
-    told = [str(record[key]) for key in ("date", "processor", "machine", "versions") if key in record]
-    if "threads" in record:
-        told.append(f"{record['threads']} thread{'s' if str(record['threads']) != '1' else ''}")
-    if "load_average" in record:
-        busy = record["load_average"] > QUIET
-        told.append(f"load average before {record['load_average']:.1f}{', a busy machine' if busy else ''}")
-    return f"Measured: {'; '.join(told)}.\n"
 
 
 def solid(curve: Record) -> bool:
@@ -317,15 +306,16 @@ SECTIONS: dict[str, Callable[[Record], str]] = {
 }
 
 
+def told(name: str) -> str:
+    """A section as its result has it."""
+    record = loaded(name)
+    return SECTIONS[name](record) if record else MISSING
+
+
 def filled_in() -> Path:
     """Write every section between its marks, and return the page."""
-    text = PAGE.read_text(encoding="utf-8")
-    for name, told in SECTIONS.items():
-        record = loaded(name)
-        begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->\n"
-        before, rest = text.split(begin)
-        text = before + begin + "\n" + (told(record) if record else MISSING) + "\n" + end + rest.split(end)[1]
-    PAGE.write_text(text, encoding="utf-8")
+    for name in SECTIONS:
+        between(PAGE, name, told(name))
     return PAGE
 
 

@@ -8,6 +8,7 @@ row has the least numbers of a link over all load cases, with their bands.
 
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 import alula
 from alula.fea.check.run import check_case
@@ -16,9 +17,15 @@ from alula.fea.common.verdict import Quantity, Subject
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.reports.words.numbers import band
+from benchmarks.record import between, stamped
 
 CASES = ("spring-pedal", "knee", "finger", "slider-crank", "six-bar")
 """Some minutes of a processor; others by name."""
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "report.md"
+HEAD = """\
+| case | link | first yield | plastic collapse | eyes | collapse over first yield |
+|---|---|--:|--:|--:|--:|
+"""
 COLUMNS = (Quantity.SAFETY_FACTOR, Quantity.PLASTIC_COLLAPSE, Quantity.EYES)
 
 
@@ -45,8 +52,15 @@ def rows(name: str) -> list[str]:
     return found
 
 
-if __name__ == "__main__":
-    print("| case | link | first yield | plastic collapse | eyes | collapse over first yield |")
-    print("|---|---|--:|--:|--:|--:|")
+def main() -> None:
+    """Print the table; that of the usual cases goes to its page."""
+    table = HEAD
     for case in sys.argv[1:] or CASES:
-        print("\n".join(rows(case)), flush=True)
+        table += "".join(f"{row}\n" for row in rows(case))
+        print(table, flush=True)
+    if not sys.argv[1:]:
+        between(PAGE, "tiers", f"{table}\n{stamped('tiers')}")
+
+
+if __name__ == "__main__":
+    main()

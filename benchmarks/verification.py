@@ -1,4 +1,4 @@
-"""Run every published benchmark and write the table of docs/verification.md: ``python benchmarks/verification.py``."""
+"""Run every published benchmark and write the table of docs/verification.md: ``python -m benchmarks.verification``."""
 
 import importlib
 import sys
@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmarks.record import between, stamped
+
 if TYPE_CHECKING:
     from solid_problems import Benchmark, Study
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "verification.md"
-START, END = "<!-- measured: begin -->\n", "<!-- measured: end -->\n"
 KNOWN = ("test_nafems", "test_macneal_harder", "test_cook", "test_lame", "test_howland", "test_timoshenko_solid")
 HANDBOOK = ("test_lug", "test_cross_drilled_tube")
 
@@ -91,7 +92,7 @@ def percent(share: float) -> str:
 
 
 def main() -> None:
-    sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "validation")]
+    sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "validation")]
     found = studies()
     measured = "\n".join(
         (
@@ -101,8 +102,7 @@ def main() -> None:
             "### Handbook factors\n\n" + "".join(handbook_rows()),
         )
     )
-    before, rest = PAGE.read_text(encoding="utf-8").split(START)
-    PAGE.write_text(before + START + "\n" + measured + "\n" + END + rest.split(END)[1], encoding="utf-8")
+    between(PAGE, "measured", f"{measured}\n{stamped('verification')}")
 
 
 if __name__ == "__main__":

@@ -3,12 +3,17 @@
 A block of TOML begins with the comment ``# NAME.toml``; its entries change that file, or make it. Commands and Python
 are run. A block of text is a file where it begins with ``# NAME.csv``; else it is printed by the block before it, but
 for lines ``...`` and breaks of lines. Commands that take longer than seconds are run by ``make verify`` alone.
+
+    python -m pages [PAGE ...]
+
+follows pages, by default all, with patience, and writes numbers anew where the words about them stay.
 """
 
 import re
 import shlex
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -29,6 +34,12 @@ class Reader:
     printed: str | None = None
     """What the last block printed; None where it was not run."""
     cases: list[Path] = field(default_factory=list)
+    renewing: bool = False
+    """True: what was printed otherwise is kept in ``renewed`` or ``told``, where it would be an error."""
+    renewed: dict[str, str] = field(default_factory=dict)
+    """Blocks with other numbers -> with those of today."""
+    told: list[str] = field(default_factory=list)
+    """What was not printed, and has to be looked at."""
 
     def follow(self, page: Path) -> None:
         """Do what the blocks of a page say, one after the other."""
@@ -80,8 +91,30 @@ class Reader:
             (self.folder / name.removeprefix("# ")).write_text(rows, encoding="utf-8")
         elif self.printed is not None:
             said = " ".join(self.printed.split())
-            for piece in re.split(r"^ *(?:\.\.\.|…) *$", text, flags=re.M):
-                assert " ".join(piece.split()) in said, f"{piece}\nis not in\n{self.printed}"
+            pieces = re.split(r"(^ *(?:\.\.\.|…) *$)", text, flags=re.M)
+            for i, piece in enumerate(pieces[::2]):
+                if " ".join(piece.split()) in said:
+                    continue
+                new, wrong = renewed_numbers(piece, said), f"{piece}\nis not in\n{self.printed}"
+                assert self.renewing, wrong
+                pieces[2 * i] = new or piece
+                self.told += [] if new else [wrong]
+            if "".join(pieces) != text:
+                self.renewed[text] = "".join(pieces)
+
+
+_NUMBER = r"(?<![\w.])(?:[-−+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|∞)"
+
+
+def renewed_numbers(block: str, said: str) -> str | None:
+    """Return a block with the numbers that were printed among the same words; None where these are not in one place."""
+    pieces = re.split(f"({_NUMBER})", block.strip())
+    words = (r"\s+".join(re.escape(word) for word in re.split(r"\s+", piece)) for piece in pieces[::2])
+    found = re.findall(rf"(?<!\S){f'({_NUMBER})'.join(words)}(?!\S)", said)
+    if len(pieces) == 1 or len(found) != 1:
+        return None
+    pieces[1::2] = [found[0]] if isinstance(found[0], str) else found[0]
+    return block.replace(block.strip(), "".join(pieces))
 
 
 def is_slow(command: list[str]) -> bool:
@@ -128,3 +161,21 @@ def _sections(text: str) -> dict[str, list[str]]:
 
 def _key(line: str) -> str:
     return "" if line.lstrip().startswith("#") else line.partition("=")[0].strip()
+
+
+def main() -> None:
+    """Follow pages, write them anew, and tell what has to be looked at."""
+    docs = programs.ROOT / "docs"
+    for page in map(Path, sys.argv[1:] or (docs / "tutorial.md", *sorted((docs / "how-to").glob("*.md")))):
+        with tempfile.TemporaryDirectory() as folder:
+            reader = Reader(Path(folder), patient=True, renewing=True)
+            reader.follow(page)
+        text = page.read_text(encoding="utf-8")
+        for old, new in reader.renewed.items():
+            text = text.replace(old, new)
+        page.write_text(text, encoding="utf-8")
+        print(f"{page.name}: {len(reader.renewed)} blocks renewed", *reader.told, sep="\n", flush=True)
+
+
+if __name__ == "__main__":
+    main()

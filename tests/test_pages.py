@@ -52,8 +52,14 @@ def test_a_wrong_number_is_found(tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.sh("alula new four-bar.toml\nalula statics four-bar.toml\n")
     reader.text("Load case lift\n...\nDrive torque on crank about O2: 92.61 N·mm\n")
+    wrong = "Load case lift\n...\nDrive torque on crank about O2: 92.62 N·mm\n"
     with pytest.raises(AssertionError, match="is not in"):
-        reader.text("Drive torque on crank about O2: 92.62 N·mm\n")
+        reader.text(wrong)
+    reader.renewing = True
+    reader.text(wrong)
+    reader.text("Drive torque on rocker about O2: 92.62 N·mm\n")
+    assert reader.renewed == {wrong: wrong.replace("92.62", "92.61")}
+    assert len(reader.told) == 1
 
 
 def test_lines_are_changed_or_added_under_their_headings() -> None:

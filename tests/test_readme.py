@@ -140,6 +140,14 @@ def test_slow_commands(command: str, tmp_path: Path) -> None:
     check(folder, command)
 
 
+@pytest.mark.converged
+def test_what_size_says_of_the_starter(tmp_path: Path) -> None:
+    [block] = [text for kind, text in BLOCKS if kind == "text" and text.startswith("Least ")]
+    [starter, command] = [line for line in SHELL if " my-case.toml " in line and words(line)[0] in ("new", "size")]
+    run(tmp_path, starter)
+    assert " ".join(block.split()) in " ".join(run(tmp_path, command).stdout.split())
+
+
 SNIPPETS = [(text, BLOCKS[i + 1][1]) for i, (kind, text) in enumerate(BLOCKS) if kind == "python"]
 
 

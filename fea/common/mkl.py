@@ -6,6 +6,7 @@ and "Conditional Numerical Reproducibility Control".
 
 import ctypes
 import importlib.metadata
+import platform
 import sys
 import weakref
 from collections.abc import Iterator
@@ -43,6 +44,11 @@ def _candidates() -> Iterator[Path]:
 def installed() -> bool:
     """Return whether this installation has the library."""
     return any(path.exists() for path in _candidates())
+
+
+def missing() -> bool:
+    """Return whether this installation lacks the library though the extra ``pardiso`` has it for this machine."""
+    return (sys.platform, platform.machine()) in (("linux", "x86_64"), ("win32", "AMD64")) and not installed()
 
 
 @cache

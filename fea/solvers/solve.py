@@ -171,6 +171,8 @@ def factorise(
             direct = ("superlu",)
     if method is None:
         method, why = _chosen(K, level, right_hand_sides, direct[0], memory_limit)
+        if mkl.missing():
+            why = reason("without_mkl", why=why)
     else:
         why = reason("chosen_by_user")
         if method == "two-level" and level is None:

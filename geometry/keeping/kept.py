@@ -271,8 +271,13 @@ def surroundings() -> str:
 
 
 @functools.cache
-def sources_digest() -> str:
-    """Return the SHA-256 of the names and contents of all sources of alula that compute.
+def sources_digest(packages: tuple[str, ...] = ("geometry", "loads", "fea")) -> str:
+    """Return the SHA-256 of the names and contents of sources of alula.
+
+    Parameters
+    ----------
+    packages : tuple of str, optional
+        Whose sources; of all that compute unless given.
 
     Returns
     -------
@@ -281,7 +286,7 @@ def sources_digest() -> str:
     """
     found = hashlib.sha256()
     root = Path(__file__).parents[2]
-    for package in ("geometry", "loads", "fea"):
+    for package in packages:
         for path in sorted((root / package).rglob("*")):
             if path.suffix in (".py", ".toml"):
                 found.update(f"{path.relative_to(root).as_posix()}\n".encode() + path.read_bytes())

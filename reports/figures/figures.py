@@ -1,7 +1,8 @@
 """Stress plots of links: the stress that decides on the deformed shape, and a close view of the hottest spot.
 
 The bodies are rendered in a child process (``figures_worker.py``), since the graphics library can crash
-where no display or no software renderer is to be had; then the pictures are left out with one warning.
+where no display or no software renderer is to be had; then the pictures are left out with one warning, as where
+pyvista is not installed.
 Scales, labels and the colour bar are drawn around the renderings.
 """
 
@@ -11,6 +12,7 @@ import time
 from collections.abc import Hashable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, replace
+from importlib.util import find_spec
 from typing import Any, TypeVar
 
 import numpy as np
@@ -19,6 +21,7 @@ from numpy.typing import NDArray
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.geometry.base import child
 from alula.geometry.base.child_server import ChildEndedError, ServerPool
+from alula.geometry.base.extras import install_command
 from alula.geometry.base.system_libraries import OSMESA, advice, loads
 from alula.reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
 from alula.reports.figures.sheet.canvas import Canvas, faint
@@ -142,6 +145,8 @@ def rendered(renderings: Mapping[_Key, Rendering], *, time_limit: float = TIME_L
     tuple
         Name -> image of those that came out, and what went wrong with the others.
     """
+    if not _installed():
+        return {}, f"pyvista is not installed; run {install_command('pictures')}"
     requests = {}
     for key, one in renderings.items():
         asked = asdict(one.view) | {"limits": one.limits, "colours": one.colours}
@@ -168,6 +173,10 @@ def _renderers() -> tuple[dict[str, str], ...]:
     return ({"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, own) if loads(OSMESA) else (own,)
 
 
+def _installed() -> bool:
+    return find_spec("pyvista") is not None
+
+
 def _command() -> list[str]:
     return child.module_command("alula.reports.figures.figures_worker")
 
@@ -178,8 +187,9 @@ def _environment(choice: Mapping[str, str]) -> dict[str, str]:
 
 def start_renderer() -> None:
     """Start the child that renders, once, so that it is ready when there is something to render."""
-    with suppress(OSError):  # told where pictures are asked for
-        _POOL.start(_command(), _environment(_renderers()[0]))
+    if _installed():
+        with suppress(OSError):  # told where pictures are asked for
+            _POOL.start(_command(), _environment(_renderers()[0]))
 
 
 def _ask(requests: Mapping[_Key, bytes], choice: Mapping[str, str], time_limit: float) -> tuple[dict[_Key, Real], str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from alula.fea.common.verdict import Verdict
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.extras import install_command
 from alula.reports.sections.markup import as_plain
 from alula.reports.sections.section import Part, Section, parts_of
 from alula.reports.sections.section import Table as Told
@@ -160,7 +161,7 @@ class ShownTable:
         try:
             import pandas
         except ImportError:
-            raise CannotRunError("frame: pandas is not installed; run pip install 'alula[pandas]'") from None
+            raise CannotRunError(f"frame: pandas is not installed; run {install_command('pandas')}") from None
         return pandas.DataFrame(list(self.rows), columns=list(self.columns))
 
 

@@ -1,5 +1,6 @@
 """Without display, without EGL, without OSMesa: no stress plots, one warning, the same verdict."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,14 @@ def test_a_graphics_library_that_is_missing_or_crashes(
     assert pictures == {}
     [warning] = warnings
     assert warning.startswith(f"no stress plot of AE, GF: {told}")
+
+
+def test_without_pyvista(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(figures, "find_spec", lambda name: None)
+    monkeypatch.setattr(figures, "_ask", None)
+    figures.start_renderer()
+    told = f"no stress plot of AE: pyvista is not installed; run {sys.executable} -m pip install 'alula[pictures]'"
+    assert figures.plots_of({"AE": scene()}, {"AE": {}}) == ({}, (told,))
 
 
 def test_without_display(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,16 +5,16 @@ import json
 import pytest
 
 from alula.fea.refine import convergence
-from benchmarks.coverage import END, PAGE, RESULTS, SETS, START, table
+from benchmarks.coverage import PAGE, RESULTS, SETS, table
 from benchmarks.coverage_parts import drawn
 from benchmarks.coverage_table import judged
+from benchmarks.record import printed
 
 KEPT = {what: json.loads((RESULTS / f"coverage-{what}.json").read_text()) for what in ("series", "truth")}
 
 
 def test_table_is_that_of_the_kept_series():
-    _, _, rest = PAGE.read_text(encoding="utf-8").partition(START)
-    assert rest.partition(END)[0].strip() == table().strip()
+    assert printed(PAGE, "coverage") == table().strip()
 
 
 @pytest.mark.parametrize("name", list(SETS))

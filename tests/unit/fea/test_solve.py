@@ -101,6 +101,10 @@ def test_fallback_where_mkl_is_not_installed(system, monkeypatch):
     bare = replace(K)  # its product is not made yet
     factor = factorise(bare)
     assert factor.name == "SuperLU"
+    monkeypatch.setattr("sys.platform", "linux")
+    for machine in ("x86_64", "aarch64"):
+        monkeypatch.setattr("platform.machine", lambda machine=machine: machine)
+        assert (factorise(bare).reason.kind == "without_mkl") == (machine == "x86_64")
     x = factor.solve(rhs)
     assert not isinstance(bare.product, mkl.SymmetricProduct)
     assert np.abs(K.full() @ x - rhs).max() < 1e-8 * np.abs(rhs).max()

@@ -1,0 +1,56 @@
+"""Numbers that are printed are those of the results beside them, and at a release those of its own version."""
+
+import re
+import tomllib
+
+import pytest
+from pages import renewed_numbers
+from programs import ROOT
+
+from benchmarks import tables
+from benchmarks.record import printed
+from benchmarks.renew import older, results, stale
+
+OF = {"alula": {"version": "1.0", "sources": "ab"}}
+
+
+@pytest.mark.parametrize("name", list(tables.SECTIONS))
+def test_a_table_is_that_of_its_result(name: str) -> None:
+    assert printed(tables.PAGE, name) == tables.told(name).strip(), "run python -m benchmarks.tables"
+
+
+def test_at_a_release_all_results_are_of_its_version() -> None:
+    """While CHANGELOG says that the version is unreleased, `make numbers` lists what is older, and nothing fails."""
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    newest = re.search(r"^## (\S+)( \(unreleased\))?$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.M)
+    assert newest
+    assert newest[1] == version
+    if not newest[2]:
+        assert not {name: why for name, record in results().items() if (why := older(record, version))}
+
+
+@pytest.mark.parametrize(
+    ("record", "why"),
+    [
+        (OF, ""),
+        ({}, "it was made before results noted their sources"),
+        ({"alula": {"version": "0.9", "sources": "ab"}}, "of alula 0.9"),
+        ({"alula": {"version": "1.0", "sources": "cd"}}, "sources have changed since"),
+    ],
+)
+def test_a_result_is_older_than_the_code(record: dict[str, dict[str, str]], why: str) -> None:
+    assert stale(record, "1.0", "ab") == why
+    assert older(record, "1.0") == ("" if record and record["alula"]["version"] == "1.0" else why)
+
+
+@pytest.mark.parametrize(
+    ("block", "said", "renewed"),
+    [
+        ("a  1.50 (1 to ∞)\nb", "a 2 (−1 to 3.25) b", "a  2 (−1 to 3.25)\nb"),
+        ("share 12 %", "share 12 % of 5; share 13 %", None),
+        ("rocker 1", "crank 2", None),
+        ("link B2 is 5 mm", "link B2 is 6 mm", "link B2 is 6 mm"),
+    ],
+)
+def test_numbers_of_a_block_are_renewed_where_its_words_stay(block: str, said: str, renewed: str | None) -> None:
+    assert renewed_numbers(block, said) == renewed
