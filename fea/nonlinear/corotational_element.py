@@ -60,13 +60,14 @@ class CorotationalElements:
         self.arms = np.array([e.offsets for e in model.elements])
         self.lengths = np.array([model.length(i) for i in range(m)])
         self.axes = np.array([model.axes(i).T for i in range(m)])
-        self.stiffness = np.zeros((m, 6, 6))
+        every = zip(model.elements, self.lengths, strict=True)
+        natural = [natural_flexibility(e.section, e.young, e.poisson, length) for e, length in every]
+        self.stiffness = np.linalg.inv(np.array(natural).reshape(m, 6, 6))
         self.load_bends = np.zeros((m, 6, 6))
         self.load_sags = np.zeros((m, 6, 6))
         self.loads = np.zeros((m, 2, 3))
         for i, e in enumerate(model.elements):
             length = self.lengths[i]
-            self.stiffness[i] = np.linalg.inv(natural_flexibility(e.section, e.young, e.poisson, length))
             self.loads[i] = e.load_first, e.load_last
             if not self.loads[i].any():
                 continue
