@@ -60,8 +60,6 @@ class FrameSolution:
         What each guide's carrier takes along its normal [N], or about axis x normal [N·mm]; the pin gets the opposite.
     residual : float
         Largest force left over at a node or in the balance of the whole frame, over the sum of loads.
-    condition : float
-        1-norm condition number of the scaled equations (estimated).
     """
 
     model: FrameModel
@@ -72,7 +70,11 @@ class FrameSolution:
     reactions: Floats
     guide_forces: Floats
     residual: float
-    condition: float
+
+    @property
+    def condition(self) -> float:
+        """1-norm condition number of the scaled equations (estimated)."""
+        return equations_of(self.model).condition
 
     def beam_loads(self, i: int) -> BeamLoads:
         """Return all that acts on the beam of an element, in local axes with x = 0 at its first end.
@@ -277,7 +279,7 @@ class FactorisedFrame:
         Parameters
         ----------
         further : ndarray, shape (k,), optional
-            Scaled unknowns to be added; the condition number is then left out.
+            Scaled unknowns to be added.
 
         Returns
         -------
@@ -289,23 +291,21 @@ class FactorisedFrame:
             Where the forces found do not balance to 1e-8 of the load, or 1e-6 with further deformations.
         """
         known = self._equations
-        unknowns, condition = self._own, known.condition
-        if further is not None:
-            unknowns, condition = self._own + further, np.nan
+        unknowns = self._own if further is None else self._own + further
         q, u = unknowns[: known.size], unknowns[known.size :] * known.scale * self.system.unit
-        found = _collect(self.model, self.system, known.natural, self._held, q, u, condition)
+        found = _collect(self.model, self.system, known.natural, self._held, q, u)
         allowed = LARGEST_RESIDUAL if further is None else OPENED_RESIDUAL
         if not found.residual <= allowed:
             raise CannotRunError(
                 f"the forces of the frame leave {found.residual:.3g} of the load unbalanced, where "
-                f"{allowed:g} is allowed (condition number {condition:.3g}); the frame is nearly a mechanism: "
+                f"{allowed:g} is allowed (condition number {known.condition:.3g}); the frame is nearly a mechanism: "
                 "change its pose"
             )
         return found
 
 
 def _collect(
-    model: FrameModel, system: FrameSystem, natural: Floats, held: Floats, q: Floats, u: Floats, condition: float
+    model: FrameModel, system: FrameSystem, natural: Floats, held: Floats, q: Floats, u: Floats
 ) -> FrameSolution:
     """Turn natural forces (scaled) and displacements into the record, and check their balance."""
     n, m = len(model.nodes), len(model.elements)
@@ -349,7 +349,6 @@ def _collect(
         reactions=reactions + grounded,
         guide_forces=guide_forces,
         residual=_residual(model, left_over.reshape(n, 6), reactions + grounded),
-        condition=condition,
     )
 
 

@@ -168,8 +168,6 @@ class FrameSystem:
 
     Attributes
     ----------
-    labels : list of str
-        What moves with each unknown, for messages.
     unit : ndarray, shape (k,)
         Factor from the scaled unknowns to mm and rad.
     guide_unit : ndarray, shape (g,)
@@ -178,8 +176,6 @@ class FrameSystem:
         Factors from the scaled natural forces at a node of a condensed link to N and N·mm.
     idle : ndarray of bool, shape (6 n,)
         Rotations, by their owners, that are no unknowns since nothing takes part in them.
-    matrices : ndarray, shape (m, 12, 12)
-        From the displacements of every element's nodes, global axes, to those of its beam's ends, local axes.
     """
 
     def __init__(self, model: FrameModel) -> None:
@@ -190,27 +186,35 @@ class FrameSystem:
         self.condensed_unit = np.array([1.0, 1.0, 1.0, mean, mean, mean])
         self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
         self.owner = self._owners()
-        self.matrices = np.array([to_ends(model, i) for i in range(m)]).reshape(m, 12, 12)
         supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
         self.idle = self._idle()
         free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not self.idle[i]]
-        self.labels = [f"node {model.name(i // 6)} {_motion(i % 6)}" for i in free]
+        self._free = free
         self.unit = np.array([1.0 if i % 6 < 3 else 1.0 / mean for i in free])
         number = np.full(6 * n, -1)
         number[free] = np.arange(len(free))
         self.number = number[self.owner]
 
+    @property
+    def labels(self) -> list[str]:
+        """What moves with each unknown, for messages."""
+        return [f"node {self.model.name(i // 6)} {_motion(i % 6)}" for i in self._free]
+
+    @cached_property
+    def matrices(self) -> Floats:
+        """(m, 12, 12) from the displacements of every element's nodes, global axes, to its beam's ends, local axes."""
+        m = len(self.lengths)
+        return np.array([to_ends(self.model, i) for i in range(m)]).reshape(m, 12, 12)
+
     def _owners(self) -> NDArray[np.int64]:
         """(6 n,) the first of all displacements tied to each."""
-        from scipy.sparse import coo_matrix
-        from scipy.sparse.csgraph import connected_components
-
-        size = 6 * len(self.model.nodes)
-        pairs = [6 * np.array(tie.nodes) + DOFS.index(dof) for tie in self.model.ties for dof in tie.dofs]
-        a, b = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-        _, group = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)
-        _, first = np.unique(group, return_index=True)
-        return np.asarray(first[group])
+        owner = np.arange(6 * len(self.model.nodes))
+        for tie in self.model.ties:
+            for dof in tie.dofs:
+                least, other = sorted(int(owner[6 * node + DOFS.index(dof)]) for node in tie.nodes)
+                if least < other:
+                    owner[owner == other] = least
+        return owner
 
     @cached_property
     def _columns(self) -> NDArray[np.int64]:

@@ -18,8 +18,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.frame.equations import equations_of
 from alula.fea.frame.model import FrameModel
-from alula.fea.frame.system import FrameSystem, refuse_mechanism
 from alula.fea.nonlinear.equilibrium_path import CorotationalSolution, EquilibriumPath
 
 Floats = NDArray[np.float64]
@@ -107,9 +107,7 @@ def solve_large_displacement(
     NoEquilibriumError
         Where the step falls below ``least_step``: a limit load, a snap-through or a divergent shape.
     """
-    divided = subdivide(model, subdivisions)
-    system = FrameSystem(divided)
-    refuse_mechanism(system, system.equations()[0])
-    path = EquilibriumPath(divided)
+    equations_of(model)  # refuses a mechanism
+    path = EquilibriumPath(subdivide(model, subdivisions))
     path.follow(least_step, most_iterations, stable=stable)
     return path.record()

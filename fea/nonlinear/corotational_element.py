@@ -60,13 +60,14 @@ class CorotationalElements:
         self.arms = np.array([e.offsets for e in model.elements])
         self.lengths = np.array([model.length(i) for i in range(m)])
         self.axes = np.array([model.axes(i).T for i in range(m)])
-        self.stiffness = np.zeros((m, 6, 6))
+        every = zip(model.elements, self.lengths, strict=True)
+        natural = [natural_flexibility(e.section, e.young, e.poisson, length) for e, length in every]
+        self.stiffness = np.linalg.inv(np.array(natural).reshape(m, 6, 6))
         self.load_bends = np.zeros((m, 6, 6))
         self.load_sags = np.zeros((m, 6, 6))
         self.loads = np.zeros((m, 2, 3))
         for i, e in enumerate(model.elements):
             length = self.lengths[i]
-            self.stiffness[i] = np.linalg.inv(natural_flexibility(e.section, e.young, e.poisson, length))
             self.loads[i] = e.load_first, e.load_last
             if not self.loads[i].any():
                 continue
@@ -149,15 +150,24 @@ class CorotationalElements:
         ElementResponse
             Forces and geometric stiffness.
         """
-        v, work = self._undeformed
-        return _response(v.map(natural[:, None, :]) - work, -self._at_ends(self.loads))
+        v, _ = self.undeformed
+        return _response(v.map(natural[:, None, :]) - self._undeformed_work, -self._at_ends(self.loads))
 
     @cached_property
-    def _undeformed(self) -> tuple[Jet, Jet]:
-        """Natural deformations, and the work of the line loads on the chord, as the elements stand."""
+    def undeformed(self) -> tuple[Jet, Jet]:
+        """What ``natural`` returns of the elements as they stand."""
+        return self.natural(*self._standing)
+
+    @cached_property
+    def _undeformed_work(self) -> Jet:
+        """Work of the line loads on the chord as the elements stand."""
+        return self._work_on_chord(*self._standing, self.loads)
+
+    @property
+    def _standing(self) -> tuple[Floats, Floats]:
+        """No displacements and rotations of both nodes."""
         m = len(self.lengths)
-        displacements, rotations = np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
-        return self.natural(displacements, rotations)[0], self._work_on_chord(displacements, rotations, self.loads)
+        return np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
 
     def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, Jet]:
         """Return the natural deformations and the element's axes.

@@ -164,6 +164,7 @@ class EquilibriumPath:
             rotations=np.tile(np.eye(3), (n, 1, 1)),
             guide_forces=np.zeros(len(model.guides)),
         )
+        self._start = self.state
         self.scale = model.load_scale or 1.0
         stiffness = float(np.median(self.elements.stiffness[:, 0, 0]))
         moving = np.where(self.chain.is_turn, 1.0 / model.size, 1.0)
@@ -196,7 +197,8 @@ class EquilibriumPath:
     def _natural(self, state: State) -> tuple[Jet, Jet]:
         """Natural deformations and axes of the elements, which the last state keeps for other factors."""
         if self._at is None or self._at[0] is not state:
-            natural = self.elements.natural(state.displacements[self.pairs], state.rotations[self.pairs])
+            placed = state.displacements[self.pairs], state.rotations[self.pairs]
+            natural = self.elements.undeformed if state is self._start else self.elements.natural(*placed)
             self._at, self._balanced = (state, natural), {}
         return self._at[1]
 

@@ -9,7 +9,7 @@ of its flexibility, of the load, the moduli, air and friction, and by the play a
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -324,16 +324,15 @@ class LayerGaps:
                 total[i] += np.max(each, axis=0)
         return total
 
-    def _units(self, frame: LinkageFrame, node: int) -> tuple[Real, list[dict[tuple[str, str], Real]]]:
+    def _units(self, frame: LinkageFrame, node: int) -> tuple[Real, Sequence[Mapping[tuple[str, str], Real]]]:
         """A node's place, and the forces at rims by a unit force across the plane and unit moments about x and y."""
         if node not in self._known:
             loads = [NodeLoad(node=node, wrench=unit) for unit in np.eye(6)[2:5]]
-            forces = [dict(rim_forces(self.case, frame, (load,))) for load in loads]
-            self._known[node] = frame.model.nodes[node][:2], forces
+            self._known[node] = frame.model.nodes[node][:2], rim_forces(self.case, frame, loads)
         return self._known[node]
 
     @cached_property
-    def _known(self) -> dict[int, tuple[Real, list[dict[tuple[str, str], Real]]]]:
+    def _known(self) -> dict[int, tuple[Real, Sequence[Mapping[tuple[str, str], Real]]]]:
         return {}
 
 

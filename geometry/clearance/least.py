@@ -264,7 +264,13 @@ def _place(pair: Pair, place: Placement) -> tuple[float, float]:
 
 
 def least_gap(
-    pair: Pair, at: Callable[[Real], Placement], start: Real, *, near: float, step: float, enough: float = np.inf
+    pair: Pair,
+    at: Callable[[Real], Placement],
+    start: tuple[Real, Placement],
+    *,
+    near: float,
+    step: float,
+    enough: float = np.inf,
 ) -> Gap | None:
     """Return the least gap of two outlines over a motion, and the first contact where they touch.
 
@@ -274,8 +280,8 @@ def least_gap(
         The outlines.
     at : callable
         Takes values (n,) of the coordinate to the poses there, with rates by the coordinate.
-    start : array
-        Values of the coordinate to begin with, from the first pose to the last [rad, mm].
+    start : tuple of (array, Placement)
+        Values of the coordinate to begin with, from the first pose to the last, and the poses there [rad, mm].
     near : float
         How close the bound must come to the least gap [mm].
     step : float
@@ -288,7 +294,7 @@ def least_gap(
     Gap or None
         None where the gap is more than that all along.
     """
-    s, place = start, at(start)
+    s, place = start
     if float(_bounds(s, pair.circles(place), *pair.speeds(place)).min()) > enough:
         return None
     known = _Known.of(pair, s, place)

@@ -253,9 +253,15 @@ class Linkage:
         PinHoles
             Of a pin in a slot, the slot's clearance across it is that of the first link.
         """
-        joint = self.joints[name]
-        slot = self.links[joint.links[0]].slots.get(self.joint_points(name)[0])
-        return pin_holes(joint, 0.0 if slot is None else slot.clearance)
+        return self._pin_holes[name]
+
+    @cached_property
+    def _pin_holes(self) -> Mapping[str, PinHoles]:
+        found = {}
+        for name, joint in self.joints.items():
+            slot = self.links[joint.links[0]].slots.get(self.joint_points(name)[0])
+            found[name] = pin_holes(joint, 0.0 if slot is None else slot.clearance)
+        return found
 
     def joints_of(self, link: str) -> tuple[str, ...]:
         """Names of the joints on a link.

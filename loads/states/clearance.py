@@ -298,13 +298,13 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
     if not case.sweeps:
         return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(case, gaps))
     motion = way_of(case, pose)
-    longest, start = case.linkage.longest, start_of(motion)
-    step, at = _STEP * motion.coordinate.measure.scale(motion.linkage), along(motion)
+    longest, start, at = case.linkage.longest, start_of(motion), along(motion)
+    step, begun = _STEP * motion.coordinate.measure.scale(motion.linkage), (start, at(start))
     over: list[Gap] = []
     for number in ranked([gap.value for gap in gaps], longest):
         pair = found.pairs[number]
         enough = max(min((gap.value for gap in over), default=np.inf), 0.0)
-        least = least_gap(pair, at, start, near=_NEAR * longest, step=step, enough=enough)
+        least = least_gap(pair, at, begun, near=_NEAR * longest, step=step, enough=enough)
         over += [] if least is None else [least]
     return Clearance(assembly=found, pose=pose, motion=motion, gaps=_sorted(case, over))
 

@@ -52,7 +52,7 @@ def print_screen(result: CheckResult, sections: Sequence[Section], console: "Con
     ----------
     result : CheckResult
     sections : sequence of Section
-        As ``check_sections``.
+        As ``check_sections``, or that of what would change it alone.
     console : rich.console.Console
         The screen has ``SCREEN`` lines of 80 columns.
     """

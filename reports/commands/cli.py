@@ -96,6 +96,7 @@ def check(
     from alula.fea.findings.of_check import with_findings
     from alula.fea.level.check_level import has_tests
     from alula.geometry.keeping.kept import keeping
+    from alula.reports.check.changes import changes_section
     from alula.reports.check.screen import print_result, print_screen
     from alula.reports.check.whole_check import check_record, check_sections
     from alula.reports.level.folder import checked_names
@@ -122,7 +123,7 @@ def check(
             decks = scratch.enter_context(scratch_folder("alula-"))
             result = with_second_opinions(result, second_opinions(result, decks, threads=threads, progress=progress))
         result = with_findings(result)
-        sections = check_sections(result)
+        sections = check_sections(result) if json or verbose else (changes_section(result),)  # all that a screen needs
         show = partial(print_result if verbose else print_screen, result)
         tell(sections, json=json, record=partial(check_record, result, sections), show=show)
         if output is not None:

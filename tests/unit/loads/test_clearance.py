@@ -91,7 +91,8 @@ def swung_over_the_pin(poses):
     case = bar_on_a_pin()
     [pair] = [pair for pair in assembly(case).pairs if set(pair.names) == {"link crank", "pin D"}]
     motion = solve_motion(case.solve_pose(), np.radians([60.0, -6.0]))
-    found = least_gap(pair, along(motion), np.radians(np.linspace(6.0, -6.0, poses)), near=0.01, step=1e-4)
+    at, start = along(motion), np.radians(np.linspace(6.0, -6.0, poses))
+    found = least_gap(pair, at, (start, at(start)), near=0.01, step=1e-4)
     assert found is not None
     return found
 
