@@ -17,18 +17,18 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.source import SourceKind, widest
 
-_ORDER = (
-    SourceKind.DISCRETISATION,
-    SourceKind.CALIBRATION,
-    SourceKind.COUPLES,
-    SourceKind.BUILD,
-    SourceKind.PLAY,
-    SourceKind.LOAD,
-    SourceKind.STRENGTH,
-    SourceKind.AIR,
-    SourceKind.FRICTION,
-)
-"""A finer mesh, a solid, a statement in the case, a narrower range."""
+_ORDER = {
+    SourceKind.DISCRETISATION: "decided_by_discretisation",
+    SourceKind.CALIBRATION: "decided_by_calibration",
+    SourceKind.COUPLES: "decided_by_couples",
+    SourceKind.BUILD: "decided_by_build",
+    SourceKind.PLAY: "decided_by_play",
+    SourceKind.LOAD: "decided_by_load",
+    SourceKind.STRENGTH: "decided_by_strength",
+    SourceKind.AIR: "decided_by_air",
+    SourceKind.FRICTION: "decided_by_friction",
+}
+"""A finer mesh, a solid, a statement in the case, a narrower range; and how it is told."""
 _ANSWERS = (SourceKind.CALIBRATION, SourceKind.COUPLES, SourceKind.BUILD)
 """Those of which one of several answers holds."""
 TOLD = 1.05
@@ -87,7 +87,7 @@ def _by(kind: SourceKind, value: Band, limit: float, least: float, most: float) 
     passes, low, high = value.value > limit, value.low / least, value.high / most
     if not (low >= limit if passes else high < limit):
         return None
-    name = f"decided_by_{kind.name.lower()}"
+    name = _ORDER[kind]
     if kind in _ANSWERS:
         return reason(name, ends=(limit * value.value / high, limit * value.value / low if low > 0.0 else math.inf))
     needed = least * limit / value.low if passes else most * limit / value.high
