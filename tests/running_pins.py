@@ -51,7 +51,10 @@ class RunningPins:
         self.path.elements.natural = natural
 
     def stresses(self, radii):
-        """Link -> its stress by hand with pins in discs of these radii, where load over modulus is the factor."""
+        """Link -> its stress by hand with pins in discs of these radii, where load over modulus is the factor.
+
+        ``displacements`` of the nodes are kept.
+        """
         self._stand(np.zeros(len(self.v)))
         state, K = self.start, self.rims.K
         for load in np.linspace(0.0, 1.0, self.steps + 1)[1:]:
@@ -68,7 +71,19 @@ class RunningPins:
             else:
                 raise AssertionError("pins do not settle")
         self.path.state = self._balanced(state, 1.0)
-        return self._links(self.path.record())
+        return self._links(self._recorded())
+
+    def held_at(self, v):
+        """Displacements of the nodes with pins held at places of the discs."""
+        self._stand(v)
+        self.path.state = self._balanced(self.path.state, 1.0)
+        self._recorded()
+        return self.displacements
+
+    def _recorded(self):
+        found = self.path.record()
+        self.displacements = found.displacements[: len(self.frame.model.nodes), :3]
+        return found
 
     def _stand(self, v):
         self.v, self.path._at, self.path._balanced = v, None, {}

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.source import Source, distinct
+from alula.fea.common.source import UNKNOWN, Source, distinct
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +151,25 @@ class Band:
         if lost is not None:
             return cls.unknown(lost.without)
         value, low, high = map(of, zip(*((band.value, band.low, band.high) for band in bands), strict=True))
-        return cls(value=value, low=low, high=high, sources=distinct(*(band.sources for band in bands)))
+        sources = distinct(*(band.sources for band in bands))
+        if len(bands) > 1:  # what a source makes of the outermost is what that is over the outermost without it
+            sources = tuple(replace(one, ends=cls._made(one, bands, (low, high), of)) for one in sources)
+        return cls(value=value, low=low, high=high, sources=sources)
+
+    @staticmethod
+    def _made(
+        source: Source, bands: Sequence["Band"], ends: tuple[float, float], of: Callable[[Iterable[float]], float]
+    ) -> tuple[float, float]:
+        own = [next((one.ends for one in band.sources if one == source), (1.0, 1.0)) for band in bands]
+        if any(not 0.0 < end < math.inf for one in own for end in one):
+            return UNKNOWN
+        without = (
+            of(band.low / one[0] for band, one in zip(bands, own, strict=True)),
+            of(band.high / one[1] for band, one in zip(bands, own, strict=True)),
+        )
+        if any(not 0.0 < end < math.inf for end in without):
+            return UNKNOWN
+        return ends[0] / without[0], ends[1] / without[1]
 
     def inverse(self, numerator: float) -> "Band":
         """Return ``numerator`` divided by the number: strength over stress gives a safety factor.
@@ -168,7 +186,7 @@ class Band:
         if self.unknowable:
             return self
         value, low, high = (_ratio(numerator, x) for x in (self.value, self.high, self.low))
-        return replace(self, value=value, low=low, high=high)
+        return replace(self, value=value, low=low, high=high, sources=tuple(one.inverse for one in self.sources))
 
     def times(self, factor: float) -> "Band":
         """Return ``factor`` times the number.

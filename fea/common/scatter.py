@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.source import Source, SourceKind, distinct
+from alula.fea.common.source import UNKNOWN, Source, SourceKind, distinct
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.case.case import Case
 
@@ -77,7 +77,7 @@ class Scatter:
         -------
         Scatter
         """
-        sources = distinct(self.told, other.told)
+        sources = tuple(replace(one, ends=UNKNOWN) for one in distinct(self.told, other.told))
         return Scatter(low=min(self.low, other.low), high=max(self.high, other.high), sources=sources)
 
     @property
@@ -85,13 +85,17 @@ class Scatter:
         """The sources; a single one has the whole width."""
         if len(self.sources) != 1 or not math.isnan(self.sources[0].width):
             return self.sources
-        return (replace(self.sources[0], width=self.high / self.low if self.low > 0.0 else math.inf),)
+        width = self.high / self.low if self.low > 0.0 else math.inf
+        return (replace(self.sources[0], width=width, ends=(self.low, self.high)),)
 
     @property
     def inverse(self) -> "Scatter":
         """The scatter of what goes with one over the number."""
         return replace(
-            self, sources=self.told, low=1.0 / self.high, high=1.0 / self.low if self.low > 0.0 else math.inf
+            self,
+            sources=tuple(one.inverse for one in self.told),
+            low=1.0 / self.high,
+            high=1.0 / self.low if self.low > 0.0 else math.inf,
         )
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from alula.fea.common.reason import Reason, reason
@@ -44,6 +44,10 @@ class SourceKind(StrEnum):
     GRIP = "pressure and friction of a press"
 
 
+UNKNOWN = (math.nan, math.nan)
+"""Ends of a source that is no factor, or whose factors nobody knows."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Source:
     """A source of error.
@@ -57,11 +61,21 @@ class Source:
     width : float
         Ratio of the ends of the interval that it gives by itself; NaN where that is not known. It does not make two
         sources differ.
+    ends : tuple of float
+        Least and largest factor that it puts on the number by itself, where the band is a product of such; else NaN.
+        They do not make two sources differ.
     """
 
     kind: SourceKind
     detail: Reason | str = ""
     width: float = field(default=math.nan, compare=False)
+    ends: tuple[float, float] = field(default=UNKNOWN, compare=False)
+
+    @property
+    def inverse(self) -> "Source":
+        """The same of one over the number."""
+        low, high = self.ends
+        return replace(self, ends=(_inverse(high), _inverse(low)))
 
     @property
     def text(self) -> Reason | str:
@@ -74,6 +88,7 @@ CONTACT = Source(
     kind=SourceKind.CONTACT,
     detail=reason("more_than_pin_pressure", shortfall=CONTACT_SHORTFALL),
     width=1.0 / (1.0 - CONTACT_SHORTFALL),
+    ends=(1.0, 1.0 / (1.0 - CONTACT_SHORTFALL)),
 )
 TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail=reason("by_faces_and_bore"))
 
@@ -175,7 +190,9 @@ def friction_source(ranges: Mapping[str, tuple[float, float]]) -> Source:
 
 
 def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:
-    """Join sources, each once and with its largest width, in the order in which they first stand.
+    """Join sources, each once, with its largest width and its nearest ends, in the order in which they first stand.
+
+    Nearest ends take no more from a band than each of its parts holds.
 
     Parameters
     ----------
@@ -189,6 +206,15 @@ def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:
     found: dict[Source, Source] = {}
     for source in (source for group in groups for source in group):
         known = found.get(source)
-        if known is None or source.width > known.width or math.isnan(known.width):
+        if known is None:
             found[source] = source
+            continue
+        widest = source if source.width > known.width or math.isnan(known.width) else known
+        (low, high), (least, most) = known.ends, source.ends
+        open_ends = any(map(math.isnan, (*known.ends, *source.ends)))
+        found[source] = replace(widest, ends=UNKNOWN if open_ends else (max(low, least), min(high, most)))
     return tuple(found.values())
+
+
+def _inverse(end: float) -> float:
+    return 1.0 / end if end != 0.0 else math.inf

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
-from alula.fea.common.reason import Reason, reason
+from alula.fea.common.decided import decided_by
+from alula.fea.common.reason import Reason, reason, together
 
 
 class Verdict(StrEnum):
@@ -237,6 +238,8 @@ UNLOADED_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.unload
 MOTOR_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.origin == "motor")
 """What is asked of a motor over the motion of a rigid linkage."""
 
+_FACTORS = (Quantity.SAFETY_FACTOR, Quantity.LAYERS, Quantity.EYES)
+"""Strength over stress, whose bands are products of what each source makes of them."""
 _OF_LOADED_LINKAGE = (Quantity.LIMIT_LOAD, Quantity.PERMANENT_SET)
 """Of the linkage as a whole, which may miss their limits while it holds its load."""
 
@@ -391,7 +394,7 @@ class CheckOutcome:
             value=value,
             limit=limit,
             verdict=verdict,
-            reason=reason or reason_for(value, limit, verdict),
+            reason=reason or reason_for(value, limit, quantity),
         )
 
     def because(self, reason: Reason | str) -> "CheckOutcome":
@@ -538,25 +541,45 @@ def worst_of_each(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     return list(found.values())
 
 
-def reason_for(value: Band, limit: float, verdict: Verdict) -> Reason | str:
-    """Return why a band gives its verdict.
+def reason_for(value: Band, limit: float, quantity: Quantity) -> Reason | str:
+    """Return why a band gives its verdict, and where it is open what would decide it.
 
     Parameters
     ----------
     value : Band
     limit : float
         In the unit of the value.
-    verdict : Verdict
-        What the band gave.
+    quantity : Quantity
 
     Returns
     -------
     Reason or str
     """
+    verdict = quantity.sense.verdict(value, limit)
     if value.unknowable or math.isnan(value.low):
         return value.without or reason("not_known")
     kind = {Verdict.UNDECIDED: "band_holds_limit", Verdict.PASS: "band_keeps_limit", Verdict.FAIL: "band_misses_limit"}
-    return reason(kind[verdict], low=value.low, high=value.high, limit=limit)
+    return together(
+        reason(kind[verdict], low=value.low, high=value.high, limit=limit), what_decides(value, limit, quantity)
+    )
+
+
+def what_decides(value: Band, limit: float, quantity: Quantity) -> Reason | str:
+    """Return which single thing would decide a check that is open.
+
+    Parameters
+    ----------
+    value, limit, quantity
+        As of ``reason_for``.
+
+    Returns
+    -------
+    Reason or str
+        "" where its band does not hold the limit.
+    """
+    if value.unknowable or quantity.sense.verdict(value, limit) is not Verdict.UNDECIDED:
+        return ""
+    return decided_by(value, limit, factors=quantity in _FACTORS)
 
 
 def overall(verdicts: Iterable[Verdict]) -> Verdict:

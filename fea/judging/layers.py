@@ -163,8 +163,13 @@ def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_m
     if not least < factor.low or factor.low == math.inf:
         return factor
     width = factor.low / least if least > 0.0 else math.inf
-    build = Source(kind=SourceKind.BUILD, detail=reason("none_is_stated"), width=width)
-    return replace(factor, low=least, sources=distinct(factor.sources, (build,)))
+    detail = reason("none_is_stated")
+    build = Source(kind=SourceKind.BUILD, detail=detail, width=width, ends=(least / factor.low, 1.0))
+    # The strength at the low end is that of the layers, so that of the others makes nothing of it.
+    others = (
+        replace(one, ends=(1.0, one.ends[1])) if one.kind is SourceKind.STRENGTH else one for one in factor.sources
+    )
+    return replace(factor, low=least, sources=distinct(tuple(others), (build,)))
 
 
 def _weakest(material: Material, principal: float, von_mises: float) -> float:

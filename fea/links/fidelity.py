@@ -487,8 +487,9 @@ def _at_location(location: CriticalLocation, factors: Factors, sources: tuple[So
 def _band(estimate: float, factors: Factors, sources: tuple[Source, ...]) -> Band:
     low, high = estimate * factors.low, estimate * factors.high
     others = math.prod(source.width for source in sources if not math.isnan(source.width))
+    ends = factors.low / factors.typical, factors.high / factors.typical / others
     sources = tuple(
-        replace(source, width=factors.high / factors.low / others) if math.isnan(source.width) else source
+        replace(source, width=ends[1] / ends[0], ends=ends) if math.isnan(source.width) else source
         for source in sources
     )
     return Band(value=estimate * factors.typical, low=low, high=high, sources=sources)

@@ -23,6 +23,7 @@ lean that is small counts as stopped.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -268,6 +269,33 @@ class RimPath:
         return Condensed(
             tight=self._motions @ tight, by_rims=self._motions @ follows, K=(K + K.T) / 2.0, g=-C.T @ tight
         )
+
+    def at_nodes(self, moved: Floats, nodes: Sequence[int]) -> Floats:
+        """Return how nodes of links move.
+
+        Parameters
+        ----------
+        moved : ndarray, shape (u, c)
+            Motions, in the unknowns of the path.
+        nodes : sequence of n int
+
+        Returns
+        -------
+        ndarray, shape (n, 3, c)
+            Along the global axes.
+        """
+        path, ends = self.path, dict[int, tuple[int, int]]()
+        for i, element in enumerate(self.rims.frame.model.elements):
+            if i not in self._pins:  # a pin's end stands in its hole
+                ends |= {node: (i, end) for end, node in enumerate(element.nodes)}
+        matrices = path.places.matrices(path.chain.axes(path.state.rotations))
+        unknowns = np.vstack([moved, np.zeros_like(moved[:1])])
+        return np.array(
+            [
+                matrices[i][:, 6 * end : 6 * end + 3].T @ unknowns[path.places.numbers[i]]
+                for i, end in (ends[node] for node in nodes)
+            ]
+        ).reshape(-1, 3, moved.shape[1])
 
     def natural_forces(self, moved: Floats, v: Floats) -> Floats:
         """Return the natural forces of all beams in a small motion, without those that hold line loads.

@@ -11,7 +11,7 @@ Growth on running pins over that on tight ones is what the bands of tight growth
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -22,6 +22,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.nonlinear.on_rims import Condensed, divided
 from alula.fea.nonlinear.stability import COARSE_SUBDIVISIONS
+from alula.fea.pins.holes import Hole
 from alula.fea.pins.programme import least_in_discs
 from alula.fea.pins.states import LEAST_RADIUS, PinStates
 
@@ -46,10 +47,79 @@ class RimGrowth:
         Link with a beam -> of its stress.
     pins : mapping of str to Scatter
         Joint -> of the stress of its pin.
+    farther : Farther or None
+        How much farther nodes move.
     """
 
-    links: Mapping[str, Scatter] = field(default_factory=dict)
-    pins: Mapping[str, Scatter] = field(default_factory=dict)
+    links: Mapping[str, Scatter]
+    pins: Mapping[str, Scatter]
+    farther: "Farther"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Farther:
+    """Where nodes stand on the deformed shape with pins in their holes, beside the growth of tight pins.
+
+    In a state whose forces have the geometric stiffness K_g a node moves by u(K_g) + R(K_g) v, with v in the discs.
+    Bands hold u(K_g of tight pins) + R(0) v; beyond these are at most
+
+        |u(K_g) - u(K_g of tight pins)| + Σ r_i |R_i(K_g) - R_i(0)|,
+
+    with the largest that a unit shift at rim i makes of the node, in any direction.
+
+    Attributes
+    ----------
+    nodes : mapping of int to int
+        Node of the frame -> its row below.
+    holes : tuple of Hole
+    tight : ndarray, shape (n, s)
+        The first term, of each of s states [mm].
+    by_rims : ndarray, shape (n, s, h, 2)
+        |R_i(K_g) - R_i(0)| of the lower and the upper rim of each hole.
+    rests : ndarray, shape (n, s, 3)
+        R(K_g) v where pins rest [mm].
+    """
+
+    nodes: Mapping[int, int]
+    holes: tuple[Hole, ...]
+    tight: Floats
+    by_rims: Floats
+    rests: Floats
+
+    def most(self, node: int, radii: Mapping[tuple[str, str], float]) -> float:
+        """Return how much farther a node moves at most, in any places of the pins.
+
+        Parameters
+        ----------
+        node : int
+        radii : mapping of (str, str) to float
+            Joint and link -> radius of the discs at both rims of the hole [mm].
+
+        Returns
+        -------
+        float
+            [mm]; infinite where nothing is known, since the frame is unstable by linear theory.
+        """
+        row, r = self.nodes[node], [max(radii.get((x, h.link), 0.0) for x in h.joints) for h in self.holes]
+        return float((self.tight[row] + self.by_rims[row].sum(axis=2) @ np.array(r)).max())
+
+    def least(self, node: int, elastic: Sequence[Floats]) -> float:
+        """Return how far a node moves at least, where pins rest.
+
+        Parameters
+        ----------
+        node : int
+        elastic : sequence of ndarray, shape (3,)
+            What it may move with tight pins [mm].
+
+        Returns
+        -------
+        float
+            [mm]; 0 where nothing is known.
+        """
+        row = self.nodes[node]
+        moved = [np.linalg.norm(one + self.rests[row], axis=1) - self.tight[row] for one in elastic]
+        return max(float(np.min(moved)), 0.0)
 
 
 @lru_cache(maxsize=64)
@@ -73,8 +143,17 @@ def rim_growth(pins: PinStates, factor: float) -> RimGrowth:
     stood = np.vstack([np.zeros(stood.shape[1]), stood])  # first with tight pins
     pressed = [path.condensed(rims.solved.solved(rims.opened @ v), factor) for v in stood]
     owners = tuple(dict.fromkeys(ends.owners))
+    nodes = sorted(set(rims.frame.points.values()))
+    numbers = {node: row for row, node in enumerate(nodes)}
     if plain is None or None in pressed:
-        return _told(owners, np.zeros(len(owners)), np.full(len(owners), np.inf))
+        lost = Farther(
+            nodes=numbers,
+            holes=rims.holes,
+            tight=np.full((len(nodes), 1), np.inf),
+            by_rims=np.zeros((len(nodes), 1, len(rims.holes), 2)),
+            rests=np.zeros((len(nodes), 1, 3)),
+        )
+        return _told(owners, np.zeros(len(owners)), np.full(len(owners), np.inf), lost)
     every = [one for one in pressed if one is not None]
     stand = np.vstack([stood[:1], _settled(every[1:], np.maximum(radii, LEAST_RADIUS), pins.radii.ties, stood[1:])])
     of_owners = np.array([[one == other for other in ends.owners] for one in owners])
@@ -96,14 +175,23 @@ def rim_growth(pins: PinStates, factor: float) -> RimGrowth:
         for end in (np.min, np.max)
         for least in (end(small, axis=0),)
     )
-    return _told(owners, low, high)
+    first, pinned, *others = (
+        path.at_nodes(np.column_stack([one.tight, one.by_rims]), nodes) for one in (plain, *every)
+    )
+    more = np.array(others)
+    tight = factor * np.linalg.norm((more - pinned)[..., 0], axis=2).T
+    rests = np.einsum("snik,sk->nsi", more[..., 1:], stand[1:])
+    by_rims = (more - first)[..., 1:].reshape(len(others), len(nodes), 3, len(rims.holes), 2, 2)  # hole, rim, x and y
+    by_rims = np.linalg.norm(by_rims.transpose(1, 0, 3, 4, 2, 5), ord=2, axis=(-2, -1))
+    farther = Farther(nodes=numbers, holes=rims.holes, tight=tight, by_rims=by_rims, rests=rests)
+    return _told(owners, low, high, farther)
 
 
-def _told(owners: Sequence[tuple[str, str]], low: Floats, high: Floats) -> RimGrowth:
+def _told(owners: Sequence[tuple[str, str]], low: Floats, high: Floats, farther: Farther) -> RimGrowth:
     found: dict[str, dict[str, Scatter]] = {"link": {}, "pin": {}}
     for (kind, name), least, most in zip(owners, low.tolist(), high.tolist(), strict=True):
         found[kind][name] = Scatter(low=min(least, 1.0), high=max(most, 1.0), sources=(SOURCE,))
-    return RimGrowth(links=found["link"], pins=found["pin"])
+    return RimGrowth(links=found["link"], pins=found["pin"], farther=farther)
 
 
 def _settled(pressed: Sequence[Condensed], radii: Floats, ties: NDArray[np.int64], v: Floats) -> Floats:

@@ -52,7 +52,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
-from alula.fea.common.source import COUPLES, Source, SourceKind
+from alula.fea.common.source import COUPLES, UNKNOWN, Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CaseError
@@ -381,7 +381,8 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
         low, high = sought([value * (size / sizes[0]) for size in sizes] if sizes[0] > 0.0 else [value, *sizes])
         low = max(low, min(least, value))
         width = high / low if low > 0.0 else math.inf
-        return Band(value=value, low=low, high=high, sources=(replace(COUPLES[0], width=width),))
+        ends = (low / value, high / value) if value > 0.0 else UNKNOWN
+        return Band(value=value, low=low, high=high, sources=(replace(COUPLES[0], width=width, ends=ends),))
 
     _, most = sought([one.shear / (plain.shear or math.inf) for one in (plain, *others)])
     shear = found.shear * most

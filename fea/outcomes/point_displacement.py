@@ -20,13 +20,16 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
+from alula.fea.doubts.load_growth import slack
 from alula.fea.frame.displacement_band import OneModulus, point_bounds
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.nonlinear.rim_growth import Farther, rim_growth
 from alula.fea.nonlinear.softened import displaced
 from alula.fea.nonlinear.stability import LARGE, SNAP, growth
 from alula.fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
 from alula.fea.outcomes.point_shares import LoadedLinkage, Shares, condensable, has_centre_line, shares_of
 from alula.fea.outcomes.result import LinkResult, SolidResult
+from alula.fea.pins.clearances import loose_holes
 from alula.fea.standing.case_statics import locks_on_tight_pins
 from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
@@ -195,15 +198,31 @@ class PointDisplacement(LoadedLinkage):
         value = float(np.linalg.norm(found.value * along + rests[0]))
         least, most = (self._loose(end * plane, abs(end * across)) for end in (found.low, found.high))
         low = math.hypot(*least[0])
+        node, grown = self._grown
         if len(rests) > 1:  # between layers they rest as the load says
-            low = min(float(np.linalg.norm(end * along + one)) for end in (found.low, found.value) for one in rests)
+            tight = [end * along for end in (found.low, found.value, found.high) if math.isfinite(end)]
+            low = min(float(np.linalg.norm(one + rest)) for one in tight[:2] for rest in rests)
+            low = low if grown is None else min(low, grown.least(node, tight))
+        groups = ((name, group) for name in self.case.joints for group in loose_holes(self.case, name))
+        radii = {(name, link): play / 2.0 for name, group in groups for link, play in group}
+        farther = 0.0 if grown is None else grown.most(node, radii)
         sources = COUPLES if self.play is None else (play_source(self.play.clearances),)
         return Band(
             value=value,
             low=min(low, value),
-            high=max(math.hypot(*most[1]), value),
+            high=max(math.hypot(*most[1]) + farther, value),
             sources=distinct(found.sources, sources),
         )
+
+    @cached_property
+    def _grown(self) -> tuple[int, Farther | None]:
+        """The point's node, and where rims let it stand on the deformed shape; None where nothing is shared there."""
+        moved, case = self.moved, self.case
+        between = self.forces is not None and self.forces.sharings
+        if not between or moved.pins is None or moved.frame is None or moved.state not in ("small", "deformed"):
+            return 0, None
+        found = rim_growth(moved.pins, slack(case, self.load_case, case.checked_links)[1]).farther
+        return moved.frame.points[self.link, self.point], found
 
     @cached_property
     def _rests(self) -> Real:

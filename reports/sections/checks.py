@@ -11,6 +11,7 @@ from alula.fea.common.verdict import (
     Verdict,
     by_nearness,
     reason_for,
+    what_decides,
     worst_of_each,
 )
 from alula.loads.case.case import Case
@@ -262,12 +263,15 @@ def _held(checks: Sequence[CheckOutcome]) -> tuple[str, ...]:
 
 
 def _reasons(checks: Sequence[CheckOutcome]) -> list[str]:
-    """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
-    return [
-        ""
-        if check.quantity not in _TELLING
-        and not check.value.unknowable
-        and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
-        else say("{why}", why=check.reason).text
-        for check in checks
-    ]
+    """Return the reason of each check; of what its row says as well only what would decide it."""
+    return [_beside_row(check) for check in checks]
+
+
+def _beside_row(check: CheckOutcome) -> str:
+    why, number = check.reason, (check.value, check.limit, check.quantity)
+    if check.quantity not in _TELLING and not check.value.unknowable:
+        if check.verdict is Verdict.PASS:
+            return ""
+        if why == reason_for(*number):
+            why = what_decides(*number)
+    return say("{why}", why=why).text if why else ""

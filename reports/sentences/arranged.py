@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import partial
 
 from alula.fea.common.band import Band
+from alula.fea.common.change import rounded
 from alula.reports.words.numbers import digits_beside, plain, short
 
 Ends = tuple[float, float]
@@ -44,10 +45,24 @@ def _beside_limit(how: str, low: float, high: float, limit: float) -> str:
     return f"its band {short(low, digits)} to {short(high, digits)} {how.format(plain(limit))}"
 
 
+def _needed(what: str, *, passes: bool, needed: float, inverse: bool = False) -> str:
+    """Say which end of a range would decide a check, rounded so that it still does."""
+    end, most = (1.0 / needed, passes) if inverse else (needed, not passes)
+    verdict, side = "pass" if passes else "fail", "at most" if most else "at least"
+    return f"it would {verdict} {what.format(f'{side} {short(rounded(end, up=not most), 3)}')}"
+
+
+_NO_MORE = "that makes it {} times what it is"
 ARRANGED: dict[str, Callable[..., str]] = {
     "band_holds_limit": partial(_beside_limit, "holds the limit {}, so it may pass or fail"),
     "band_keeps_limit": partial(_beside_limit, "lies wholly on the safe side of the limit {}"),
     "band_misses_limit": partial(_beside_limit, "lies wholly on the wrong side of the limit {}"),
+    "decided_by_discretisation": partial(_needed, f"with finer meshes (--accuracy), whose error {_NO_MORE[5:]}"),
+    "decided_by_play": partial(_needed, f"with a smaller clearance of the joints, {_NO_MORE}"),
+    "decided_by_load": partial(_needed, "with a scatter of the load of {} times what is stated", inverse=True),
+    "decided_by_strength": partial(_needed, "with a range of the strength of {} times its value"),
+    "decided_by_air": partial(_needed, f"with a narrower normal_coefficient_range, {_NO_MORE}"),
+    "decided_by_friction": partial(_needed, f"with a narrower friction_range, {_NO_MORE}"),
     "limit_within": _limit_within,
     "clear_by_hand": _clear_by_hand,
     "held": _held,
