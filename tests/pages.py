@@ -7,8 +7,6 @@ for lines ``...`` and breaks of lines. Commands that take longer than seconds ar
 
 import re
 import shlex
-import subprocess
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -61,17 +59,7 @@ class Reader:
 
     def python(self, text: str) -> None:
         """Run Python."""
-        done = subprocess.run(
-            [sys.executable, "-c", text],
-            cwd=self.folder,
-            env=programs.environment(),
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        self.printed = done.stdout
+        self.printed, _ = programs.python(text, self.folder)
 
     def text(self, text: str) -> None:
         """Make a table whose name is the first line, or look for what was printed."""
