@@ -11,7 +11,6 @@ follows pages, by default all, with patience, and writes numbers anew where the 
 
 import re
 import shlex
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, field
@@ -72,17 +71,7 @@ class Reader:
 
     def python(self, text: str) -> None:
         """Run Python."""
-        done = subprocess.run(
-            [sys.executable, "-c", text],
-            cwd=self.folder,
-            env=programs.environment(),
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        self.printed = done.stdout
+        self.printed, _ = programs.python(text, self.folder)
 
     def text(self, text: str) -> None:
         """Make a table whose name is the first line, or look for what was printed."""

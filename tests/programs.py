@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
@@ -76,6 +77,18 @@ def inside(*arguments: str, folder: Path | None = None) -> subprocess.CompletedP
             status = stop.code
     assert isinstance(status, int)
     return subprocess.CompletedProcess(arguments, status, out.getvalue(), told.getvalue())
+
+
+def python(text: str, folder: Path) -> tuple[str, str]:
+    """Run a script of a page in this process and a folder, and return what it prints and what it tells of errors.
+
+    As in an interpreter of its own, a file that is left open is none of them.
+    """
+    out, told = io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(told), chdir(folder), warnings.catch_warnings():
+        warnings.simplefilter("ignore", ResourceWarning)
+        exec(compile(text, "<page>", "exec"), {"__name__": "__main__"})
+    return out.getvalue(), told.getvalue()
 
 
 def script(text: str, *arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:

@@ -3,7 +3,6 @@
 import re
 import shlex
 import subprocess
-import sys
 import textwrap
 import tomllib
 from pathlib import Path
@@ -153,18 +152,9 @@ SNIPPETS = [(text, BLOCKS[i + 1][1]) for i, (kind, text) in enumerate(BLOCKS) if
 
 @pytest.mark.parametrize(("snippet", "printed"), SNIPPETS)
 def test_a_snippet(snippet: str, printed: str, tmp_path: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", snippet],
-        cwd=tmp_path,
-        env=programs.environment(),
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
-    assert [line.rstrip() for line in done.stdout.splitlines()] == printed.splitlines()
+    out, told = programs.python(snippet, tmp_path)
+    assert told == ""
+    assert [line.rstrip() for line in out.splitlines()] == printed.splitlines()
 
 
 def test_the_lines_of_a_case_are_those_of_the_starter() -> None:

@@ -141,8 +141,8 @@ def layer_gap(friction: float, stated: tuple[float, float]):
 def test_the_gap_between_layers_is_what_all_friction_that_may_be_leaves() -> None:
     """Links bend further with more friction; where the linkage may lock itself, no gap is sure."""
     told, locked = layer_gap(0.1, (0.05, 0.2)), layer_gap(0.1, (0.05, 2.0))
-    direct = [layer_gap(mu, (mu, mu)).value for mu in (0.05, 0.1, 0.2)]
-    assert min(one.low for one in direct) < direct[1].low
+    direct = [layer_gap(mu, (mu, mu)).value for mu in (0.05, 0.2)]
+    assert min(one.low for one in direct) < told.value.value
     assert told.value.low == pytest.approx(min(one.low for one in direct), rel=1e-3)
     assert told.value.high >= max(one.high for one in direct) - 1e-9
     assert (told.verdict, locked.verdict) == (Verdict.PASS, Verdict.UNDECIDED)
