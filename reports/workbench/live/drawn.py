@@ -226,8 +226,9 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
     for i, line in enumerate(map(ForceOnLine, stated.load_lines)):
         ends = np.array(line.ends(pose.placement))[:, :2]
         for load, at in zip(line.loads(pose.placement), ends, strict=False):
-            path, lever = ["load_cases", own, "load_lines", i], [at.tolist(), pose.position(load.link, load.point).tolist()]
-            told = {"line": ends.tolist(), "lever": lever}
+            path = ["load_cases", own, "load_lines", i]
+            told: Plain = {"line": ends.tolist(), "newtons": float(np.linalg.norm(load.wrench[:3]))}
+            told["lever"] = [at.tolist(), pose.position(load.link, load.point).tolist()]
             yield _load(path, name, "load line", load.link, at, load.wrench[:3]) | told
     for i, (air, forces) in enumerate(zip(stated.air, case.air_forces(own), strict=True)):
         for patch, share in zip(air.spread, shares(air, case.link_points), strict=True):

@@ -266,7 +266,7 @@ function forces({ now, texts, taken }) {
     const newtons = size(load.vector);
     if (!newtons) continue;
     const editable = load.kind === "force";
-    const text = editable ? `${number(newtons)} N` : `${number(newtons)} N ${load.kind}`;
+    const text = editable ? `${number(newtons)} N` : `${number(load.newtons ?? newtons)} N ${load.kind}`;
     arrows.push({ key: `load ${k} ${load.path.join(".")}`, at: load.at, tip: plus(load.at, load.vector, perNewton), kind: editable ? "load" : "load other", text, rank: editable ? 1 : 7, needed: editable, near: !editable, path: load.path });
   }
   for (const one of arrows) {
