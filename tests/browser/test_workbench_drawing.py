@@ -149,6 +149,18 @@ def test_an_arrow_and_the_pose_are_pulled(bench):
     bench.wait("[...document.querySelectorAll('.texts text')].some((one) => one.textContent.startsWith('beyond'))")
 
 
+def test_a_load_line_is_dashed_and_its_levers_are_dotted(bench):
+    line = {"from": ["150 mm", "200 mm", "10 mm"], "to": ["90 mm", "120 mm", "0 mm"], "force": "10 N"}
+    stated = [
+        {"op": "set", "path": ["load_cases", "lift", "load_lines"], "value": [line | {"link": "rocker", "at": "P"}]}
+    ]
+    bench.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", stated)
+    bench.wait("document.querySelector('.forces .lever')")
+    settle(bench)
+    dashes = [one.value_of_css_property("stroke-dasharray") for one in bench.elements(".forces :is(.line, .lever)")]
+    assert dashes == ["6px, 3px", "1.5px, 3px"]
+
+
 def test_a_linkage_of_twelve_links_is_pulled_without_a_halt(bench):
     """Five four-bars, one on the other: no task of the page holds up the hand, and the numbers follow."""
     text = "import(document.baseURI + 'page/server.js').then(({ change }) => change('text', { text: arguments[0] }))"

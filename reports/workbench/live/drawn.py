@@ -224,9 +224,12 @@ def _loads(case: Case, pose: Pose, name: str, stated: LoadCase, statics: CaseSta
             at, point = pose.position(seen.link, seen.point), seen.point
             yield _load(path, name, kind, seen.link, at, seen.wrench, point) | {"axes": load.axes}
     for i, line in enumerate(map(ForceOnLine, stated.load_lines)):
-        for load, at in zip(line.loads(pose.placement), line.ends(pose.placement), strict=False):
+        places = np.array(line.ends(pose.placement))[:, :2]
+        for load, at in zip(line.loads(pose.placement), places, strict=False):
             path = ["load_cases", own, "load_lines", i]
-            yield _load(path, name, "load line", load.link, at[:2], load.wrench[:3])
+            told: Plain = {"line": places.tolist(), "newtons": float(np.linalg.norm(load.wrench[:3]))}
+            told["lever"] = [at.tolist(), pose.position(load.link, load.point).tolist()]
+            yield _load(path, name, "load line", load.link, at, load.wrench[:3]) | told
     for i, (air, forces) in enumerate(zip(stated.air, case.air_forces(own), strict=True)):
         for patch, share in zip(air.spread, shares(air, case.link_points), strict=True):
             ends = [pose.position(patch.link, p) for p in (patch.at, patch.start, patch.end) if p is not None]

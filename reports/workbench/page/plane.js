@@ -54,7 +54,7 @@ export function fitAll() {
   if (!width) return;
   if (!now?.at.size) return void store.put("view", { scale: 4, left: width / 4, top: height / 2 });
   perNewton = arrowScale(now);
-  const tips = [...now.loads.flatMap((load) => [load.at, plus(load.at, load.vector, perNewton)]), ...forcesOf(now).map((one) => plus(one.at, one.force, perNewton))];
+  const tips = [...now.loads.flatMap((load) => [...(load.line ?? []), load.at, plus(load.at, load.vector, perNewton)]), ...forcesOf(now).map((one) => plus(one.at, one.force, perNewton))];
   const rings = now.links.flatMap((link) => (link.ground ? [] : link.rings?.[0] ?? []));
   const paths = store.state.paths && store.state.motion?.points ? Object.values(store.state.motion.points).flat() : [];
   const places = [...now.at.values()];
@@ -262,10 +262,11 @@ function arrow(group, name, from, to, kind) {
 function forces({ now, texts, taken }) {
   const arrows = forcesOf(now).map((one) => ({ ...one, key: `force ${one.name}`, kind: "joint-force", rank: 6, text: `${number(one.magnitude)} N`, tip: plus(one.at, one.force, perNewton) }));
   for (const [k, load] of now.loads.entries()) {
+    for (const part of ["line", "lever"]) if (load[part]) groups.forces.put(`load ${k} ${part}`, "path", { class: `load ${part}`, d: trace(load[part], false) });
     const newtons = size(load.vector);
     if (!newtons) continue;
     const editable = load.kind === "force";
-    const text = editable ? `${number(newtons)} N` : `${number(newtons)} N ${load.kind}`;
+    const text = editable ? `${number(newtons)} N` : `${number(load.newtons ?? newtons)} N ${load.kind}`;
     arrows.push({ key: `load ${k} ${load.path.join(".")}`, at: load.at, tip: plus(load.at, load.vector, perNewton), kind: editable ? "load" : "load other", text, rank: editable ? 1 : 7, needed: editable, near: !editable, path: load.path });
   }
   for (const one of arrows) {
@@ -384,7 +385,7 @@ function legend(now) {
   const entries = [
     ...(uses ? [["", "strength used, at the worst (✗ fails, ? undecided):"], ...USES.map(([, text, colour], k) => [k < USES.length - 1 ? "use" : "use over", text, colour])] : []),
     ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
-    ...(now?.loads.length ? [["load", "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
+    ...(now?.loads.length ? [["load", now.loads.some((load) => load.line) ? "load; dashed: its line, dotted: rigid lever" : "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),
   ];
   const text = JSON.stringify(entries);

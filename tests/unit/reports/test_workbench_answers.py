@@ -85,6 +85,11 @@ def test_both_ends_of_a_load_line_have_the_path_of_its_entry_and_stand_beside_th
         assert (load["path"], load["link"]) == (["load_cases", "lift", "load_lines", 0], link)
         assert (load["at"], load["moment"], load["point"]) == (at, 0.0, None), "not at a point, where the page puts it"
         assert load["vector"] == pytest.approx([-6.0 * sense, -8.0 * sense])
+        points = next(one for one in answer["drawn"]["links"] if one["name"] == link)["points"]
+        enters = next(one["at"] for one in points if one["name"] == ("P" if link == "rocker" else "Q"))
+        assert load["newtons"] == pytest.approx(10.0)
+        assert load["line"] == [[150.0, 200.0], [90.0, 120.0]]
+        assert load["lever"] == [at, pytest.approx(enters)], "from its end of the line to the point it enters at"
 
 
 def test_what_balances_by_itself_is_drawn_where_it_stands():
