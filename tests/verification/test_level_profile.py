@@ -32,6 +32,14 @@ def checked(tests, folder, **options):
     return check_level(StatedCase.from_dict(case, folder=folder).record, **options)
 
 
+def over_profile(test, folder):
+    """Return the envelope of the pylon over a test."""
+    case = pylon(level={"test": "roll", "tests": {"roll": test}}, materials={"alloy": card()})
+    case["parts"]["tube"]["material"] = "alloy"
+    variant = over_states(StatedCase.from_dict(case, folder=folder).record)
+    return envelope_case(variant, effort=Effort(max_unknowns=1000)).links["pylon"]
+
+
 def card():
     source = dict.fromkeys(
         ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength"), "made up"
@@ -108,10 +116,7 @@ def test_stress_at_each_row_is_that_of_a_cantilever_under_a_tilted_force(tmp_pat
 
 def test_stress_of_the_solid_is_that_of_the_tilted_force_at_each_row(tmp_path):
     """Halfway between clamp and load, where neither matters: bending, normal force and torque, on a coarse mesh."""
-    case = pylon(level={"test": "roll", "tests": {"roll": rolled(tmp_path, cycles=1e6) | {"lasts": True}}})
-    variant = over_states(StatedCase.from_dict(case, folder=tmp_path).record)
-    over = envelope_case(variant, effort=Effort(max_unknowns=1000))
-    along = over.links["pylon"].load_cases["roll"].along
+    along = over_profile(rolled(tmp_path, cycles=1e6) | {"lasts": True}, tmp_path).load_cases["roll"].along
     edges = np.linspace(along.first, along.last, along.stress.shape[1] + 1)
     middle = int(np.searchsorted(edges, 150.0)) - 1
     for pose, stress in zip(along.poses, along.stress[:, middle], strict=True):
@@ -168,3 +173,21 @@ def test_harm_of_steps_adds_up_with_the_way_to_a_force_that_is_held(order, tmp_p
     harm = [by_hand([(unit * size, unit * mean, n)])[0] / expected for size, mean, n in shares[::order]]
     assert life.harm[:2] == pytest.approx(harm)
     assert sum(life.harm) == pytest.approx(1.0)
+
+
+def test_of_steps_whose_harm_is_at_different_places_the_worse_place_decides_in_any_order(tmp_path):
+    """On the toe few cycles of a large force, on the heel many of a smaller one, which do the harm."""
+    for name, row in (("heel", "600,-15"), ("toe", "900,25")):
+        (tmp_path / f"{name}.csv").write_text(f"time [ms],force [N],tilt [deg]\n0,0,0\n100,{row}\n200,0,0\n")
+    steps = [{"profile": "heel.csv", "cycles": 1e6}, {"profile": "toe.csv", "cycles": 10}]
+    test = {"top": TOP, "bottom": BOTTOM, "tilts_about": ABOUT, "lasts": True}
+    tests = {"first": steps, "last": steps[::-1], "alone": steps[:1]}
+    lives = {}
+    for name, own in tests.items():
+        over = over_profile(test | {"steps": own}, tmp_path)
+        lives[name] = over.load_cases["roll"].fatigue.life
+    first, last, alone = (lives[name] for name in ("first", "last", "alone"))
+    assert first.repetitions == pytest.approx(last.repetitions, rel=0.01)
+    assert first.repetitions <= 1.00001 * alone.repetitions  # of 1e6 and 10 cycles those ten do no good
+    assert max(first.harm) == first.harm[0] > 0.9
+    assert first.harm[:2] == pytest.approx(last.harm[1::-1], rel=0.05)
