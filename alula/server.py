@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import alula
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
-from alula.geometry.base.extras import install_command
+from alula.geometry.base.version import extra_command
 from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 
@@ -95,7 +95,7 @@ def made(folder: Path, threads: int) -> "MCPServer":
         from mcp.server import MCPServer
         from mcp_types import ToolAnnotations
     except ImportError:
-        raise CannotRunError(f"mcp: the package mcp is not installed; run {install_command('mcp')}") from None
+        raise CannotRunError(f"mcp: the package mcp is not installed; run {extra_command('mcp')}") from None
     server, one_at_a_time = (
         MCPServer("alula", instructions=_ABOUT, version=alula.__version__, log_level="CRITICAL"),
         threading.Lock(),

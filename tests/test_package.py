@@ -30,7 +30,7 @@ def run(*command: str | Path, cwd: Path) -> str:
     """Run `command` as a user would, with no trace of this test's environment, and return its standard output."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     done = subprocess.run(
-        [str(word) for word in command], cwd=cwd, env=environment, capture_output=True, text=True, timeout=120
+        [str(word) for word in command], cwd=cwd, env=environment, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

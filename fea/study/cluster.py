@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 from alula.fea.study.engine import IN_FLIGHT, Engine
 from alula.fea.study.evaluate import evaluate, versions
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.geometry.base.extras import install_command
+from alula.geometry.base.version import extra_command
 
 CONNECTING = 5.0
 """Seconds within which the scheduler must answer."""
@@ -71,7 +71,7 @@ def cluster_engine(address: str, contents: Mapping[str, bytes], *, patience: flo
     try:
         import distributed
     except ImportError:
-        raise CannotRunError(f"--scheduler: Dask is not installed; run {install_command('cluster')}") from None
+        raise CannotRunError(f"--scheduler: Dask is not installed; run {extra_command('cluster')}") from None
 
     class Client(distributed.Client):
         def __del__(self) -> None:

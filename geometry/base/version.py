@@ -18,6 +18,27 @@ def alula_version() -> str:
         raise ImportError(f"{what}; 'make setup' in its checkout makes a Python that has it", name="alula") from None
 
 
+def extra_command(extra: str) -> str:
+    """Return the command that adds an extra to this installation of alula.
+
+    It names the interpreter, since another's pip would look for alula elsewhere; the version that is here stays.
+
+    Parameters
+    ----------
+    extra : str
+        Its name in ``pyproject.toml``, such as ``"pictures"``.
+
+    Returns
+    -------
+    str
+        A line for the shell.
+    """
+    import shlex
+    import sys
+
+    return f"{shlex.quote(sys.executable)} -m pip install 'alula[{extra}]'"
+
+
 def result_stamp() -> dict[str, object]:
     """Return what the JSON of every command begins with: the version of its format and that of alula."""
     return {"schema_version": RESULT_SCHEMA_VERSION, "version": alula_version()}

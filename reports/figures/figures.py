@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from alula.fea.outcomes.result import LinkResult, SolidResult
 from alula.geometry.base import child
 from alula.geometry.base.child_server import ChildEndedError, ServerPool
-from alula.geometry.base.extras import install_command
 from alula.geometry.base.system_libraries import OSMESA, advice, loads
+from alula.geometry.base.version import extra_command
 from alula.reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
 from alula.reports.figures.sheet.canvas import Canvas, faint
 from alula.reports.figures.sheet.labels import heights, stacked, write_stacked
@@ -146,7 +146,7 @@ def rendered(renderings: Mapping[_Key, Rendering], *, time_limit: float = TIME_L
         Name -> image of those that came out, and what went wrong with the others.
     """
     if not _installed():
-        return {}, f"pyvista is not installed; run {install_command('pictures')}"
+        return {}, f"pyvista is not installed; run {extra_command('pictures')}"
     requests = {}
     for key, one in renderings.items():
         asked = asdict(one.view) | {"limits": one.limits, "colours": one.colours}

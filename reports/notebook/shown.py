@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from alula.fea.common.verdict import Verdict
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.geometry.base.extras import install_command
+from alula.geometry.base.version import extra_command
 from alula.reports.sections.markup import as_plain
 from alula.reports.sections.section import Part, Section, parts_of
 from alula.reports.sections.section import Table as Told
@@ -161,7 +161,7 @@ class ShownTable:
         try:
             import pandas
         except ImportError:
-            raise CannotRunError(f"frame: pandas is not installed; run {install_command('pandas')}") from None
+            raise CannotRunError(f"frame: pandas is not installed; run {extra_command('pandas')}") from None
         return pandas.DataFrame(list(self.rows), columns=list(self.columns))
 
 
