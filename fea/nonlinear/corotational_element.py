@@ -62,7 +62,7 @@ class CorotationalElements:
         self.axes = np.array([model.axes(i).T for i in range(m)])
         every = zip(model.elements, self.lengths, strict=True)
         natural = [natural_flexibility(e.section, e.young, e.poisson, length) for e, length in every]
-        self.stiffness = np.linalg.inv(np.array(natural).reshape(m, 6, 6))
+        self.stiffness: Floats = np.asarray(np.linalg.inv(np.array(natural).reshape(m, 6, 6)), dtype=np.float64)
         self.load_bends = np.zeros((m, 6, 6))
         self.load_sags = np.zeros((m, 6, 6))
         self.loads = np.zeros((m, 2, 3))

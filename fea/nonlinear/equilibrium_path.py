@@ -426,7 +426,8 @@ class EquilibriumPath:
             for node, wrench in zip(spring.nodes, wrenches, strict=True):
                 if node is not None:
                     push(node, wrench)
-        tangent[:count, :count] += self.springs.tangent(state.displacements, state.rotations, axes, factor)
+        if model.springs:
+            tangent[:count, :count] += self.springs.tangent(state.displacements, state.rotations, axes, factor)
         pin, before, gain = self.chain.carried(axes, moments)
         np.add.at(tangent, (pin, before), gain)
         return residual, tangent

@@ -84,6 +84,8 @@ def growth(factor: float) -> float:
 
 _MANY, _ROUNDS = 120, 50
 """Unknowns from which on one eigenvalue is sought, in place of all, and restarts that this may take: as long as all."""
+_LARGE = 400
+"""Unknowns from which on matrices that are nearly all zeros are factorised as such, unless guides fill them."""
 _ROUNDING = 1e-9
 _FAR = 1e6
 """Factor from which on two terms of the series are exact to rounding."""
@@ -112,9 +114,28 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     linear = solve_frame(divided)
     path = EquilibriumPath(divided)
     K, G = (path.free(part) for part in stiffness_parts(path, linear.end_forces, linear.guide_forces))
-    root = np.asarray(np.linalg.cholesky((K + K.T) / 2.0), dtype=np.float64)
-    largest = largest_eigenvalue(-(G + G.T) / 2.0, root)
+    largest = _of_sparse(G, K) if len(K) > _LARGE and not model.guides else None
+    if largest is None:
+        root = np.asarray(np.linalg.cholesky((K + K.T) / 2.0), dtype=np.float64)
+        largest = largest_eigenvalue(-(G + G.T) / 2.0, root)
     return 1.0 / largest if largest > 1e-12 else np.inf
+
+
+def _of_sparse(G: Floats, K: Floats) -> float | None:
+    """Return the largest λ of -G x = λ K x by Lanczos, of matrices with few entries; None where that does not tell."""
+    from scipy.sparse import csc_matrix
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh, splu
+
+    pressed, stiff = ((part + part.T) / 2.0 for part in (csc_matrix(-G), csc_matrix(K)))
+    factors = splu(stiff, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    if not (factors.U.diagonal() > 0.0).all():
+        return None  # not positive definite
+    inverse = LinearOperator(K.shape, matvec=factors.solve, dtype=np.float64)
+    options = {"M": stiff, "Minv": inverse, "v0": factors.solve(np.ones(len(K))), "maxiter": _ROUNDS}
+    try:
+        return float(eigsh(pressed, 1, which="LA", return_eigenvectors=False, **options)[0])
+    except ArpackNoConvergence:
+        return None  # where nothing buckles, the largest of them lie close together about zero
 
 
 def largest_eigenvalue(A: Floats, root: Floats) -> float:
