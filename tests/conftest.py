@@ -1,6 +1,7 @@
 """Settings that all tests share."""
 
 import errno
+import gc
 import os
 import shutil
 import sys
@@ -8,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 import chromium
+import pytest
 from hypothesis import settings
 
 # No deadline per example: a first call may import a library or build a mesh, and machines that test are busy.
@@ -36,6 +38,15 @@ def pytest_configure(config):
     os.environ["ALULA_CACHE"] = ""  # what an earlier run solved would hide what has changed
     if not hasattr(config, "workerinput"):
         os.environ["ALULA_TESTS_SHARE"] = tempfile.mkdtemp(prefix="alula-tests-")
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection():
+    """Look for no garbage while half a million objects are made that stay, nor ever again among them."""
+    gc.disable()
+    yield
+    gc.enable()
+    gc.freeze()
 
 
 def pytest_collection_finish(session):

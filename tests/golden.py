@@ -94,8 +94,7 @@ def slow(name: str) -> bool:
     Braking is the flight's case in other air, and the longest of all by hand; the reference design of the flapping wing
     is the chosen one with other lengths.
     """
-    alike = "owl-wing-braking", "flapping-wing-reference"
-    return meshed(name) or name.partition("-")[2] in alike or name == "claims"
+    return meshed(name) or name.partition("-")[2] in solved.ALIKE or name == "claims"
 
 
 def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None]]:

@@ -18,7 +18,7 @@ from alula.reports.commands.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMAND = [sys.executable, "-c", "from alula.reports.commands.cli import main; main()"]
-BEAM = ("check", "four-bar-synthesis", "--fidelity", "beam")
+BEAM = ("check", "knee", "--fidelity", "beam")
 """The whole check that takes least."""
 WRITING = (
     "import json, os, sys\n"

@@ -61,6 +61,11 @@ WINGS = dict.fromkeys(("flapping-wing-chosen", "ornithopter"), (PLANAR, "motion.
 stand in other cases (``owl-wing-flight``, ``slider-crank``)."""
 
 
+ALIKE = ("owl-wing-braking", "flapping-wing-reference")
+"""Built-in cases that are others with other numbers: the flight in other air, the chosen flapping wing with other
+lengths."""
+
+
 @cache
 def by_hand(name: str, *overrides: str) -> CheckResult:
     """Check a built-in case by hand calculation, with entries set anew; with ``WINGS`` where none are."""

@@ -230,7 +230,8 @@ import alula
 import fea, loads, reports, tests, geometry.mine
 
 case = alula.read_case("four-bar")
-print(alula.check(case, fidelity="beam").verdict, alula.check(case, fidelity="solid", accuracy="50 %").verdict)
+case = case.with_values({"checks.strength.links": ["rocker"]})
+print(alula.check(case, fidelity="solid", accuracy="50 %").verdict)
 study = alula.study("four-bar", {"parts.bar.thickness": ["4 mm", "6 mm"]}, "out", fidelity="beam", threads=2)
 print(*(row["verdict"] for row in study.table()))
 print(fea.MINE + loads.MINE + reports.MINE + tests.MINE + geometry.mine.MINE)
@@ -238,18 +239,13 @@ print(fea.MINE + loads.MINE + reports.MINE + tests.MINE + geometry.mine.MINE)
 
 
 def test_a_script_stands_beside_files_with_the_names_of_alulas_packages(installed, tmp_path):
-    """A check, a solid and a study with two workers, whose children start in the same folder."""
+    """A solid and a study with two workers, whose children start in the same folder."""
     for mine in ("fea.py", "loads.py", "geometry/mine.py", "reports.py", "tests/__init__.py"):
         (tmp_path / mine).parent.mkdir(exist_ok=True)
         (tmp_path / mine).write_text("MINE = 1", encoding="utf-8")
     (tmp_path / "sweep.py").write_text(SWEEP, encoding="utf-8")
-    assert run(installed / "bin" / "python", "sweep.py", cwd=tmp_path).split() == [
-        "undecided",
-        "pass",
-        "undecided",
-        "undecided",
-        "5",
-    ]
+    told = run(installed / "bin" / "python", "sweep.py", cwd=tmp_path).split()
+    assert told == ["pass", "undecided", "undecided", "5"]
 
 
 @pytest.mark.parametrize("environment", ["editable", "wheel", "none"])

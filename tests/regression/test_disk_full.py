@@ -35,7 +35,7 @@ def test_a_report_that_does_not_fit(tmp_path: Path) -> None:
     assert done.returncode == 4, done.stderr
     last = done.stderr.strip().splitlines()[-1]
     assert last == f"alula: output: writing to '{out}' failed (File too large); nothing was changed there"
-    assert "\nPass: all 10 checks keep their limits" in done.stdout  # what was computed is told all the same
+    assert "\nPass: all 26 checks keep their limits" in done.stdout  # what was computed is told all the same
     assert programs.text_of(out) == "old"
     assert programs.hidden(tmp_path) == []
     assert programs.script("write_folder(Path(sys.argv[1]), fill('next'))", str(out)).returncode == 0

@@ -42,7 +42,7 @@ def test_the_beam_check_as_json() -> None:
     done = programs.inside(*programs.BEAM, "--json")
     record = json.loads(done.stdout)
     assert done.returncode == {"pass": 0, "fail": 1, "undecided": 3}[record["verdict"]]
-    assert record["links"]["a"]["elements"] is None
+    assert record["links"]["rear"]["elements"] is None
 
 
 def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) -> None:

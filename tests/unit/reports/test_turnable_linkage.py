@@ -26,7 +26,7 @@ def unpacked(packed, columns):
 
 
 def records(name):
-    return {link["name"]: link for link in json.loads(data_block(check_linkage(solved.told(name))))["links"]}
+    return {link["name"]: link for link in json.loads(data_block(check_linkage(solved.by_hand(name))))["links"]}
 
 
 def polygons(plate):
@@ -55,7 +55,7 @@ def placed(frames, moving, case):
 
 @pytest.mark.parametrize("name", MOVING)
 def test_links_meet_at_their_joints_in_every_pose_and_pass_by_the_stated_one(name):
-    result = solved.told(name)
+    result = solved.by_hand(name)
     record = check_linkage(result)
     motion, case = record["motion"], result.case
     moving = motion["links"]
@@ -86,7 +86,7 @@ def test_poses_are_those_of_the_motion_for_the_values_that_are_told():
 @pytest.mark.parametrize("name", ["four-bar-synthesis", "knee"])
 def test_bodies_have_the_volume_of_their_parts_and_are_closed(name):
     """Their solids in the kernel tell the mass; chords of arcs leave some volume, and fillets across it."""
-    case, links = solved.told(name).case, records(name)
+    case, links = solved.by_hand(name).case, records(name)
     for link, mass in part_masses(case).items():
         volume = 0.0
         for plate in links[link]["plates"]:
@@ -101,7 +101,7 @@ def test_bodies_have_the_volume_of_their_parts_and_are_closed(name):
 
 @pytest.mark.parametrize("name", ["owl-wing-static", "owl-wing-closed"])
 def test_bodies_stand_at_the_heights_of_their_layers(name):
-    case, links = solved.told(name).case, records(name)
+    case, links = solved.by_hand(name).case, records(name)
     assert case.layered
     for link in case.checked_links:
         found = [z for p in links[link]["plates"] for _, low, high in p["walls"] for z in (low, high)]
@@ -112,7 +112,7 @@ def test_bodies_stand_at_the_heights_of_their_layers(name):
             for side in (-1, 1)
         ]
         assert (min(found), max(found)) == pytest.approx(slab(case, link)), link
-    pins = check_linkage(solved.told(name))["pins"]
+    pins = check_linkage(solved.by_hand(name))["pins"]
     for pin in pins:
         faces = [z for joint in pin["names"] for link in case.joints[joint].links for z in slab(case, link)]
         assert (pin["low"], pin["high"]) == pytest.approx((min(faces), max(faces)))
@@ -133,7 +133,7 @@ def test_both_plates_of_a_pair_are_pulled_to_either_side_of_what_lies_between():
     single = {plate["rank"] for link in links.values() if len(link["plates"]) == 1 for plate in link["plates"]}
     assert len(pairs) == 2
     assert all(low < rank < high for low, high in pairs for rank in single)
-    assert check_linkage(solved.told("knee"))["apart"]["first"] == 0.0  # they lie on both sides as built
+    assert check_linkage(solved.by_hand("knee"))["apart"]["first"] == 0.0  # they lie on both sides as built
 
 
 def test_without_layers_links_that_share_a_joint_are_drawn_apart():
@@ -149,12 +149,12 @@ def test_without_layers_links_that_share_a_joint_are_drawn_apart():
 
 @pytest.mark.parametrize("name", MOVING)
 def test_the_record_is_small(name):
-    assert len(data_block(check_linkage(solved.told(name)))) < 60_000
+    assert len(data_block(check_linkage(solved.by_hand(name)))) < 60_000
     assert len(data_block(motion_linkage(solve_case_motion(read_case(name))))) < 100_000
 
 
 def test_colours_are_the_use_of_strength_up_to_the_limit_of_the_check():
-    result = solved.told("four-bar-synthesis")
+    result = solved.by_hand("four-bar-synthesis")
     [values] = check_linkage(result)["values"]
     [case] = result.load_cases.values()
     for link, found in case.links.items():
