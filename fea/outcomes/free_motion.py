@@ -19,7 +19,7 @@ and the hole lets the point move by the least of
 of which f = 0, -R1 and R2 are tried: exact where both forces lie on one line, else a little more.
 """
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -101,7 +101,7 @@ def free_motion(case: Case, frame: LinkageFrame, link: str, point: str) -> FreeM
     FreeMotion
     """
     node = frame.points[link, point]
-    at_rims = [rim_forces(case, frame, (NodeLoad(node=node, wrench=unit),)) for unit in np.eye(6)[:3]]
+    at_rims = rim_forces(case, frame, [NodeLoad(node=node, wrench=unit) for unit in np.eye(6)[:3]])
     groups = [(name, group) for name in case.joints for group in loose_holes(case, name)]
     shape = (len(groups), max((len(group) for _, group in groups), default=0), 2)
     axes, across = np.zeros((*shape, 2), dtype=complex), np.zeros((*shape, 2))
@@ -136,8 +136,8 @@ def unknown_lengths(case: Case) -> tuple[Reason, ...]:
     return (reason("holes_as_long_as_shortest", links=unknown, length=shortest(case)),)
 
 
-def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> Mapping[tuple[str, str], Real]:
-    """Return the forces on the rims of every hole with play, under loads and nothing else.
+def rim_forces(case: Case, frame: LinkageFrame, loads: Sequence[NodeLoad]) -> list[dict[tuple[str, str], Real]]:
+    """Return the forces on the rims of every hole with play, under each of some loads and nothing else.
 
     Parameters
     ----------
@@ -145,23 +145,25 @@ def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> 
         With play.
     frame : LinkageFrame
         Of the linkage, held by its drive.
-    loads : tuple of NodeLoad
+    loads : sequence of NodeLoad
 
     Returns
     -------
-    mapping of (str, str) to ndarray
-        (joint, link) -> (rims, 2) along x and y [N].
+    list of dict of (str, str) to ndarray
+        Of each load, (joint, link) -> (rims, 2) along x and y [N].
     """
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
-    solved = solve_frame(replace(frame.model, elements=bare, loads=loads))
-    joints = frame.reactions(solved.joint_wrenches, solved.residual).joints
-    found = {}
-    for name in case.joints:
-        for link, _ in (hole for group in loose_holes(case, name) for hole in group):
+    holes = [(name, link) for name in case.joints for group in loose_holes(case, name) for link, _ in group]
+    rims = {hole: rims_of(case, *hole) for hole in holes}
+    found = []
+    for load in loads:
+        solved = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
+        joints = frame.reactions(solved.joint_wrenches, solved.residual).joints
+        found.append(dict[tuple[str, str], Real]())
+        for (name, link), (low, high) in rims.items():
             wrench = joints[name].wrench
             if link == case.joints[name].links[0]:
                 wrench = shifted(-wrench, np.array([0.0, 0.0, case.linkage.rise(name)]))
-            low, high = rims_of(case, name, link)
             force, turned = wrench[:2], np.array([wrench[4], -wrench[3]])  # the sum of z R over both rims
-            found[name, link] = np.array([high * force - turned, turned - low * force]) / (high - low)
+            found[-1][name, link] = np.array([high * force - turned, turned - low * force]) / (high - low)
     return found

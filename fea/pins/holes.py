@@ -12,6 +12,7 @@ structural modification by the force method).
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,8 +140,6 @@ class RimFrame:
         These natural forces with tight pins.
     by_rims : ndarray, shape (r, 4 h)
         The same by the variables.
-    beam_ends : BeamEnds
-        Of all pins, and links with a beam.
     K : ndarray, shape (4 h, 4 h)
         Stiffness [N/mm].
     g : ndarray, shape (4 h,)
@@ -155,9 +154,13 @@ class RimFrame:
     couples: Real
     tight: Real
     by_rims: Real
-    beam_ends: BeamEnds
     K: Real
     g: Real
+
+    @cached_property
+    def beam_ends(self) -> BeamEnds:
+        """Of all pins, and links with a beam."""
+        return _beam_ends(self.frame, self.solved, self.opened)
 
     @property
     def noise(self) -> float:
@@ -210,7 +213,6 @@ class RimFrame:
             couples=_couples(frame),
             tight=tight,
             by_rims=by_rims,
-            beam_ends=_beam_ends(frame, solved, opened),
             K=(K + K.T) / 2.0,
             g=opening.T @ tight,
         )
