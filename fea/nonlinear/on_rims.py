@@ -443,9 +443,14 @@ def rim_factors(pins: PinStates) -> RimFactors:
     -------
     RimFactors
     """
-    first, *others = pins.tangents
-    stopped, *small = pins.reaches <= LARGE * span(pins.rims.frame.pose)
-    wide = [first, *(one for one, held in zip(others, small, strict=True) if not held)]
+    small = LARGE * span(pins.rims.frame.pose)
+    if pins.reaches(pins.radii.largest)[0] <= small:  # nor does any other state count: none is sought
+        first, stopped = pins.tangent(pins.radii.value, pins.value), True
+        wide = [first]
+    else:
+        first, *others = pins.tangents
+        stopped, *held = pins.reaches(pins.standing[0]) <= small
+        wide = [first, *(one for one, still in zip(others, held, strict=True) if not still)]
     coarse = divided(pins, COARSE_SUBDIVISIONS)
     found = list[float]()
     for one in wide:  # what is no less than the least so far is not told

@@ -250,6 +250,15 @@ class Radii:
             found += [0.5] if len(one.holes) == 2 else []
         return np.array([*found, *(0.5 for one in self.heads if one.high > one.low)])
 
+    @property
+    def largest(self) -> Real:
+        """(1, 2 h + f) what no disc's radius exceeds: of a clearance that two holes share, all of it in each [mm]."""
+        radii = np.zeros(self.count)
+        for one, numbers in zip(self.clearances, self.numbers, strict=True):
+            radii[list(numbers)] = one.high / 2.0
+        apart = [size for head in self.heads for size in head.high]
+        return np.concatenate([np.repeat(radii, 2), apart])[None]
+
     def of(self, shares: Real) -> tuple[Real, Real]:
         """Return the radii of the discs, and how they change with shares.
 

@@ -130,7 +130,7 @@ class _Discs:
         """A (n, 2 m, 2 m) with the stiffness (n, m + f, 2, 2) of all inner shares."""
         found, count = A.copy(), A.shape[1] // 2
         blocks = found.reshape(len(A), count, 2, count, 2)
-        free = np.setdiff1d(np.arange(count), self.ties)
+        free = np.setdiff1d(np.arange(count), self.ties) if len(self.ties) else np.arange(count)
         blocks[:, free, :, free] += own[:, free].swapaxes(0, 1)
         for k, (i, j) in enumerate(self.ties):
             both, half = own[:, i] + own[:, j], self.half[:, k, None, None]

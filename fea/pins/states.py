@@ -175,12 +175,21 @@ class PinStates:
         shares, states = self._told
         return self.radii.of(np.vstack([self.radii.value, shares]))[0], np.vstack([self.value, states])
 
-    @property
-    def reaches(self) -> Real:
-        """(n + 1,) how far rims and heads let a point move at most, wherever pins stand, of the same states [mm]."""
+    def reaches(self, radii: Real) -> Real:
+        """Return how far rims and heads let a point move at most, wherever pins stand; it grows with every radius.
+
+        Parameters
+        ----------
+        radii : ndarray, shape (n, d)
+            Of all discs [mm].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [mm]
+        """
         moved = self.rims.solved.displacements(self.rims.opened)[:, :3]
         by_rims, holes = moved.reshape(*moved.shape[:2], -1, 2, 2), len(self.rims.holes)
-        radii, _ = self.standing
         radius, between = radii[:, : 2 * holes : 2], self.radii.ties[:, 0] // 2
         apart = np.full(radius.shape, 2.0)
         apart[:, between] = radii[:, 2 * holes :] / np.maximum(radius[:, between], LEAST_RADIUS)

@@ -222,7 +222,7 @@ def test_heads_bound_how_far_the_end_of_a_lever_on_a_stub_moves():
         data["joints"]["O"] |= heads
         pins = forces_of(checked(data)).pins
         assert pins is not None
-        found.append(float(pins.reaches[0]))
+        found.append(float(pins.reaches(pins.radii.largest)[0]))
     assert found[0] == pytest.approx(math.hypot(60.0 * 0.12 / 4.0, 0.06), rel=0.1)
     assert found[1] == pytest.approx(60.0 * 0.04 / 8.0, rel=0.1)
     drawn = furthest_drawn(pins)

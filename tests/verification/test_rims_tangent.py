@@ -178,13 +178,13 @@ def test_pins_within_their_rims_move_points_no_further_than_told():
         np.linalg.norm(pins.answer(radii * at.ravel()).displacements[:, :3] - tight, axis=1).max()
         for at in np.stack([np.cos(turns), np.sin(turns)], axis=2)
     ]
-    assert pins.reaches[0] / 2.0 < max(moved) <= pins.reaches[0]
+    assert pins.reaches(pins.radii.largest)[0] / 2.0 < max(moved) <= pins.reaches(pins.radii.largest)[0]
 
 
 @pytest.mark.parametrize(("share", "holds"), [(0.99, True), (1.01, False)])
 def test_a_lean_counts_where_it_may_be_a_large_displacement(share, holds):
     pins = pins_of(loaded(PLA, ["0 N", "-5 N"]))
-    limit = LARGE * span(pins.rims.frame.pose) / with_clearance(pins, 1.0).reaches[0]
+    limit = LARGE * span(pins.rims.frame.pose) / pins.reaches(with_clearance(pins, 1.0).radii.largest)[0]
     pins = with_clearance(pins, share * limit)
     assert divided(pins, COARSE_SUBDIVISIONS).extended(pins.tangents[0]).factor() == 0.0
     found = rim_factors(pins)
@@ -218,3 +218,24 @@ def test_the_linkage_is_told_with_pins_in_their_holes(clearance):
     assert found.value.low < factor
     assert found.value.high >= tight
     assert f"becomes unstable at {factor:.3g} times its load" in told(found.reason)
+
+
+def test_no_state_is_sought_where_none_of_any_clearance_moves_points_far(monkeypatch):
+    """The bound of the largest radii is above that of every state, and factors are those with a search."""
+    pins = pins_of(loaded(PLA, ["0 N", "-5 N"]))
+    shares = np.random.default_rng(2).uniform(size=(50, len(pins.radii.value)))
+    [most] = pins.reaches(pins.radii.largest)
+    assert 0.0 < pins.reaches(pins.radii.of(shares)[0]).max() <= most
+    limit = LARGE * span(pins.rims.frame.pose) / most
+    small = replace(pins, radii=scaled(pins.radii, 0.99 * limit))
+    searched = rim_factors(replace(small))
+    monkeypatch.setattr(PinStates, "extremes", property(lambda self: pytest.fail("sought")))
+    assert rim_factors(replace(small)) == searched
+    with pytest.raises(pytest.fail.Exception, match="sought"):
+        rim_factors(replace(pins, radii=scaled(pins.radii, 1.01 * limit)))
+
+
+def scaled(radii, factor):
+    """The same with all clearances times a factor."""
+    own = ((one, {end: factor * getattr(one, end) for end in ("low", "value", "high")}) for one in radii.clearances)
+    return replace(radii, clearances=tuple(replace(one, **ends) for one, ends in own))
