@@ -8,6 +8,7 @@ modulus has none.
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from alula.fea.common.band import Band
@@ -122,6 +123,26 @@ def load_scatter(case: Case, load_case: str) -> Scatter:
         return Scatter()
     source = Source(kind=SourceKind.LOAD, detail=reason("range_of_shares", low=low, high=high))
     return Scatter(low=low, high=high, sources=(source,))
+
+
+def load_over_modulus(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
+    """Return the least and the largest load over modulus, over what it is.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+    links : iterable of str
+        Whose moduli count.
+
+    Returns
+    -------
+    tuple of 2 float
+    """
+    load, soft = load_scatter(case, load_case), [compliance_scatter(case.material_of(link)) for link in links]
+    low = load.low * min((s.low for s in soft), default=1.0)
+    high = load.high * max((s.high for s in soft), default=1.0)
+    return low, high
 
 
 def strength_scatter(material: Material) -> Scatter:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads, Plates
-from alula.fea.common.scatter import Scatter
+from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import COUPLES, Source
-from alula.fea.doubts.load_growth import Growths, slack, telling
+from alula.fea.doubts.load_growth import Growths, telling
 from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -182,7 +182,7 @@ def rim_doubt(
     """
     if moved.pins is None or moved.state not in ("small", "deformed") or not forces.sharings:
         return Growths()
-    found = rim_growth(moved.pins, slack(case, load_case, case.checked_links)[1])
+    found = rim_growth(moved.pins, load_over_modulus(case, load_case, case.checked_links)[1])
     stress = dict[str, Scatter]()
     for link, one in telling(found.links).items():
         if links is None or link in links:

@@ -10,13 +10,13 @@ which bounds it as well where no deformed shape was found.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
@@ -153,7 +153,7 @@ def growths(
     -------
     Growths
     """
-    low, high = slack(case, load_case, hands)
+    low, high = load_over_modulus(case, load_case, hands)
     plain = by_hand_numbers(hands, moved.reactions or reactions)
     stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     found = Growths()
@@ -196,7 +196,7 @@ def beyond_undeformed(
     Growths
         With upper ends that are infinite where the linkage gives way.
     """
-    high, plain = slack(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
+    high, plain = load_over_modulus(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
     stated = _Stated(case=case, load_case=load_case, loads=loads, reactions=reactions)
     if moved.state == "small":
         return stated.of_small(moved, plain, high)
@@ -220,26 +220,6 @@ def beyond_undeformed(
             }
         )
     return _told(found)
-
-
-def slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
-    """Return the least and the largest load over modulus, over what it is.
-
-    Parameters
-    ----------
-    case : Case
-    load_case : str
-    links : iterable of str
-        Whose moduli count.
-
-    Returns
-    -------
-    tuple of 2 float
-    """
-    load, soft = load_scatter(case, load_case), [compliance_scatter(case.material_of(link)) for link in links]
-    low = load.low * min((s.low for s in soft), default=1.0)
-    high = load.high * max((s.high for s in soft), default=1.0)
-    return low, high
 
 
 def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:

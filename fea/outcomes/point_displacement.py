@@ -17,10 +17,9 @@ from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
-from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from alula.fea.common.scatter import Scatter, compliance_scatter, load_over_modulus, load_scatter
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
-from alula.fea.doubts.load_growth import slack
 from alula.fea.frame.displacement_band import OneModulus, point_bounds
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.rim_growth import Farther, rim_growth
@@ -221,7 +220,7 @@ class PointDisplacement(LoadedLinkage):
         between = self.forces is not None and self.forces.sharings
         if not between or moved.pins is None or moved.frame is None or moved.state not in ("small", "deformed"):
             return 0, None
-        found = rim_growth(moved.pins, slack(case, self.load_case, case.checked_links)[1]).farther
+        found = rim_growth(moved.pins, load_over_modulus(case, self.load_case, case.checked_links)[1]).farther
         return moved.frame.points[self.link, self.point], found
 
     @cached_property
