@@ -55,8 +55,8 @@ CAUTION = 1.25
 LEAST_RATIO = 1.1
 """Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
 FINER = 3
-"""Times at most that such a finer one is made: its edges are then a quarter as long. Six elements on a turn bind that long
-round thin walls."""
+"""Times at most that such a finer mesh is made: edges are then a quarter as long. Until then six elements on a turn
+bind them round thin walls."""
 IDLE = 1e-9
 """Share of the largest force of a link's pins below which a pin does not press: rounding makes no plug of its hole."""
 SAME = 1e-6
