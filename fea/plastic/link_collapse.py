@@ -54,6 +54,9 @@ CAUTION = 1.25
 """On the difference that the order leaves, as Roache's for a grid convergence index."""
 LEAST_RATIO = 1.1
 """Of the two meshes' mean sizes; below it least sizes made them alike, as of long tubes, and a finer one is made."""
+FINER = 3
+"""Times at most that such a finer mesh is made: edges are then a quarter as long. Until then six elements on a turn
+bind them round thin walls."""
 IDLE = 1e-9
 """Share of the largest force of a link's pins below which a pin does not press: rounding makes no plug of its hole."""
 SAME = 1e-6
@@ -249,15 +252,7 @@ def collapse_of(
         held = _Held.of(space, law, load, threads, until, contact)
         return held, follow(held.problem, largest_strain=largest_strain, like=like)
 
-    fine, coarse = space_of(1.0), space_of(COARSER)
-    if _ratio(fine, coarse) < LEAST_RATIO:
-        fine, coarse = space_of(1.0 / COARSER), fine
-    ratio = _ratio(fine, coarse)
-    if ratio < LEAST_RATIO:
-        raise CannotRunError(
-            "meshes of the link are alike whatever size is asked for, so that their error is not known; halve "
-            "solid.mesh_size"
-        )
+    fine, coarse = _two_meshes(space_of)
     each = tractions_of(fine).variants(pose, (WIDE,), transfers)
     found = [(variant, *path(fine, variant.load)) for variant in each]
     variant, held, worst = min(found, key=lambda one: one[2].factor)
@@ -356,6 +351,21 @@ def _pressing(tractions: LinkTractions, pose: LinkLoads) -> list[PinPressure]:
     found = [one for one in tractions.loads if isinstance(one, PinPressure)]
     forces = [float(np.linalg.norm(one.wrench(pose)[0, :2])) for one in found]
     return [one for one, force in zip(found, forces, strict=True) if force > IDLE * max(forces)]
+
+
+def _two_meshes(space_of: Callable[[float], DisplacementSpace]) -> tuple[DisplacementSpace, DisplacementSpace]:
+    """Return a finer and a coarser mesh; raises ``CannotRunError`` where all are alike."""
+    fine, coarse = space_of(1.0), space_of(COARSER)
+    for power in range(1, FINER + 1):
+        if _ratio(fine, coarse) >= LEAST_RATIO:
+            break
+        fine, coarse = space_of(COARSER**-power), fine
+    if _ratio(fine, coarse) < LEAST_RATIO:
+        raise CannotRunError(
+            "meshes of the link are alike whatever size is asked for, so that their error is not known; halve "
+            "solid.mesh_size"
+        )
+    return fine, coarse
 
 
 def _ratio(fine: DisplacementSpace, coarse: DisplacementSpace) -> float:

@@ -386,7 +386,8 @@ def follow(load: ProportionalLoad, *, largest_strain: float = math.inf, like: Lo
                 high=max(above.factor, below.factor),
                 unloaded=unloaded,
             )
-        ends = rise <= FLAT * state.factor if like is None else control >= 0.99 * like.last.control
+        levels = rise <= FLAT * state.factor and not load.body.law.hardens_beyond(state.plastic_strain, FLAT)
+        ends = levels if like is None else control >= 0.99 * like.last.control
         if ends:
             return LoadPath(
                 states=tuple(states),

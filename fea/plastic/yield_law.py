@@ -77,6 +77,21 @@ class YieldLaw:
         """
         return np.asarray(np.interp(strain, *self._curve))
 
+    def hardens_beyond(self, strain: float, share: float) -> bool:
+        """Return whether the yield stress still rises by more than a share of it, as behind a plateau.
+
+        Parameters
+        ----------
+        strain : float
+            Equivalent plastic strain.
+        share : float
+
+        Returns
+        -------
+        bool
+        """
+        return bool(self._curve[1][-1] > (1.0 + share) * self.yield_stress(np.array(strain)))
+
     def _slope(self, strain: Real) -> Real:
         at, stress = self._curve
         number = np.clip(np.searchsorted(at, strain, side="right") - 1, 0, len(at) - 2)

@@ -348,10 +348,10 @@ def _moved(data: Mapping[str, Any], pose: PoseSpec, values: Real, at: float) -> 
     stated = data.get("motion", {})
     others = [key for key in stated if key not in OF_MOTION] if isinstance(stated, dict) else []
     if others:
-        raise CaseError(
-            f"motion.{printable(str(others[0]))}: the table of the cycle says how the linkage moves; leave it out, or "
-            "remove [cycle]"
-        )
+        why = "the table of the cycle says how the linkage moves"
+        if others[0] in {"instant_centre", "against"}:
+            why = "an instant centre is told over one way of a motion, and not there and back over a cycle"
+        raise CaseError(f"motion.{printable(str(others[0]))}: {why}; leave it out, or remove [cycle]")
     if isinstance(stated, dict) and stated.get("coordinate", pose.coordinate) != pose.coordinate:
         raise CaseError(
             f"motion.coordinate: the cycle moves the coordinate of the pose, '{pose.coordinate}'; leave it out, or "

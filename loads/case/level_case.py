@@ -238,3 +238,8 @@ def level_caveats(case: CoreCase) -> Iterator[Caveat]:
     if test.hold is not None:
         what = reason("held_for", duration=test.hold)
         yield Caveat(topic=Topic.CREEP, what=what, why=reason("cards_tell_long_loads"))
+    cards = dict.fromkeys(case.part_of(link).material for link in case.checked_links) if test.lasts else {}
+    lines = {name: case.all_materials[name].fatigue for name in cards}
+    if without := tuple(name for name, line in lines.items() if line is not None and line.strength_range is None):
+        what = reason("scatter_of_fatigue_strength", materials=without)
+        yield Caveat(topic=Topic.FATIGUE, what=what, why=reason("no_range_and_no_factor"))

@@ -14,7 +14,7 @@ from alula.reports.sections.section import Group, Items, Part, Section, Text, sa
 from alula.reports.sections.table import Column, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import by_heading, not_checked
-from alula.reports.words.numbers import joined, sentence
+from alula.reports.words.numbers import joined, plain, sentence
 
 _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
 _PROPERTIES = (
@@ -116,17 +116,19 @@ def materials_section(result: CheckResult) -> Section:
     for name in result.case.checked_links:
         used.setdefault(result.case.part_of(name).material, []).append(name)
     cards = {name: result.case.all_materials[name] for name in used}
+    level = result.case.level
+    repeated = asks(result.case, FatigueCheck) or (level is not None and any(one.lasts for one in level.tests.values()))
     return Section(
         key="materials",
         title="Materials",
         short="Materials",
-        parts=tuple(_material(name, card, used[name]) for name, card in cards.items()),
+        parts=tuple(_material(name, card, used[name], repeated=repeated) for name, card in cards.items()),
         data={"materials": {name: entries(card, _MATERIAL) for name, card in cards.items()}},
         not_covered=(("Manufacture and scatter", _scatter(result, list(used))),),
     )
 
 
-def _material(name: str, material: Material, links: list[str]) -> Group:
+def _material(name: str, material: Material, links: list[str], *, repeated: bool) -> Group:
     factor = "yield strength over von Mises stress (ductile)"
     if material.brittle:
         factor = "ultimate strength over the largest principal stress (brittle)"
@@ -141,6 +143,10 @@ def _material(name: str, material: Material, links: list[str]) -> Group:
         for value in [getattr(material, key)]
         if value is not None
     )
+    if repeated and (line := material.fatigue) is not None:
+        title = f"fatigue strength, {line.cycles:g} cycles of stress ratio {plain(line.stress_ratio)}"
+        strength = Number(line.stress, "MPa", stated=True, derived=True)
+        rows += ((title, strength, material.status.get("fatigue", "not stated"), line.source),)
     columns = (words("property"), Column("value"), words("status"), words("source", wraps=True))
     table = Table(key="materials", columns=columns, rows=rows, under=(("material", name),), kind="keep")
     return Group(

@@ -77,7 +77,9 @@ def scatter_of(material: Material) -> str:
     if fatigue.strength_range is not None:
         low, high = fatigue.strength_range
         return f"bands hold the scatter of the material card, {low:g} to {high:g} MPa at {fatigue.cycles:g} cycles"
-    asked = f"the required factors, {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life by default, must cover it"
+    asked = (
+        f"the factor asked for must cover it, {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life if none is stated"
+    )
     if fatigue.exponent is None:
         return f"the material card states one point of the S-N curve and no scatter; {asked}"
     return (

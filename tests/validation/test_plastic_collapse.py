@@ -134,9 +134,10 @@ def test_the_factor_goes_with_the_yield_stress_and_not_with_the_modulus():
     assert other.factor == pytest.approx(2.0 * one.factor, rel=1e-6)
 
 
-def test_a_hardening_tie_ends_at_its_largest_strain():
-    """σ at 5 % is 1.5 times that at yield: a bar in tension bears it, and no more is known."""
-    path = follow(loaded(eighth_in_tension(), law(hardening=((0.05, 1.5),))), largest_strain=0.05)
+@pytest.mark.parametrize("plateau", [(), ((0.02, 1.0),)])
+def test_a_hardening_tie_ends_at_its_largest_strain(plateau):
+    """σ at 5 % is 1.5 times that at yield: a bar in tension bears it, and no more. A plateau does not end it."""
+    path = follow(loaded(eighth_in_tension(), law(hardening=(*plateau, (0.05, 1.5)))), largest_strain=0.05)
     assert path.ended == "strain"
     assert path.factor == pytest.approx(1.5 * YIELD, rel=0.02)
     assert path.low <= 1.5 * YIELD <= path.high

@@ -90,7 +90,7 @@ def test_it_is_told_with_the_reason_rounded_to_what_still_does():
     assert said.endswith("; it would fail with a range of the strength of at most 1.33 times its value")
     said = told(outcome(made(3.0, calibration=(0.5, 2.0), couples=(0.9, 1.25))).reason)
     assert said.endswith(
-        "its solid (--fidelity solid) alone would decide it, unless it tells 1.6 to 2.22 with all else as stated"
+        "its solid (--fidelity solid) alone would decide it, unless it comes out at 1.6 to 2.22, all else as stated"
     )
     said = told(outcome(made(3.0, calibration=(0.5, 2.0), couples=(0.5, 1.25))).reason)
     assert "none of the causes of its band is known to decide it alone; the widest are calibration" in said

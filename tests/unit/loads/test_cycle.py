@@ -293,6 +293,7 @@ def test_points_of_a_load_line_may_be_columns(tmp_path):
         ((), {"instant": "97 %", "periodic": False}, "cycle.instant: 97 % is not in the table, from 0 to 95 %"),
         ((), {"speed": "1"}, r"cycle\.speed: this key is unknown"),
         ((), {"motion": {"range": ["0 deg", "9 deg"]}}, r"motion\.range: the table of the cycle says how"),
+        ((), {"motion": {"instant_centre": "coupler"}}, r"motion\.instant_centre: an instant centre"),
         ((), {"motion": {"coordinate": "rear"}}, r"motion\.coordinate: the cycle moves .* 'thigh'"),
     ],
 )  # fmt: skip

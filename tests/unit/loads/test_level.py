@@ -52,6 +52,8 @@ def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
     assert (case.conditions.cycles, case.conditions.reverses, case.conditions.temperature) == (1e6, False, 20.0)
     assert {name: check.type for name, check in case.checks.items()} == {"lasts": "fatigue"}
     assert case.checks["lasts"].minimum == 1.0
+    [told] = level_caveats(case)  # the card has a typical strength, and the limit 1 covers nothing
+    assert caveat(told).startswith("scatter of the fatigue strength of aluminium-6061-t6 (no strength_range")
     stated["level"]["test"] = "proof"
     case = validate(stated)
     assert case.conditions.cycles is None

@@ -77,6 +77,9 @@ def test_what_the_numbers_stand_on_comes_first_and_says_of_which_test_it_is(word
         "Assumed (proof) Steps of 200 N",
     ):
         assert text in first
+    materials = words[places[1] : places[2]]
+    assert "fatigue strength, 5e+08 cycles of stress ratio −1 96.5 MPa not stated Aluminum Association" in materials
+    assert "Scatter of the fatigue strength of aluminium-6061-t6 (no strength_range" in first
     tests = words[places[3] : places[4]]
     assert "Source of its numbers: invented round numbers, of no standard." in tests
     assert "Source of its numbers: invented as well." in tests
