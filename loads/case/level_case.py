@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_rules import check_check
@@ -18,6 +18,7 @@ from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.stated.level_spec import LevelSpec, LoadState
 from alula.loads.text.caveat import Caveat, Heading, Topic
+from alula.loads.text.explain import sentence
 from alula.loads.text.reason import reason
 
 AnyCase = TypeVar("AnyCase", bound=CoreCase)
@@ -91,7 +92,10 @@ def _at_state(level: LevelSpec, name: str, state: LoadState) -> LoadCase:
     title = test.title or f"Test {name} of {level.title}"
     if state.time is not None:
         title += f": {state.name}, {state.time:.4g} s, tilted by {math.degrees(state.tilt):.4g}°"
-    return LoadCase.model_validate({"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line]})
+    try:
+        return LoadCase.model_validate({"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line]})
+    except ValidationError as error:
+        raise CaseError(f"level.tests.{name}, {state.name}: {sentence(error, LoadCase)}") from None
 
 
 def over_states(case: AnyCase) -> AnyCase:
