@@ -47,8 +47,8 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
     -------
     dict of str to object
         Of the chosen test its load case and conditions, and no checks: ``demanded`` has them once all names fit. With a
-        profile, a load case for each of its states that loads. Where no test is chosen, the load cases of all tests, if
-        the case states none.
+        profile, a load case for each of its states that loads. Tolerances of the load cases that it stands in place of
+        go with them. Where no test is chosen, the load cases of all tests, if the case states none.
     """
     level = case.level
     assert level is not None
@@ -65,8 +65,11 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
         if test.blocks:
             shares = tuple(state.force / test.decisive.most for state in test.states)
             load_cases[level.test] = load_cases[level.test].over(blocks=test.blocks, shares=shares)
+    gone = {f"load_cases.{name}" for name in {*case.load_cases, *level.tests} - load_cases.keys()}
+    varied = {path: one for path, one in case.tolerances.items() if ".".join(path.split(".")[:2]) not in gone}
     return {
         "load_cases": load_cases,
+        "tolerances": varied,
         "conditions": case.conditions.model_copy(update=kept),
         "checks": {},
         "ways_to_hold": None,

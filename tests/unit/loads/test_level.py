@@ -45,9 +45,13 @@ def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
         checks={"stiff": {"type": "displacement", "at": "T", "maximum": "1 mm"}},
         conditions={"cycles": 10, "reverses": True, "temperature": "20 degC"},
         ways_to_hold={"link": "pylon", "at": "T", "load_case": "push"},
+        tolerances={f"load_cases.{name}": "5 %" for name in ("push", "cyclic")} | {"parts.tube.outer_diameter": "1 mm"},
     )
     case = validate(stated)
     assert list(case.load_cases) == ["cyclic"]
+    assert list(case.tolerances) == ["load_cases.cyclic", "parts.tube.outer_diameter"]
+    with pytest.raises(CaseError, match="'pull' is no load case; choose one of cyclic"):
+        validate(stated | {"tolerances": {"load_cases.pull": "5 %"}})
     assert case.repeated("cyclic") == ((pytest.approx(0.1), 1.0), (Block((0, 1), 1.0),))
     assert (case.conditions.cycles, case.conditions.reverses, case.conditions.temperature) == (1e6, False, 20.0)
     assert {name: check.type for name, check in case.checks.items()} == {"lasts": "fatigue"}
