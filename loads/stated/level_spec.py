@@ -116,7 +116,9 @@ _TIME, _FORCE, _TILT = "time", "force", "tilt"
 
 def _profile_rows(step: LevelStep, info: ValidationInfo) -> tuple[LoadState, ...]:
     """Return the rows of the profile that a step names, with its scale."""
-    table = read_number_table((info.context or {}).get("folder", ""), step.profile or "")
+    table = read_number_table(
+        (info.context or {}).get("folder", ""), step.profile or "", "time [ms],force [N],tilt [deg]"
+    )
     for name in (_TIME, _FORCE):
         table.column(name)
     if strange := [name for name in table.units if name not in (_TIME, _FORCE, _TILT)]:

@@ -332,6 +332,8 @@ def test_states_and_blocks_follow_the_steps(order, tmp_path):
     ("changes", "sentence"),
     [
         ({"table": TABLE.replace("time", "cycle")}, "'roll.csv' has no column 'time'"),
+        ({"table": TABLE.partition("\n")[0]}, "it needs a head such as 'time [ms],force [N],tilt [deg]', with columns"),
+        ({"table": ""}, "the file is empty; write a head such as 'time [ms],force [N],tilt [deg]', and rows below"),
         ({"table": TABLE.replace("force", "F")}, "'roll.csv' has no column 'force'"),
         ({"table": TABLE.replace("tilt", "tile")}, "'roll.csv', column tile: a profile has time, force and tilt alone"),
         ({"table": TABLE.replace("[N]", "[mm]")}, "'roll.csv', row 2, column force: "),
