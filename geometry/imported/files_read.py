@@ -20,6 +20,10 @@ def reading_within(*folders: Path) -> Iterator[None]:
     ----------
     *folders : Path
         Links in them are followed.
+
+    Yields
+    ------
+    None
     """
     before = _WITHIN.set(tuple(Path(os.path.realpath(folder)) for folder in folders))
     try:
