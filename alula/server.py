@@ -5,20 +5,20 @@ Name, arguments and text of a tool are those of the function; its answer is what
 """
 
 import inspect
-import os
 import threading
-import tomllib
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
+from pydantic import BaseModel, ValidationError
+
 import alula
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.version import extra_command
-from alula.loads.stated.part_points import named_files
-from alula.loads.text.explain import printable
+from alula.geometry.imported.files_read import reading_within
+from alula.loads.case.case_file import folder_of
+from alula.loads.text.explain import printable, sentence
 
 if TYPE_CHECKING:
     from mcp.server import MCPServer
@@ -93,14 +93,32 @@ def made(folder: Path, threads: int) -> "MCPServer":
     """
     try:
         from mcp.server import MCPServer
+        from mcp.server.mcpserver.exceptions import ToolError
         from mcp_types import ToolAnnotations
     except ImportError:
         raise CannotRunError(f"mcp: the package mcp is not installed; run {extra_command('mcp')}") from None
+
+    class Server(MCPServer):
+        """A server that tells of wrong arguments in one sentence, as of all else."""
+
+        async def call_tool(self, name: str, arguments: dict[str, Any], context: Any = None) -> Any:
+            known = [
+                key for tool in await self.list_tools() if tool.name == name for key in tool.input_schema["properties"]
+            ]
+            if known and (strange := [key for key in arguments if key not in known]):
+                raise ToolError(f"{printable(strange[0])}: {name} has no such argument; it has {', '.join(known)}")
+            try:
+                return await super().call_tool(name, arguments, context)
+            except ToolError as error:
+                if isinstance(error.__cause__, ValidationError):
+                    raise ToolError(sentence(error.__cause__, BaseModel)) from None
+                raise
+
     server, one_at_a_time = (
-        MCPServer("alula", instructions=_ABOUT, version=alula.__version__, log_level="CRITICAL"),
+        Server("alula", instructions=_ABOUT, version=alula.__version__, log_level="CRITICAL"),
         threading.Lock(),
     )
-    home = Path(os.path.realpath(folder))
+    home = folder.absolute()
     for name in TOOLS:
         function = getattr(alula, name)
         server.add_tool(
@@ -129,11 +147,13 @@ def _tool(
         if "threads" in stated:
             arguments["threads"] = threads
         try:
-            with one_at_a_time:  # the mesher knows one model at a time
+            # the mesher knows one model at a time
+            with one_at_a_time, reading_within(home, Path(folder_of(alula.cases()[0]))):
                 if of_case:
-                    arguments["case"] = _case(arguments["case"], arguments.pop("values", None), home)
+                    name, values = arguments["case"], arguments.pop("values", None)
+                    arguments["case"] = alula.read_case(name if name in alula.cases() else home / name, values)
                 elif "path" in stated:
-                    arguments["path"] = _below(arguments["path"], home)
+                    arguments["path"] = home / arguments["path"]
                 return _answer(function(**arguments))
         except AlulaError as error:
             raise ToolError(str(error)) from None
@@ -152,29 +172,6 @@ def _plain(parameter: inspect.Parameter) -> inspect.Parameter:
     if kind is None:
         kind = bool if isinstance(parameter.default, bool) else str if parameter.default else str | None  # type: ignore[assignment]
     return parameter.replace(annotation=kind, kind=inspect.Parameter.KEYWORD_ONLY)
-
-
-def _case(name: str, values: Mapping[str, object] | None, home: Path) -> "alula.Case":
-    """Return a case of the folder or a built-in one; the files that it names lie beside it."""
-    stated = values or {}
-    named = [value for entry, value in stated.items() if entry.rpartition(".")[2] in ("file", "profile")]
-    place: Path | str = name
-    if name not in alula.cases():
-        place = _below(name, home)
-        with suppress(ValueError, OSError):  # ``read_case`` says what is wrong
-            tables = tomllib.loads(place.read_text(encoding="utf-8"))
-            named += [table[key] for _, table, key in named_files(tables)]
-    for file in named:
-        _below(str(file), home if place == name else Path(place).parent, home)
-    return alula.read_case(place, values)
-
-
-def _below(path: str, beside: Path, home: Path | None = None) -> Path:
-    """Return a path beside something; links are followed before it is looked whether it lies below the folder."""
-    found, home = Path(os.path.realpath(beside / path.replace("\0", ""))), home or beside
-    if not found.is_relative_to(home):
-        raise CaseError(f"'{printable(path)}' is not in the folder of this server, which reads no other; copy it there")
-    return found
 
 
 def _answer(report: Any) -> Answer:

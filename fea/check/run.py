@@ -37,6 +37,7 @@ from alula.geometry.keeping.kept import tally
 from alula.geometry.linkage.pose import NEAR_DEAD_POINT
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.loads.case.case import Case
+from alula.loads.text.explain import printable
 from alula.loads.text.shares import parse_accuracy
 
 Watch = Callable[["WatchedLink"], None]
@@ -158,7 +159,7 @@ def check_case(
         Where a stage fails.
     """
     if fidelity not in FIDELITIES:
-        raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
+        raise CaseError(f"fidelity: '{printable(fidelity)}' is unknown; choose one of {', '.join(FIDELITIES)}")
     clock, before = Clock(), tally()
     statics = solve_case_statics(case, name)
     case = statics.case

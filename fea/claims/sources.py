@@ -15,6 +15,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.mechanisms.flapping import FlappingWing
 from alula.loads.case.case_file import built_in_cases, read_case, read_companion
 from alula.loads.sources.claim import Claim, PublishedSource, System, TableSystem, read_source, sources
+from alula.loads.text.explain import printable
 
 _CELLS = {
     "ground_d_mm": ("ground", "", "mm"),
@@ -62,7 +63,7 @@ def check_claims(
         For a name that is neither, and for a claim that cannot be read.
     """
     if fidelity not in FIDELITIES:
-        raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
+        raise CaseError(f"fidelity: '{printable(fidelity)}' is unknown; choose one of {', '.join(FIDELITIES)}")
     overrides = tuple(overrides)
     if overrides and name in sources() and name not in built_in_cases():
         raise CaseError(f"--set: '{name}' is a source document, not a case; name a case to set its entries anew")

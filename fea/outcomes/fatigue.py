@@ -343,13 +343,14 @@ def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()
     cycles, of_block = cycles[order], of_block[order]
     stress = equivalent_peak(cycles, fatigue, material.ultimate_strength)
     repetitions, harm, worst = None, list[float](), float(stress.max(initial=0.0))
-    of_worst = stress / worst if worst > 0.0 else np.zeros_like(stress)
+    of_worst = stress / worst if 0.0 < worst < math.inf else np.zeros_like(stress)
     count = float((cycles[:, 2] * of_worst ** (fatigue.exponent or 0.0)).sum()) or 1.0
     if fatigue.exponent is not None:
-        each = cycles[:, 2] / cycles_to_failure(stress, fatigue)
+        with np.errstate(divide="ignore"):  # stress without end fails at once
+            each = cycles[:, 2] / cycles_to_failure(stress, fatigue)
         damage = float(each.sum())
         repetitions = 1.0 / damage if damage > 0.0 else math.inf
-        harm = np.bincount(of_block, each / damage, len(every)).tolist() if damage > 0.0 else harm
+        harm = np.bincount(of_block, each / damage, len(every)).tolist() if 0.0 < damage < math.inf else harm
     return FatigueLife(
         smallest=float(history.min()),
         largest=float(history.max()),

@@ -1,11 +1,56 @@
-"""Which files are read while a case is read, with the digest of what stood in them."""
+"""Which files are read while a case is read, with the digest of what stood in them, and which may be."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 
+from alula.geometry.base.errors import CaseError
+
 _READING: ContextVar[dict[str, str] | None] = ContextVar("_READING", default=None)
+_WITHIN: ContextVar[tuple[Path, ...]] = ContextVar("_WITHIN", default=())
+
+
+@contextmanager
+def reading_within(*folders: Path) -> Iterator[None]:
+    """Let files be read below some folders alone within the block, whatever names them.
+
+    Parameters
+    ----------
+    *folders : Path
+        Links in them are followed.
+
+    Yields
+    ------
+    None
+    """
+    before = _WITHIN.set(tuple(Path(os.path.realpath(folder)) for folder in folders))
+    try:
+        yield
+    finally:
+        _WITHIN.reset(before)
+
+
+def refuse_elsewhere(path: str | Path) -> None:
+    """Refuse a file that ``reading_within`` does not let be read, before anything of it is looked at.
+
+    Parameters
+    ----------
+    path : str or Path
+        Links are followed.
+
+    Raises
+    ------
+    CaseError
+        For a file outside of the folders.
+    """
+    if not (folders := _WITHIN.get()):
+        return
+    place = Path(os.path.realpath(str(path).replace("\0", "")))
+    if not any(place.is_relative_to(folder) for folder in folders):
+        name = "".join(c if c.isprintable() else "?" for c in str(path))
+        raise CaseError(f"'{name}' is not in the folder of this server, which reads no other; copy it there")
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from typing import Any
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.base.kernel_child import KernelWords, ask_kernel
 from alula.geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
-from alula.geometry.imported.files_read import note_read
+from alula.geometry.imported.files_read import note_read, refuse_elsewhere
 from alula.geometry.keeping.kept import kept
 
 LARGEST_FILE = 200_000_000
@@ -112,6 +112,7 @@ def file_digest(path: Path, *, mesh: bool = False) -> str:
     CaseError
         Where there is no such file, or it is too large, of another format or cut off.
     """
+    refuse_elsewhere(path)
     kind = "mesh file" if mesh else "STEP file"
     try:
         if path.is_dir():

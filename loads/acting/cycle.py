@@ -95,6 +95,11 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
                 "its file"
             )
         return None
+    for name in ("cycle", "pose"):
+        if not isinstance(data.get(name, {}), dict):
+            raise CaseError(
+                f"{name}: it must be a table of entries; write it as [{name}] with one entry per line below"
+            )
     try:
         spec = CycleSpec.model_validate(data["cycle"])
         pose = PoseSpec.model_validate(data.get("pose", {}))

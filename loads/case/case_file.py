@@ -18,7 +18,7 @@ from pydantic import ValidationError
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import BODY_WEIGHT, weight_of
 from alula.geometry.base.version import CASE_SCHEMA_VERSION
-from alula.geometry.imported.files_read import files_read, note_read
+from alula.geometry.imported.files_read import files_read, note_read, refuse_elsewhere
 from alula.loads.acting.cycle import read_cycle
 from alula.loads.case.case import Case
 from alula.loads.stated.level_file import in_level_file, with_level_file
@@ -334,6 +334,7 @@ def read_companion(case_path: str, name: str) -> str:
         raise CaseError(f"'{printable(name)}' must be the plain name of a file beside the case file")
     built_in = case_path in built_in_cases()
     source = files("alula.loads.cases").joinpath(name) if built_in else Path(case_path).parent / name
+    refuse_elsewhere(str(source))
     try:
         if source.is_file() and (built_in or Path(str(source)).stat().st_size <= LARGEST_FILE):
             content = source.read_bytes()

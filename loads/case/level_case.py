@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_rules import check_check
@@ -18,6 +18,7 @@ from alula.loads.records.load_case import LoadCase
 from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.stated.level_spec import LevelSpec, LoadState
 from alula.loads.text.caveat import Caveat, Heading, Topic
+from alula.loads.text.explain import sentence
 from alula.loads.text.reason import reason
 
 AnyCase = TypeVar("AnyCase", bound=CoreCase)
@@ -46,8 +47,8 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
     -------
     dict of str to object
         Of the chosen test its load case and conditions, and no checks: ``demanded`` has them once all names fit. With a
-        profile, a load case for each of its states that loads. Where no test is chosen, the load cases of all tests, if
-        the case states none.
+        profile, a load case for each of its states that loads. Tolerances of the load cases that it stands in place of
+        go with them. Where no test is chosen, the load cases of all tests, if the case states none.
     """
     level = case.level
     assert level is not None
@@ -64,8 +65,11 @@ def with_tests(case: CoreCase) -> dict[str, Any]:
         if test.blocks:
             shares = tuple(state.force / test.decisive.most for state in test.states)
             load_cases[level.test] = load_cases[level.test].over(blocks=test.blocks, shares=shares)
+    gone = {f"load_cases.{name}" for name in {*case.load_cases, *level.tests} - load_cases.keys()}
+    varied = {path: one for path, one in case.tolerances.items() if ".".join(path.split(".")[:2]) not in gone}
     return {
         "load_cases": load_cases,
+        "tolerances": varied,
         "conditions": case.conditions.model_copy(update=kept),
         "checks": {},
         "ways_to_hold": None,
@@ -91,7 +95,10 @@ def _at_state(level: LevelSpec, name: str, state: LoadState) -> LoadCase:
     title = test.title or f"Test {name} of {level.title}"
     if state.time is not None:
         title += f": {state.name}, {state.time:.4g} s, tilted by {math.degrees(state.tilt):.4g}°"
-    return LoadCase.model_validate({"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line]})
+    try:
+        return LoadCase.model_validate({"title": title, "own_weight": False, "speed": "0 rpm", "load_lines": [line]})
+    except ValidationError as error:
+        raise CaseError(f"level.tests.{name}, {state.name}: {sentence(error, LoadCase)}") from None
 
 
 def over_states(case: AnyCase) -> AnyCase:

@@ -41,6 +41,11 @@ def with_level_file(tables: Tables, folder: str, parse: Callable[[str, str], Tab
     level = tables.get("level")
     if not isinstance(level, dict) or not isinstance(level.get("file"), str):
         return tables
+    if "read_from" in level:
+        raise CaseError(
+            "level.file: the case has read its level already, so that a change cannot name another file; write it in "
+            "the case file, which has no read_from"
+        )
     name = level["file"]
     _refuse_path("level.file", name)
     text = file_text(

@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Force, Length, Time, weight_in
+from alula.geometry.base.units import LARGEST, LEAST, NOT_NEGATIVE, POSITIVE, Force, Length, Time, weight_in
 from alula.loads.records.attachment import Attachment
 from alula.loads.records.load_case import Block
 from alula.loads.text.explain import printable
@@ -116,7 +116,9 @@ _TIME, _FORCE, _TILT = "time", "force", "tilt"
 
 def _profile_rows(step: LevelStep, info: ValidationInfo) -> tuple[LoadState, ...]:
     """Return the rows of the profile that a step names, with its scale."""
-    table = read_number_table((info.context or {}).get("folder", ""), step.profile or "")
+    table = read_number_table(
+        (info.context or {}).get("folder", ""), step.profile or "", "time [ms],force [N],tilt [deg]"
+    )
     for name in (_TIME, _FORCE):
         table.column(name)
     if strange := [name for name in table.units if name not in (_TIME, _FORCE, _TILT)]:
@@ -140,7 +142,10 @@ def _profile_rows(step: LevelStep, info: ValidationInfo) -> tuple[LoadState, ...
             raise table.wrong(table.rows[i], column, rule)
     if not forces.any():
         raise CaseError(f"'{table.name}': all its forces are 0, which loads nothing; correct them")
-    every = zip(table.rows, (step.scale or 1.0) * forces, tilts, times - times[0], strict=True)
+    scaled = (step.scale or 1.0) * forces
+    for i in np.flatnonzero((scaled > LARGEST) | ((scaled > 0.0) & (scaled < LEAST)))[:1]:
+        raise table.wrong(table.rows[i], _FORCE, f"with its scale it is {scaled[i]:.3g} N; correct scale or the force")
+    every = zip(table.rows, scaled, tilts, times - times[0], strict=True)
     return tuple(LoadState(f"row {row}", float(f), float(tilt), float(t)) for row, f, tilt, t in every)
 
 
@@ -374,6 +379,10 @@ class LevelSpec(CaseModel):
             raise refusal(
                 f"test '{silent[0]}' does not say where its numbers come from; write source, for the level or for "
                 f"tests.{silent[0]}"
+            )
+        if self.leaves == self.enters:
+            raise refusal(
+                "its forces would enter and leave at one point, so that nothing is left; name another in leaves"
             )
         if self.test is not None and self.test not in self.tests:
             raise refusal(f"test = '{self.test}' is none of its tests; choose one of {', '.join(self.tests)}")

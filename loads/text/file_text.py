@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.imported.files_read import note_read
+from alula.geometry.imported.files_read import note_read, refuse_elsewhere
 from alula.loads.text.explain import printable
 
 LARGEST_FILE = 1 << 20
@@ -35,6 +35,7 @@ def file_text(path: str, what: str, *, missing: str, empty: str, mark: bool = Fa
     CaseError
         For a file that is missing, too large, unreadable, empty or no text.
     """
+    refuse_elsewhere(path)
     file, shown = Path(path), f"{what} '{printable(path)}'"
     try:
         exists = file.is_file()

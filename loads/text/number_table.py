@@ -25,6 +25,7 @@ Real = NDArray[np.float64]
 
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas"}
 MOST_COLUMNS = 1_000
+_HEAD = "cycle [%],Fy [N]"
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -161,7 +162,7 @@ class NumberTable:
         return replace(self, values=values, rows=tuple(self.rows[i] for i in before))
 
 
-def read_number_table(folder: str, file: str) -> NumberTable:
+def read_number_table(folder: str, file: str, head: str = _HEAD) -> NumberTable:
     """Read a table of numbers.
 
     Parameters
@@ -170,6 +171,8 @@ def read_number_table(folder: str, file: str) -> NumberTable:
         That a relative path counts from: the case's.
     file : str
         Path of the CSV file, at most 1 MiB of UTF-8 text, with or without a byte order mark.
+    head : str, optional
+        An example of its first line, for sentences.
 
     Returns
     -------
@@ -187,12 +190,12 @@ def read_number_table(folder: str, file: str) -> NumberTable:
         str(path),
         "table",
         missing="there is no such file; name it relative to the folder of the case file",
-        empty="the file is empty; write a head such as 'cycle [%],Fy [N]', and rows below it",
+        empty=f"the file is empty; write a head such as '{head}', and rows below it",
     )
-    return number_table(text, printable(path.name))
+    return number_table(text, printable(path.name), head)
 
 
-def number_table(text: str, name: str) -> NumberTable:
+def number_table(text: str, name: str, head: str = _HEAD) -> NumberTable:
     """Return the table that the text of a CSV file states.
 
     Lines that begin with # and empty ones are left out.
@@ -202,6 +205,8 @@ def number_table(text: str, name: str) -> NumberTable:
     text : str
     name : str
         What sentences call the file.
+    head : str, optional
+        As for ``read_number_table``.
 
     Returns
     -------
@@ -214,11 +219,11 @@ def number_table(text: str, name: str) -> NumberTable:
     """
     lines = re.split(r"\r\n|\n|\r", text)
     kept = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
-    head = lines[kept[0]] if kept else ""
-    separator = next((sign for sign in SEPARATORS if sign in head), "")
+    first = lines[kept[0]] if kept else ""
+    separator = next((sign for sign in SEPARATORS if sign in first), "")
     if len(kept) < 3 or not separator:
         raise CaseError(
-            f"'{name}': it needs a head such as 'cycle [%],Fy [N]', with columns separated by "
+            f"'{name}': it needs a head such as '{head}', with columns separated by "
             f"{', '.join(SEPARATORS.values())}, and at least two rows below it"
         )
     try:

@@ -149,7 +149,8 @@ def _set_up(result: LevelResult) -> Section:
     picture = Picture(
         name=SET_UP,
         alt="The load lines of all tests about the links, from the side and from the front",
-        caption="Arrows show the force; tests with one load line share a colour.",
+        caption="Arrows show the force; tests with one load line share a colour. Of one that tilts, the ends of its "
+        "way are drawn.",
         draw=lambda: set_up_drawing(result),
     )
     return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table, *about))

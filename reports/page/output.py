@@ -179,9 +179,9 @@ def _refuse_in_the_way(target: Path, command: str, names: Iterable[str]) -> None
     left = _written(target, command)
     for name in sorted({_list_of(command), *names, *(() if command == EXPORT else left)}):
         path = target / name
-        if not _stands_in_folders(target, name):
+        if (above := _no_folder_above(target, name)) is not None:
             raise CaseError(
-                f"output: '{path.parent}' must be a folder, but is something else; rename it or choose another "
+                f"output: '{above}' must be a folder, but is something else; rename it or choose another "
                 "folder for the output"
             )
         if os.path.lexists(path) and not (name in left and _is(path, left[name])):
@@ -235,11 +235,11 @@ def _take_back(target: Path, work: Path) -> None:
     except (ValueError, LookupError, TypeError):  # half a list, and nothing was moved
         entering = {}
     for name in reversed(_mark_last(entering)):
-        stands = _stands_in_folders(target, name) and _stands_in_folders(new, name)
+        stands = all(_no_folder_above(folder, name) is None for folder in (target, new))
         if stands and not os.path.lexists(new / name) and _is(target / name, entering[name]):
             _move(target / name, new / name)
     for name in _mark_last(path.relative_to(old).as_posix() for path in old.rglob("*") if _is(path)):
-        if _stands_in_folders(target, name) and not os.path.lexists(target / name):
+        if _no_folder_above(target, name) is None and not os.path.lexists(target / name):
             _move(old / name, target / name)
     (work / _LIST).unlink()
     _remove_empty(target, entering)
@@ -301,10 +301,10 @@ def _digest(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def _stands_in_folders(target: Path, name: str) -> bool:
-    """Return True if what the name has above it in the target are folders, no links, or not there yet."""
-    above = [target / part for part in PurePosixPath(name).parents][:-1]
-    return all(not folder.is_symlink() and (folder.is_dir() or not folder.exists()) for folder in above)
+def _no_folder_above(target: Path, name: str) -> Path | None:
+    """Return the outermost of what the name has above it in the target that is there and is no folder, or a link."""
+    above = (target / part for part in reversed(PurePosixPath(name).parents[:-1]))
+    return next((one for one in above if one.is_symlink() or (one.exists() and not one.is_dir())), None)
 
 
 def _move(source: Path, to: Path) -> None:
@@ -315,7 +315,7 @@ def _move(source: Path, to: Path) -> None:
 def _remove_empty(target: Path, names: Iterable[str]) -> None:
     """Remove the subfolders that nothing is left in, of those that held these files."""
     for folder in sorted({above for name in names for above in PurePosixPath(name).parents}, reverse=True):
-        if folder != PurePosixPath() and _stands_in_folders(target, str(folder)):
+        if folder != PurePosixPath() and _no_folder_above(target, str(folder)) is None:
             with contextlib.suppress(OSError):  # something is left in it, or it is gone
                 (target / folder).rmdir()
 

@@ -26,3 +26,7 @@ def test_it_prints_on_few_sheets_and_each_says_of_what(browser, tmp_path):
     assert "Calculated by" in last
     assert sections[-1].data["provenance"]["sources"] in last
     assert browser.messages() == []
+    browser.command("Emulation.setEmulatedMedia", media="print")
+    wide = browser.run("return document.querySelector('#set-up :is(img, svg)').getBoundingClientRect().width")
+    browser.command("Emulation.setEmulatedMedia", media="")
+    assert wide >= 450.0  # of 710 pixels on the screen, so that its letters stay legible

@@ -144,6 +144,11 @@ def test_miners_sum_of_two_blocks():
     assert life.count == pytest.approx(1.0 + 2.0 / 2**8)
 
 
+def test_what_is_stressed_beyond_all_numbers_has_no_life():
+    life = fatigue_life(np.array([1e20, 0.0]), steel())
+    assert (life.stress, life.repetitions) == (math.inf, 0.0)
+
+
 def test_ripples_are_left_out():
     """Below 5 % of the largest range, which is 600 MPa; a cycle of 6 % harms by Goodman's line and is counted."""
     for valley, kept in ((271.0, ()), (264.0, ((36.0, 282.0, 1.0),))):

@@ -316,6 +316,8 @@ def test_columns_need_a_cycle_and_a_cycle_needs_columns(tmp_path):
     plain = tables("knee", cycle={"file": "gait.csv"})
     with pytest.raises(CaseError, match="cycle: nothing names a column of it"):
         validate(plain, str(tmp_path))
+    with pytest.raises(CaseError, match=r"^cycle: it must be a table of entries; write it as \[cycle\]"):
+        validate(plain | {"cycle": [{"file": "gait.csv"}]}, str(tmp_path))
     titled = {"stride": STRIDE | {"title": "column Fy"}}  # a title is text
     assert knee(tmp_path, load_case=titled["stride"]).load_cases["stride"].title == "column Fy"
     with pytest.raises(CaseError, match=r"load_cases\.stride\.speed: the table of the cycle says how fast"):

@@ -45,9 +45,13 @@ def test_a_chosen_test_stands_in_place_of_loads_checks_and_conditions():
         checks={"stiff": {"type": "displacement", "at": "T", "maximum": "1 mm"}},
         conditions={"cycles": 10, "reverses": True, "temperature": "20 degC"},
         ways_to_hold={"link": "pylon", "at": "T", "load_case": "push"},
+        tolerances={f"load_cases.{name}": "5 %" for name in ("push", "cyclic")} | {"parts.tube.outer_diameter": "1 mm"},
     )
     case = validate(stated)
     assert list(case.load_cases) == ["cyclic"]
+    assert list(case.tolerances) == ["load_cases.cyclic", "parts.tube.outer_diameter"]
+    with pytest.raises(CaseError, match="'pull' is no load case; choose one of cyclic"):
+        validate(stated | {"tolerances": {"load_cases.pull": "5 %"}})
     assert case.repeated("cyclic") == ((pytest.approx(0.1), 1.0), (Block((0, 1), 1.0),))
     assert (case.conditions.cycles, case.conditions.reverses, case.conditions.temperature) == (1e6, False, 20.0)
     assert {name: check.type for name, check in case.checks.items()} == {"lasts": "fatigue"}
@@ -133,6 +137,7 @@ SECOND = "level.tests.second"
         ({"enters": {"link": "pilon", "at": "T"}}, "level.enters.link: 'pilon' is not a moving link; choose one of"),
         ({"enters": {"link": "pylon", "at": "B"}}, "level.enters: link 'pylon' has no point 'B'"),
         ({"leaves": {"link": "foot", "at": "O"}}, "level.leaves.link: 'foot' is not a moving link"),
+        ({"leaves": PLACED["enters"]}, "level: its forces would enter and leave at one point"),
         ({"forward": "x"}, "level.forward (it is 'x'): it must be one of '+x', '-x'"),
         ({"up": "-x"}, 'level: two of forward = "+x", up = "-x" lie along one axis'),
         ({"outward": "+y"}, "lie along one axis; give each an axis of its own"),
@@ -200,6 +205,7 @@ def test_what_a_level_must_not_state_is_one_sentence(level, sentence, tmp_path):
         (LEVEL, {"file": ""}, "level.file: '' must be the plain name"),
         (LEVEL, {"file": "none.toml"}, "there is no such file beside the case; put it there, or correct level.file"),
         (LEVEL, {"file": 5}, "level.file (it is 5): it must be text"),
+        (LEVEL, {"read_from": "mine"}, "level.file: the case has read its level already"),
     ],
 )
 def test_a_malformed_level_file_is_one_sentence(text, placed, sentence, tmp_path):
@@ -257,6 +263,7 @@ ROLL = {
     "steps": [{"profile": "roll.csv", "cycles": 1e6}],
     "lasts": True,
 }
+FIRST_TILTED = "time [ms],force [N],tilt [deg]\n0,9,-20\n1,8,-10\n"
 TABLE = "time [ms],force [N],tilt [deg]\n0,0,-20\n100,900,-15\n300,600,20\n"
 
 
@@ -327,6 +334,8 @@ def test_states_and_blocks_follow_the_steps(order, tmp_path):
     ("changes", "sentence"),
     [
         ({"table": TABLE.replace("time", "cycle")}, "'roll.csv' has no column 'time'"),
+        ({"table": TABLE.partition("\n")[0]}, "it needs a head such as 'time [ms],force [N],tilt [deg]', with columns"),
+        ({"table": ""}, "the file is empty; write a head such as 'time [ms],force [N],tilt [deg]', and rows below"),
         ({"table": TABLE.replace("force", "F")}, "'roll.csv' has no column 'force'"),
         ({"table": TABLE.replace("tilt", "tile")}, "'roll.csv', column tile: a profile has time, force and tilt alone"),
         ({"table": TABLE.replace("[N]", "[mm]")}, "'roll.csv', row 2, column force: "),
@@ -347,6 +356,14 @@ def test_states_and_blocks_follow_the_steps(order, tmp_path):
         ({"steps": [{"profile": "roll.csv", "duration": "5 s"}]}, "steps.0: duration is that of a force"),
         ({"steps": [{"profile": "roll.csv", "least": "5 N", "cycles": 5}]}, "steps.0: least is that of a force"),
         ({"steps": [{"profile": "roll.csv", "scale": 0.0}]}, "steps.0.scale (it is 0.0): it must be greater than 0"),
+        (
+            {"steps": [{"profile": "roll.csv", "scale": 1e300}]},
+            "steps.0: profile: 'roll.csv', row 3, column force: with its scale it is 9e+302 N; correct scale or",
+        ),
+        (
+            {"tilts_about": {"forward": "1e19 mm", "outward": "0 mm", "up": "0 mm"}, "table": FIRST_TILTED},
+            "level.tests.roll, row 2: load_lines.0: from and to are the same point",
+        ),
         (
             {"lasts": False, "elastic": True},
             "level.tests.roll: a step has cycles, but that they are borne is not asked",

@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
+import tomlkit
+from levels import LEVEL, PLACED, PROOF, PYLON, TOP
 from mcp import Client
 from mcp.client.stdio import StdioServerParameters
 
@@ -27,6 +29,11 @@ def home(tmp_path):
     (folder / "bell-crank.step").write_bytes((Path(folder_of("step")) / "bell-crank.step").read_bytes())
     (tmp_path / "secret.toml").write_text("title = 'secret'", encoding="utf-8")
     (folder / "away.toml").symlink_to(tmp_path / "secret.toml")
+    (folder / "roll.csv").symlink_to(tmp_path / "secret.toml")
+    roll = PROOF | {"steps": [{"profile": "roll.csv"}], "tilts_about": TOP}
+    (folder / "level.toml").write_text(tomlkit.dumps(LEVEL | {"tests": {"roll": roll}}), encoding="utf-8")
+    level = {"level": {"file": "level.toml", **PLACED}}
+    (folder / "level-case.toml").write_text(tomlkit.dumps(PYLON | level), encoding="utf-8")
     (folder / "far.toml").write_text(text.replace("bell-crank.step", "../secret.toml"), encoding="utf-8")
     assert "../secret.toml" in (folder / "far.toml").read_text(encoding="utf-8")
     return folder
@@ -87,6 +94,8 @@ def test_answers_are_those_of_the_face(home):
         ("statics", {"case": "/etc/passwd"}),
         ("motion", {"case": "mine.toml", "values": {"parts.bell-crank.file": "../secret.toml"}}),
         ("check", {"case": "step", "values": {"parts.bell-crank.file": "/etc/passwd"}}),
+        ("check", {"case": "step", "values": {'parts.bell-crank."file"': "/etc/passwd"}}),
+        ("statics", {"case": "level-case.toml"}),  # its level file names a link out of the folder
         ("inspect", {"path": "../secret.toml"}),
     ],
 )
@@ -100,11 +109,19 @@ def test_nothing_is_read_outside_of_the_folder(home, tool, arguments):
 
 
 def test_a_mistake_is_one_sentence(home):
-    (answer, other), _ = asked(
+    (answer, other, *wrong), _ = asked(
         made(home, 1),
         ("check", {"case": CASE, "fidelity": "plate"}),
         ("check", {"case": "mine.toml", "values": {"x": 1}}),
+        ("statics", {"case": 3}),
+        ("statics", {"case": CASE, "fidelity": "beam"}),
+        ("statics", {}),
     )
+    assert [one.content[0].text for one in wrong] == [
+        "case (it is 3): it must be text; write it in double quotes",
+        "fidelity: statics has no such argument; it has case, matrix, values",
+        "case: this entry is missing; add it",
+    ]
     assert answer.is_error
     assert "fidelity: 'plate' is unknown" in answer.content[0].text
     assert other.is_error

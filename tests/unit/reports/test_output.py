@@ -166,7 +166,7 @@ def test_what_would_be_lost_is_refused_before_and_after_solving(
     out: Path, changed: Callable[[Path], None], name: str
 ) -> None:
     """Before: for the names that are known by then."""
-    new = {"result.json": "{}", "sub/a.png": "new", "late.png": "new", "late/c.png": "new"}
+    new = {"result.json": "{}", "sub/a.png": "new", "late.png": "new", "late/deep/c.png": "new"}
     changed(out)
     before = {path: path.lstat().st_mtime_ns for path in out.parent.rglob("*") if not path.is_dir()}
     for attempt in (lambda: refuse_unusable(out, "check", new), lambda: write_folder(out, "check", fill(new))):
