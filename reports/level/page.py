@@ -4,14 +4,13 @@ from collections.abc import Callable, Iterable, Iterator
 from urllib.parse import quote
 
 from alula.fea.check.level import LevelResult, Statement, TestResult
-from alula.fea.common.reason import Reason
 from alula.fea.common.verdict import Verdict
 from alula.loads.case.level_case import Demand
 from alula.reports.check.folder import REPORT
 from alula.reports.check.stated import materials_section
 from alula.reports.check.whole_check import check_sections
 from alula.reports.figures.set_up import set_up_drawing
-from alula.reports.level.tests import OWN, TESTS, level_caveats, level_section, statement_words
+from alula.reports.level.tests import OWN, TESTS, level_caveats, level_section, level_warnings, statement_words
 from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
 from alula.reports.sections.checks import JUDGED, against
@@ -100,10 +99,9 @@ def _stands_on(result: LevelResult) -> Section:
     )
     besides_it = _shared(result, lambda test: [(str(one.heading), caveat(one)) for one in test.result.caveats])
     limits = _shared(result, lambda test: [one for part in check_sections(test.result) for one in part.not_covered])
-    warnings = _shared(result, lambda test: [("warning", _plain(test, one)) for one in test.result.warnings])
     parts: list[Part] = [Items(besides_it), Items((friction, *case.assumptions))]
-    if warnings:
-        parts.append(Items(tuple(f"{title}: {text}" for title, text in warnings), "warnings"))
+    if warnings := level_warnings(result):
+        parts.append(Items(warnings, "warnings"))
     parts += [Text("What no check looks at:"), Items(limits, "columns2")]
     return Section(key="assumptions", title="What all numbers stand on", short="Assumptions", parts=tuple(parts))
 
@@ -121,11 +119,6 @@ def _shared(
         of = "" if len(names) == len(result.tests) else f" ({joined(names)})"
         texts.setdefault(f"{title[:1].upper()}{title[1:]}{of}", []).append(sentence(text))
     return tuple((title, " ".join(own)) for title, own in texts.items())
-
-
-def _plain(test: TestResult, warning: Reason | str) -> str:
-    """Return a warning without the load case that it is of, which has the name of the test."""
-    return told(warning).removeprefix(f"load case {test.name}: ")
 
 
 def _set_up(result: LevelResult) -> Section:

@@ -108,7 +108,9 @@ def test_sentences_and_record():
     assert len(series.columns) == 5
 
 
-FLEXION = np.array([5.0, 18.0, 8.0, 8.0, 50.0, 40.0])  # turns back in the second and fifth row, dwells from the third on
+FLEXION = np.array(
+    [5.0, 18.0, 8.0, 8.0, 50.0, 40.0]
+)  # it turns back in rows 2 and 5, and dwells in 3 and 4
 FORCE = np.array([400.0, 900.0, 700.0, 700.0, 100.0, 0.0])  # down [N]
 MOMENT = np.array([30.0, 60.0, 50.0, 40.0, 9.0, 0.0])  # [N m]
 STRIDE = {"file": "stride.csv", "angle": "flexion", "zero": "-25 deg"}
