@@ -108,9 +108,7 @@ def test_sentences_and_record():
     assert len(series.columns) == 5
 
 
-FLEXION = np.array(
-    [5.0, 18.0, 8.0, 8.0, 50.0, 40.0]
-)  # it turns back in rows 2 and 5, and dwells in 3 and 4
+FLEXION = np.array([5.0, 18.0, 8.0, 8.0, 50.0, 40.0])  # it turns back in rows 2 and 5, and dwells in 3 and 4
 FORCE = np.array([400.0, 900.0, 700.0, 700.0, 100.0, 0.0])  # down [N]
 MOMENT = np.array([30.0, 60.0, 50.0, 40.0, 9.0, 0.0])  # [N m]
 STRIDE = {"file": "stride.csv", "angle": "flexion", "zero": "-25 deg"}
@@ -181,6 +179,7 @@ def test_the_report_of_a_stride_tells_sides_in_per_cent(tmp_path):
     assert told["Load case flexes"][0].text == f"The load line runs behind {what}"
     alone = f"The load line runs behind {what.partition(' over')[0]} at 60.000 % of the cycle"
     assert told["Load case alone"][0].text == f"{alone}, ahead of it else while there is one."
+    assert {column.unit for column in told["Load case alone"][1].columns} == {"", "%"}
     assert "against growing flexion" in section.parts[0].text
     record = section.data["instant_centre"]["load_cases"]["extends"]["ahead"]
     least = int(np.nanargmin(found.lines["extends"].ahead))
