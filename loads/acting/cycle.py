@@ -24,7 +24,7 @@ Path = tuple[str | int, ...]
 
 ENTRIES = ("force", "moment", "pressure", "total", "from", "to")
 """Entries of loads that may name a column; names of links and titles may begin with the same word."""
-OF_MOTION = ("coordinate", "inertia")
+OF_MOTION = ("coordinate", "inertia", "instant_centre", "against")
 """Entries of ``[motion]`` that a cycle leaves to the case."""
 _COLUMN = re.compile(r"\s*([-−+]?)\s*column\s+(\S.*?)\s*")
 _WHOLE = 100.0
@@ -110,7 +110,7 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
         raise CaseError('cycle: nothing names a column of it; state its angle, or a force such as "column Fy"')
     try:
         table, period = _read(spec, folder)
-        sign, angle = _signed(spec.angle or "")
+        sign, angle = spec.signed_angle
         used = dict.fromkeys([*([table.column(angle)] if angle else []), *(table.column(x.column) for x in references)])
         table = _whole(spec, table, tuple(used), angle)
         table, values = _at_instants(spec, table, _values(spec, table, pose, sign, angle))
@@ -172,11 +172,6 @@ def _references(value: object, path: Path) -> Iterator[ColumnReference]:
 def _entry(path: Path) -> str:
     """Return the entry that a place in tables and lists belongs to."""
     return next((key for key in reversed(path) if isinstance(key, str)), "")
-
-
-def _signed(column: str) -> tuple[float, str]:
-    plain = column.strip()
-    return (-1.0, plain[1:].strip()) if plain[:1] in ("-", "−") else (1.0, plain)
 
 
 def _read(spec: CycleSpec, folder: str) -> tuple[NumberTable, float | None]:
@@ -353,10 +348,10 @@ def _moved(data: Mapping[str, Any], pose: PoseSpec, values: Real, at: float) -> 
     stated = data.get("motion", {})
     others = [key for key in stated if key not in OF_MOTION] if isinstance(stated, dict) else []
     if others:
-        why = "the table of the cycle says how the linkage moves"
-        if others[0] in {"instant_centre", "against"}:
-            why = "an instant centre is told over one way of a motion, and not there and back over a cycle"
-        raise CaseError(f"motion.{printable(str(others[0]))}: {why}; leave it out, or remove [cycle]")
+        raise CaseError(
+            f"motion.{printable(str(others[0]))}: the table of the cycle says how the linkage moves; leave it out, or "
+            "remove [cycle]"
+        )
     if isinstance(stated, dict) and stated.get("coordinate", pose.coordinate) != pose.coordinate:
         raise CaseError(
             f"motion.coordinate: the cycle moves the coordinate of the pose, '{pose.coordinate}'; leave it out, or "

@@ -234,8 +234,10 @@ def _check_slides(case: CoreCase, entry: str, name: str | None) -> None:
 
 
 def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
-    if spec.states is not None and case.pose.coordinate is None:
-        return  # a structure under the loads of a cycle
+    if spec.states is not None and case.pose.coordinate is None:  # a structure under the loads of a cycle
+        if spec.instant_centre is not None:
+            raise CaseError("motion.instant_centre: the case has no coordinate that could move; leave it out")
+        return
     name = case.motion_coordinate.name
     if spec.travel is not None:
         _check_slides(case, "motion.coordinate", name)

@@ -55,6 +55,12 @@ class CycleSpec(CaseModel):
     """Number of evenly spaced instants at which the table is read, between its rows: loads linear, the angle as a cubic
     spline. The rows as they stand where it is left out."""
 
+    @property
+    def signed_angle(self) -> tuple[float, str]:
+        """The column of the angle behind its sign: 1 where the coordinate grows with it, -1 where it falls."""
+        plain = (self.angle or "").strip()
+        return (-1.0, plain[1:].strip()) if plain[:1] in ("-", "−") else (1.0, plain)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleMotion:

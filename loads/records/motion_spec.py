@@ -83,14 +83,13 @@ class MotionSpec(CaseModel):
 
     @model_validator(mode="after")
     def _fits(self, info: ValidationInfo) -> "MotionSpec":
-        if (info.context or {}).get("cycle") is not None:
-            return self  # made from the table of a cycle
+        alone = (info.context or {}).get("cycle") is None  # else its way is that of the cycle's table
         slides, (speed, acceleration) = self.travel is not None, self.rate
         angular = (self.speed, self.acceleration) != (0.0, 0.0)
         along = (self.travel_speed, self.travel_acceleration) != (0.0, 0.0)
         rules = {
             'it needs either turn = true or a range such as range = ["0 deg", "90 deg"] or travel = ["0 mm", "10 mm"]; '
-            "state one of them": self.turn + (self.range is not None) + slides != 1,
+            "state one of them": alone and self.turn + (self.range is not None) + slides != 1,
             "a full turn needs at least 3 poses, since its last pose is its first; write poses = 3 or more": (
                 self.turn and self.poses < 3
             ),
@@ -101,7 +100,7 @@ class MotionSpec(CaseModel):
                 along and not slides
             ),
             f"it begins and ends at the same {'travel' if slides else 'angle'}; state two different ones": (
-                self.ends is not None and math.isclose(*self.ends, abs_tol=1e-12)
+                alone and self.ends is not None and math.isclose(*self.ends, abs_tol=1e-12)
             ),
             "the order of the ends gives the direction, so speed must not be negative; swap the ends": (
                 self.ends is not None and speed < 0.0
@@ -113,7 +112,7 @@ class MotionSpec(CaseModel):
                 self.against is not None and self.against == self.instant_centre
             ),
             'inertia = true needs a speed; state one, for example speed = "150 rpm"': (
-                self.inertia is True and speed == 0.0 and acceleration == 0.0
+                alone and self.inertia is True and speed == 0.0 and acceleration == 0.0
             ),
             "without a speed the acceleration must be positive; state a speed, or change the sign": (
                 speed == 0.0 and acceleration < 0.0

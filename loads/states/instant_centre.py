@@ -27,7 +27,8 @@ class LineOfAction:
         Direction of the force in the plane, a unit vector.
     ahead : array (n,)
         Distance from the instant centre [mm]: positive where the load turns the link against the motion, and so holds
-        it back, negative where it turns it on. NaN where the centre lies at infinity.
+        it back, negative where it turns it on. The motion of a cycle is that in which its column of the angle grows,
+        at every row, whichever way the link turns there. NaN where the centre lies at infinity.
     """
 
     foot: Complex
@@ -77,9 +78,9 @@ def instant_centre(moved: CaseMotion) -> InstantCentre | None:
         return None
     link, against = spec.instant_centre, spec.against or motion.linkage.ground
     place, path = motion.placement, motion.virtual.instant_centre(link, against)
-    onward = np.sign(
-        (motion.virtual.spin(link) - motion.virtual.spin(against)) * (motion.angles[-1] - motion.angles[0])
-    )
+    cycle = moved.case.cycle
+    sense = motion.angles[-1] - motion.angles[0] if cycle is None else cycle.signed_angle[0]
+    onward = np.sign((motion.virtual.spin(link) - motion.virtual.spin(against)) * sense)
     lines = {}
     for name, loads in moved.loads.items():
         wrench = sum((load.resultant(place) for load in loads if load.link == link), np.zeros((*place.shape, 6)))

@@ -14,7 +14,15 @@ from alula.reports.check.folder import REPORT
 from alula.reports.check.stated import materials_section
 from alula.reports.check.whole_check import check_sections
 from alula.reports.figures.set_up import profile_drawing, set_up_drawing
-from alula.reports.level.tests import OWN, TESTS, at_state, level_caveats, level_section, plain_warning, statement_words
+from alula.reports.level.tests import (
+    OWN,
+    TESTS,
+    at_state,
+    level_caveats,
+    level_section,
+    level_warnings,
+    statement_words,
+)
 from alula.reports.page.provenance import provenance_section
 from alula.reports.renderers.page import Page
 from alula.reports.sections.checks import JUDGED, against
@@ -103,10 +111,9 @@ def _stands_on(result: LevelResult) -> Section:
     )
     besides_it = _shared(result, lambda test: [(str(one.heading), caveat(one)) for one in test.result.caveats])
     limits = _shared(result, lambda test: [one for part in check_sections(test.result) for one in part.not_covered])
-    warnings = _shared(result, lambda test: [("warning", plain_warning(test, one)) for one in test.result.warnings])
     parts: list[Part] = [Items(besides_it), Items((friction, *case.assumptions))]
-    if warnings:
-        parts.append(Items(tuple(f"{title}: {text}" for title, text in warnings), "warnings"))
+    if warnings := level_warnings(result):
+        parts.append(Items(warnings, "warnings"))
     parts += [Text("What no check looks at:"), Items(limits, "columns2")]
     return Section(key="assumptions", title="What all numbers stand on", short="Assumptions", parts=tuple(parts))
 

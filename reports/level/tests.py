@@ -16,7 +16,7 @@ from alula.reports.sections.section import Part, Section, Table, Text
 from alula.reports.sections.table import Cell, Mark, words
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import besides
-from alula.reports.words.numbers import number, sentence
+from alula.reports.words.numbers import joined, number, sentence
 from alula.reports.words.terminal import say
 
 if TYPE_CHECKING:
@@ -155,6 +155,26 @@ def level_caveats(result: LevelResult) -> tuple[Caveat, ...]:
     return tuple(dict.fromkeys(one for test in result.tests.values() for one in test.result.caveats))
 
 
+def level_warnings(result: LevelResult) -> tuple[str, ...]:
+    """Return the warnings of all tests, each once behind the names of its tests.
+
+    Parameters
+    ----------
+    result : LevelResult
+
+    Returns
+    -------
+    tuple of str
+    """
+    found: dict[str, list[str]] = {}
+    for name, test in result.tests.items():  # whose load case has its name
+        for text in dict.fromkeys(plain_warning(test, one) for one in test.result.warnings):
+            found.setdefault(text, []).append(name)
+    every = len(result.tests)
+    of = {text: "all tests" if len(names) == every > 1 else joined(names) for text, names in found.items()}
+    return tuple(sentence(f"warning ({of[text]}): {text}") for text in found)
+
+
 def print_level(result: LevelResult, sections: Sequence[Section], console: "Console") -> None:
     """Print what each test says, and the verdict of the level.
 
@@ -170,10 +190,8 @@ def print_level(result: LevelResult, sections: Sequence[Section], console: "Cons
     print_parts(sections[0].parts, console, [])
     if line := besides(level_caveats(result)):
         say(console, line)
-    every = {name: test.result.warnings for name, test in result.tests.items()}
-    alike = (plain_warning(result.tests[name], one) for name, found in every.items() for one in found)
-    for warning in dict.fromkeys(alike):
-        say(console, f"Warning: {warning}", style="yellow")
+    for warning in level_warnings(result):
+        say(console, warning, style="yellow")
     say(console, 'All numbers of a test: --set level.test="..." with its name, and --verbose')
 
 

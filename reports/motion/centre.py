@@ -1,17 +1,21 @@
 """The instant centre of a link over a motion: its path, and where load lines run past it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from alula.fea.findings.of_motion import MotionFindings
 from alula.geometry.linkage.motion import Motion
+from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.instant_centre import InstantCentre
+from alula.loads.text.explain import printable
 from alula.reports.motion.charts import chart, figures
 from alula.reports.motion.extremes import extremes, extremes_table, stretches
 from alula.reports.motion.series import pose_columns
 from alula.reports.sections.section import Group, Number, Part, Section, Series, Text, say
+from alula.reports.words.numbers import joined
 
 
 def centre_section(found: MotionFindings) -> Section:
@@ -37,7 +41,7 @@ def centre_section(found: MotionFindings) -> Section:
         key=key,
         title=title,
         short="Instant centre",
-        parts=tuple(_parts(centre, motion, record)),
+        parts=tuple(_parts(centre, found.moved, record)),
         data={"instant_centre": record},
         series=(Series(file="instant-centre.csv", columns={**pose_columns(motion), **columns}, digits=12),),
     )
@@ -57,25 +61,48 @@ def _record(centre: InstantCentre, motion: Motion) -> dict[str, Any]:
     }
 
 
-def _parts(centre: InstantCentre, motion: Motion, record: Mapping[str, Any]) -> Iterator[Part]:
+def _parts(centre: InstantCentre, moved: CaseMotion, record: Mapping[str, Any]) -> Iterator[Part]:
+    motion, cycle = moved.motion, moved.case.cycle
     what = f"the instant centre of {centre.link} against {centre.against}"
+    onward = "this motion" if cycle is None else f"growing {printable(cycle.signed_angle[1]) or motion.coordinate}"
     yield Text(
-        f"A load line runs ahead of the centre where the load turns {centre.link} against this motion, and behind it "
+        f"A load line runs ahead of the centre where the load turns {centre.link} against {onward}, and behind it "
         "where it turns it on",
         kind="note",
     )
-    for first, last in record["at_infinity"]:
-        ends = {"first": Number(first, motion.unit, 5), "last": Number(last, motion.unit, 5)}
-        yield say(
-            f"{what[0].upper()}{what[1:]} lies at infinity from {motion.coordinate} = {{first}} to {{last}}", **ends
-        )
+    if record["at_infinity"]:
+        yield _where(f"{what[0].upper()}{what[1:]} lies at infinity", motion, record["at_infinity"])
     for name, of in record["load_cases"].items():
         rows = [("load line ahead of the centre", "mm", of["ahead"])]
-        told = _stability(what, motion, centre.lines[name].ahead)
-        table = extremes_table("load-line", name, rows, motion.unit, ends=True)
-        yield Group(f"Load case {name}", (told, table) if np.isfinite(centre.lines[name].ahead).any() else (told,))
+        ahead = centre.lines[name].ahead
+        told = _stability(what, motion, ahead) if cycle is None else _sides(what, motion, ahead, of["behind"])
+        table = extremes_table("load-line", name, rows, motion.progress_unit, ends=True)
+        yield Group(f"Load case {name}", (told, table) if np.isfinite(ahead).any() else (told,))
     yield chart("instant-centre", f"Path of {what}", lambda: figures().centre_figure(centre, motion))
     yield chart("load-line", f"Load lines ahead of {what}", lambda: figures().ahead_figure(centre, motion))
+
+
+def _where(told: str, motion: Motion, runs: Sequence[tuple[float, float]], rest: str = "") -> Text:
+    """Return what is told of runs of poses, with first and last of each, and of the rest."""
+    at, of = (f"{motion.coordinate} = ", "") if motion.instants is None else ("", " of the cycle")
+    facts = {f"end{i}": Number(value, motion.progress_unit, 5) for i, value in enumerate(chain(*runs))}
+    spans = [
+        f"at {at}{{end{2 * i}}}" if first == last else f"from {at}{{end{2 * i}}} to {{end{2 * i + 1}}}"
+        for i, (first, last) in enumerate(runs)
+    ]
+    return say(f"{told} {joined(spans)}{of}{rest}", **facts)
+
+
+def _sides(what: str, motion: Motion, ahead: Any, behind: Sequence[tuple[float, float]]) -> Text:
+    """Return on which side the load line of a cycle runs, and when."""
+    if not np.isfinite(ahead).any():
+        return Text(f"Over the cycle no load line runs past {what}.")
+    rest = " while there is one" if np.isnan(ahead).any() else ""
+    if not behind:
+        return Text(f"The load line runs ahead of {what} over the whole cycle{rest}.")
+    if not (ahead >= 0.0).any():
+        return Text(f"The load line runs behind {what} over the whole cycle{rest}.")
+    return _where(f"The load line runs behind {what}", motion, behind, f", ahead of it else{rest}")
 
 
 def _stability(what: str, motion: Motion, ahead: Any) -> Text:

@@ -137,6 +137,8 @@ class MotionReport(Tabled):
     def plot_instant_centre(self) -> ShownPicture:
         """Draw the path of the instant centre for which the case asks, with the load lines at the first and last pose.
 
+        Over a cycle they are those at the least and the largest value of its coordinate.
+
         Returns
         -------
         ShownPicture

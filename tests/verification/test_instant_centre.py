@@ -1,11 +1,17 @@
 """Instant centres: where pins and lines of links have them, and the moment of a load about one as the drive's work."""
 
+import cmath
+import tomllib
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 from edited_cases import edited
 
 from alula.fea.findings.of_motion import motion_findings
 from alula.loads.case.case import Case
+from alula.loads.case.case_file import read_text, validate
 from alula.loads.states.case_motion import CaseMotion, solve_case_motion
 from alula.loads.states.instant_centre import InstantCentre, instant_centre
 from alula.loads.states.kinetostatics import relative_motion
@@ -100,6 +106,87 @@ def test_sentences_and_record():
     [series] = section.series
     assert series.file == "instant-centre.csv"
     assert len(series.columns) == 5
+
+
+FLEXION = np.array([5.0, 18.0, 8.0, 8.0, 50.0, 40.0])  # it turns back in rows 2 and 5, and dwells in 3 and 4
+FORCE = np.array([400.0, 900.0, 700.0, 700.0, 100.0, 0.0])  # down [N]
+MOMENT = np.array([30.0, 60.0, 50.0, 40.0, 9.0, 0.0])  # [N m]
+STRIDE = {"file": "stride.csv", "angle": "flexion", "zero": "-25 deg"}
+
+
+def stride(folder: Path, order: Any = range(6), sign: float = 1.0, **cycle: Any) -> tuple[CaseMotion, InstantCentre]:
+    """Return the knee over a stride, its moment with one sign, with the other and left out; rows in any order."""
+    rows = zip(range(0, 90, 15), *(values[list(order)] for values in (sign * FLEXION, FORCE, MOMENT)), strict=True)
+    table = "\n".join(",".join(map(str, row)) for row in rows)
+    (folder / "stride.csv").write_text("cycle [%],flexion [deg],Fy [N],M [N*m]\n" + table, encoding="utf-8")
+    data = {key: value for key, value in tomllib.loads(read_text("knee")[0]).items() if key != "checks"}
+    down = {"own_weight": False, "forces": [{"link": "thigh", "at": "K", "force": ["0 N", "-column Fy"]}]}
+    turns = {name: [{"link": "thigh", "at": "K", "moment": f"{name}column M"}] for name in ("-", "")}
+    cases = {"extends": down | {"moments": turns["-"]}, "flexes": down | {"moments": turns[""]}, "alone": down}
+    stated = {"motion": {"instant_centre": "thigh"}, "cycle": STRIDE | cycle, "load_cases": cases}
+    return centre_of(validate(data | stated, str(folder)))
+
+
+def by_hand(degrees: float, force: float, moment: float) -> tuple[complex, float]:
+    """Return where the lines of both links meet, and the lever of the load about it against flexion.
+
+    The thigh's rear pin C lies where circles about B and about A, less the thigh, meet; the thigh's front pin D on it.
+    """
+    along = cmath.exp(1j * np.radians(degrees - 25.0))
+    a, b = 31.75 + 0.0j, -31.75 + 0.0j
+    apart = a - 25.4 * along - b
+    x = (90.805**2 - 95.25**2 + abs(apart) ** 2) / (2.0 * abs(apart))
+    c = b + apart / abs(apart) * (x + 1j * np.sqrt(90.805**2 - x**2))
+    rear, front = c - b, c + 25.4 * along - a
+    centre = b + rear * ((a - b).conjugate() * front).imag / (rear.conjugate() * front).imag
+    arm = c + (10.0 + 30.0j) * along - centre
+    return centre, -((arm.conjugate() * -1j * force).imag + 1e3 * moment) / force if force else np.nan
+
+
+@pytest.mark.parametrize("period", [None, "1 s"])
+def test_over_a_stride_the_centre_is_where_the_lines_meet(tmp_path, period):
+    """Where the knee turns back and where it dwells as well; one load extends it at every row, the other bends it."""
+    _, found = stride(tmp_path, **({} if period is None else {"period": period}))
+    for name, sign in (("extends", -1.0), ("flexes", 1.0)):
+        own = [by_hand(*row) for row in zip(FLEXION, FORCE, sign * MOMENT, strict=True)]
+        assert found.path[:-1] == pytest.approx(np.array([centre for centre, _ in own]), abs=1e-9)
+        ahead = found.lines[name].ahead
+        assert ahead == pytest.approx(np.array([lever for _, lever in (*own, own[0])]), abs=1e-9, nan_ok=True)
+        assert (np.sign(np.delete(ahead, 5)) == -sign).all()
+
+
+def test_ahead_is_against_the_growing_column_whichever_row_comes_first(tmp_path):
+    _, found = stride(tmp_path)
+    _, later = stride(tmp_path, np.roll(np.arange(6), -4))
+    _, back = stride(tmp_path, sign=-1.0, angle="-flexion")  # a column that grows as the knee extends
+    for name, line in found.lines.items():
+        assert later.lines[name].ahead[:-1] == pytest.approx(np.roll(line.ahead[:-1], -4), abs=1e-9, nan_ok=True)
+        assert back.lines[name].ahead == pytest.approx(-line.ahead, abs=1e-9, nan_ok=True)
+
+
+def test_a_held_knee_has_its_centre(tmp_path):
+    _, found = stride(tmp_path, angle=None, zero=None)
+    assert np.ptp(found.path) == 0.0
+    assert found.path[0] == pytest.approx(by_hand(0.0, 1.0, 0.0)[0], abs=1e-6)
+
+
+def test_the_report_of_a_stride_tells_sides_in_per_cent(tmp_path):
+    moved, found = stride(tmp_path)
+    section = centre_section(motion_findings(moved))
+    told = {part.title: part.parts for part in section.parts if isinstance(part, Group)}
+    what = "the instant centre of thigh against shank over the whole cycle while there is one."
+    assert told["Load case extends"][0].text == f"The load line runs ahead of {what}"
+    assert told["Load case flexes"][0].text == f"The load line runs behind {what}"
+    alone = f"The load line runs behind {what.partition(' over')[0]} at 60.000 % of the cycle"
+    assert told["Load case alone"][0].text == f"{alone}, ahead of it else while there is one."
+    assert {column.unit for column in told["Load case alone"][1].columns} == {"", "%"}
+    assert "against growing flexion" in section.parts[0].text
+    record = section.data["instant_centre"]["load_cases"]["extends"]["ahead"]
+    least = int(np.nanargmin(found.lines["extends"].ahead))
+    assert record["smallest_at"] == moved.motion.progress[least]
+    for part in section.parts:
+        if draw := getattr(part, "draw", None):
+            draw().png()
 
 
 @pytest.mark.parametrize(

@@ -211,6 +211,8 @@ def _stray(axes: Any, motion: Motion, play: PlayOverMotion, label: str, colour: 
 def centre_figure(centre: InstantCentre, motion: Motion) -> Figure:
     """Draw the path of an instant centre, and the linkage with its load lines at the first pose (black) and the last.
 
+    Over a cycle, which may end as it begins, at the least and the largest value of its coordinate.
+
     Parameters
     ----------
     centre : InstantCentre
@@ -221,17 +223,19 @@ def centre_figure(centre: InstantCentre, motion: Motion) -> Figure:
     Figure
     """
     figure, axes = plane(motion, width=8.0, beside=centre.path)
-    axes.plot(centre.path.real, centre.path.imag, color="black", linewidth=1.6, label="instant centre")
+    path = centre.path[np.argsort(motion.angles, kind="stable")]
+    axes.plot(path.real, path.imag, color="black", linewidth=1.6, label="instant centre")
     size = motion.linkage.longest * _FAR
-    for index, colour in ((-1, "0.75"), (0, "black")):
+    first, last = (0, -1) if motion.instants is None else (motion.angles.argmin(), motion.angles.argmax())
+    for index, colour in ((last, "0.75"), (first, "black")):
         for chain in chains(motion.linkage):
             xy = np.array([motion.position(link, point)[index] for link, point in chain])
             axes.plot(*xy.T, color=colour, linewidth=1.4, marker="o", markersize=3.5, markerfacecolor="white", zorder=3)
         axes.plot(centre.path.real[index], centre.path.imag[index], "o", color=colour, markersize=7, zorder=4)
         for i, (name, line) in enumerate(centre.lines.items()):
             ends = line.foot[index] + size * line.along[index] * np.array([-1.0, 1.0])
-            style = {"linestyle": DASHES[1], "alpha": 1.0 if index == 0 else 0.35, "zorder": 2}
-            label = f"load line of {name}" if index == 0 else None
+            style = {"linestyle": DASHES[1], "alpha": 1.0 if index == first else 0.35, "zorder": 2}
+            label = f"load line of {name}" if index == first else None
             axes.plot(ends.real, ends.imag, color=COLOURS[i % len(COLOURS)], linewidth=1.3, label=label, **style)
     ground(axes, motion)
     legend(axes, f"{centre.link} against {centre.against}")

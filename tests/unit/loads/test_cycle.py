@@ -293,7 +293,8 @@ def test_points_of_a_load_line_may_be_columns(tmp_path):
         ((), {"instant": "97 %", "periodic": False}, "cycle.instant: 97 % is not in the table, from 0 to 95 %"),
         ((), {"speed": "1"}, r"cycle\.speed: this key is unknown"),
         ((), {"motion": {"range": ["0 deg", "9 deg"]}}, r"motion\.range: the table of the cycle says how"),
-        ((), {"motion": {"instant_centre": "coupler"}}, r"motion\.instant_centre: an instant centre"),
+        ((), {"motion": {"instant_centre": "coupler"}}, r"motion\.instant_centre: 'coupler' is not a moving link"),
+        ((), {"motion": {"against": "shank"}}, "motion: against is the second link of an instant centre"),
         ((), {"motion": {"coordinate": "rear"}}, r"motion\.coordinate: the cycle moves .* 'thigh'"),
     ],
 )  # fmt: skip
@@ -349,7 +350,7 @@ def test_a_study_varies_the_instant_and_the_body(tmp_path):
 WALK = "cycle [%],F [N],ahead [mm]\n0,50,0\n15,1000,-20\n30,400,10\n45,800,40\n60,50,0\n"
 
 
-def pylon(folder: Path, table: str = WALK, **cycle: Any) -> Case:
+def pylon(folder: Path, table: str = WALK, *, motion: dict[str, str] | None = None, **cycle: Any) -> Case:
     """Return a tube clamped on the ground, upright, under a load line whose place and size change over a cycle."""
     (folder / "walk.csv").write_text(table, encoding="utf-8")
     line = {"from": ["column ahead", "400 mm", "30 mm"], "to": ["column ahead", "-80 mm", "-20 mm"]}
@@ -368,7 +369,7 @@ def pylon(folder: Path, table: str = WALK, **cycle: Any) -> Case:
         "load_cases": {"walk": {"load_lines": [line | {"force": "column F", "link": "pylon", "at": "T"}]}},
         "conditions": {"cycles": 1e6},
     }
-    return validate(data, str(folder))
+    return validate(data | ({} if motion is None else {"motion": motion}), str(folder))
 
 
 def test_a_structure_bears_a_cycle_of_oblique_loads(tmp_path):
@@ -388,6 +389,8 @@ def test_a_structure_bears_a_cycle_of_oblique_loads(tmp_path):
     assert history.size(300.0)[[0, 4, 5]] == pytest.approx([history.size(300.0)[0]] * 3)
     with pytest.raises(CaseError, match="the linkage cannot move"):
         motion_findings(found)
+    with pytest.raises(CaseError, match=r"motion\.instant_centre: the case has no coordinate that could move"):
+        pylon(tmp_path, motion={"instant_centre": "pylon"})
 
 
 def test_two_peaks_of_a_cycle_are_two_cycles_of_stress(tmp_path):

@@ -1,5 +1,6 @@
 """The check of a level: each test judged as the case that it is, what it says, and the folder of its reports."""
 
+import io
 import json
 import re
 from copy import deepcopy
@@ -8,6 +9,7 @@ from dataclasses import replace
 import pytest
 import tomlkit
 from levels import LEVEL, PLACED, PROOF, PYLON, pylon
+from rich.console import Console
 from typer.testing import CliRunner
 
 import alula
@@ -21,7 +23,9 @@ from alula.loads.compose.stated_case import StatedCase
 from alula.reports.check.folder import REPORT
 from alula.reports.commands.cli import app
 from alula.reports.level import folder
-from alula.reports.level.tests import level_section, statement_words
+from alula.reports.level.page import level_page, level_sections
+from alula.reports.level.tests import level_section, level_warnings, print_level, statement_words
+from alula.reports.renderers.page import as_page
 
 COARSE = Effort(max_unknowns=1000)
 HARD = PROOF | {"steps": [{"force": "12 kN"}]}
@@ -116,6 +120,32 @@ def test_the_section_has_a_row_for_each_thing_that_is_asked(checked):
     assert record["tests"]["proof"]["top"] == [50.0, 400.0, 20.0]
     [elastic, _] = record["tests"]["hard"]["statements"]
     assert (elastic["asks"], elastic["verdict"], elastic["decides"]["limit"]) == ("stays elastic", "fail", 1.0)
+
+
+def test_warnings_tell_of_which_tests_they_are(checked):
+    """A warning of one load case is that of its test; what several tests share is told once."""
+    with_warnings = {
+        "proof": ("load case proof: it buckles at 3 times its load", "it is hot"),
+        "hard": ("load case hard: it buckles at 2 times its load", "it is hot", "it is hot"),
+    }
+    tests = {
+        name: replace(test, result=replace(test.result, warnings=with_warnings[name]))
+        for name, test in checked.tests.items()
+    }
+    expected = (
+        "Warning (proof): it buckles at 3 times its load.",
+        "Warning (all tests): it is hot.",
+        "Warning (hard): it buckles at 2 times its load.",
+    )
+    warned = replace(checked, tests=tests)
+    assert level_warnings(warned) == expected
+    alone = replace(checked, tests={"proof": tests["proof"]})
+    assert level_warnings(alone) == (expected[0], "Warning (proof): it is hot.")
+    console = Console(file=io.StringIO(), width=200, color_system=None)
+    print_level(warned, [level_section(warned)], console)
+    printed = console.file.getvalue()
+    page = as_page(level_page(warned, level_sections(warned)))
+    assert all(text in printed and text in page for text in expected)
 
 
 def test_the_command_writes_a_report_for_each_test(tmp_path, monkeypatch):
