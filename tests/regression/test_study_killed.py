@@ -25,9 +25,9 @@ COMMAND = (sys.executable, "-m", "alula", "study", "four-bar-synthesis", "--anal
 
 
 def rows(folder: Path) -> dict[int, tuple[object, ...]]:
-    """What every point has, but for times and attempts."""
+    """What every point has, but for times and attempts; numbers as text, where what is not a number is like itself."""
     with Store.reading(folder) as store:
-        return {position: (v, a.state, a.verdict, a.numbers) for position, v, a, _ in store.rows()}
+        return {position: (v, a.state, a.verdict, repr(a.numbers)) for position, v, a, _ in store.rows()}
 
 
 def children(of: int) -> list[int]:
