@@ -18,7 +18,7 @@ from alula.reports.commands.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMAND = [sys.executable, "-P", "-c", "from alula.reports.commands.cli import main; main()"]
-"""As the installed command: the current folder is not on the path, where Python 3.13.0 stumbles over one that is gone."""
+"""As the installed command: the current folder is not on the path, where Python 3.13.0 stumbles over a missing one."""
 BEAM = ("check", "knee", "--fidelity", "beam")
 """The whole check that takes least."""
 WRITING = (
