@@ -404,7 +404,7 @@ class Forms {
       while (stated.length && stated.at(-1) === null) stated.pop();
       const filled = most <= 3 ? stated : stated.filter((one) => one !== null);
       const least = option.prefixItems ? most : (option.minItems ?? 0);
-      if (filled.length && (filled.includes(null) || filled.length < least)) return this.refuse(path, `State all ${least} values.`);
+      if (filled.length && (filled.includes(null) || filled.length < least)) return now.length ? this.refuse(path, `State all ${least} values.`) : null; // what is begun waits for the rest
       const changed = filled.flatMap((one, place) => (one === now[place] ? [] : [place]));
       const single = filled.length === now.length && changed.length === 1;
       return this.send([single ? { op: "set", path: [...path, changed[0]], value: filled[changed[0]] } : { op: "set", path, value: filled.length ? filled : null }], null, path);
