@@ -93,7 +93,7 @@ def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, ben
     show(browser, "parts")
     browser.wait(f"document.querySelector({WIDTH!r})")
     assert browser.element(WIDTH).get_attribute("value") == "8 mm"
-    write(browser, WIDTH, "16 mm")
+    write(browser, WIDTH, "16")  # in the unit of what stood there
     browser.wait(f"""{TEXT}.includes('width = "16 mm"')""")
     text = browser.run(f"return {TEXT}")
     assert text.replace('width = "16 mm"', 'width = "8 mm"') == case.read_text(encoding="utf-8")

@@ -400,7 +400,7 @@ class Forms {
     const shown = most <= 3 ? most : Math.min(most, now.length + 1);
     const inputs = [];
     const commit = () => {
-      const stated = inputs.map((input) => this.read(itemOf(option, 0), input.value));
+      const stated = inputs.map((input) => this.read(itemOf(option, 0), input.value, null, input.dataset.was));
       while (stated.length && stated.at(-1) === null) stated.pop();
       const filled = most <= 3 ? stated : stated.filter((one) => one !== null);
       const least = option.prefixItems ? most : (option.minItems ?? 0);
@@ -424,7 +424,7 @@ class Forms {
     const all = options(node);
     const names = node["x-refers"] ? this.namesOf(node, path, table) : all.every((one) => one.enum || one.const !== undefined) ? all.flatMap((one) => one.enum ?? [one.const]) : all[0]?.type === "boolean" && all.length === 1 ? [true, false] : null;
     const unset = node.default === undefined || node.default === null ? "" : node.default === "left out" ? node.default : `${this.told(node.default)} (default)`;
-    const send = ({ target }) => (commit ? commit() : this.send([{ op: "set", path, value: this.read(node, target.value, names) }], null, path));
+    const send = ({ target }) => (commit ? commit() : this.send([{ op: "set", path, value: this.read(node, target.value, names, target.dataset.was) }], null, path));
     const common = { id, "aria-label": label, "data-path": key(path), "data-was": value === undefined ? "" : String(value), onchange: send,
       "aria-invalid": wrong?.textContent ? "true" : null, "aria-describedby": wrong?.textContent ? wrong.id : null };
     if (names) {
@@ -448,13 +448,15 @@ class Forms {
     return typeof value === "object" ? "" : String(value);
   }
 
-  /** What was typed, as the file states it. */
-  read(node, text, names = null) {
+  /** What was typed, as the file states it; a bare number has the unit of the number that stood there. */
+  read(node, text, names, was) {
     const stated = text.trim();
     if (!stated) return null;
     if (names) return names.find((name) => String(name) === stated) ?? stated;
     const numeric = options(node).some((option) => ["number", "integer"].includes(option.type));
-    return numeric && /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(stated) ? Number(stated) : text;
+    if (!/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(stated)) return text;
+    const unit = was.match(/^[-+]?[\d.]+(?:e[-+]?\d+)?\s*([^\d\s]\S*)$/i)?.[1];
+    return unit ? `${stated} ${unit}` : numeric ? Number(stated) : text;
   }
 
   /** The names that an entry may refer to. */
