@@ -154,7 +154,7 @@ def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
     browser.run("document.querySelectorAll('#panel-forms details:not(.help)').forEach((one) => (one.open = true))")
     browser.wait(f"document.querySelector({first!r})")
     write(browser, first, "30 deg")
-    assert browser.run("return new Promise((done) => setTimeout(done, 100))") is None
+    assert browser.run("return new Promise((done) => setTimeout(done, 600))") is None
     assert browser.element(first).get_property("value") == "30 deg"
     write(browser, second, "50 deg")
     browser.wait(f"""{TEXT}.includes('range = ["30 deg", "50 deg"]')""")
