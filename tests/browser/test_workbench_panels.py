@@ -153,6 +153,7 @@ def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
     browser.wait("document.querySelector('#panel-forms details')")
     browser.run("document.querySelectorAll('#panel-forms details:not(.help)').forEach((one) => (one.open = true))")
     browser.wait(f"document.querySelector({first!r})")
+    browser.run("return new Promise((done) => setTimeout(done, 900))")  # the edit is told once more when it is drawn
     write(browser, first, "30 deg")
     assert browser.run("return new Promise((done) => setTimeout(done, 600))") is None
     assert browser.element(first).get_property("value") == "30 deg"

@@ -22,7 +22,7 @@ export async function mount(holder, store) {
 
 class Forms {
   constructor(holder, store, root) {
-    Object.assign(this, { holder, store, root, table: "links", name: null, open: new Set(), refused: new Map(), drawn: "" });
+    Object.assign(this, { holder, store, root, table: "links", name: null, open: new Set(), refused: new Map(), unsent: new Map(), drawn: "" });
     this.tables = null;
     this.choice = make("select", { id: unused(), onchange: () => this.show(this.choice.value, null) });
     this.names = make("div", { class: "names", role: "group", "aria-label": "Entries of this table" });
@@ -401,10 +401,12 @@ class Forms {
     const inputs = [];
     const commit = () => {
       const stated = inputs.map((input) => this.read(itemOf(option, 0), input.value, null, input.dataset.was));
+      for (const one of inputs) this.unsent.set(one.dataset.path, one.value);
       while (stated.length && stated.at(-1) === null) stated.pop();
       const filled = most <= 3 ? stated : stated.filter((one) => one !== null);
       const least = option.prefixItems ? most : (option.minItems ?? 0);
       if (filled.length && (filled.includes(null) || filled.length < least)) return now.length ? this.refuse(path, `State all ${least} values.`) : null; // what is begun waits for the rest
+      for (const one of inputs) this.unsent.delete(one.dataset.path);
       const changed = filled.flatMap((one, place) => (one === now[place] ? [] : [place]));
       const single = filled.length === now.length && changed.length === 1;
       return this.send([single ? { op: "set", path: [...path, changed[0]], value: filled[changed[0]] } : { op: "set", path, value: filled.length ? filled : null }], null, path);
@@ -414,7 +416,7 @@ class Forms {
       const child = { ...itemOf(option, place), "x-refers": node["x-refers"] };
       if (examples[place] !== undefined) child.examples = [examples[place]];
       if (place >= (option.minItems ?? most)) child.default = "left out";
-      inputs.push(this.input(child, now[place], [...path, place], table, { id: place ? null : id, label: place || !id ? `${label}, value ${place + 1}` : null, commit }));
+      inputs.push(this.input(child, now[place] ?? this.unsent.get(key([...path, place])), [...path, place], table, { id: place ? null : id, label: place || !id ? `${label}, value ${place + 1}` : null, commit }));
     }
     return inputs;
   }
