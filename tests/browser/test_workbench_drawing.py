@@ -12,6 +12,7 @@ from chromium import LOCAL, PHONE
 from alula.reports.workbench.editing.document import Document
 
 WIDE = (1400, 900)
+PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 CASE = Path(__file__).parents[2] / "loads" / "cases" / "four-bar.toml"
 
 
@@ -144,9 +145,31 @@ def test_an_arrow_and_the_pose_are_pulled(bench):
     assert turned > 42.0
     assert turned == pytest.approx(round(turned))
     assert not any(one.text.startswith("beyond") for one in bench.elements(".texts text")), "it turns fully"
+    the_motion_slides(bench)
     stated = [{"op": "set", "path": ["motion"], "value": {"range": ["30 deg", "40 deg"]}}]
     bench.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", stated)
     bench.wait("[...document.querySelectorAll('.texts text')].some((one) => one.textContent.startsWith('beyond'))")
+
+
+def the_motion_slides(browser):
+    """A press on the track, a pull and keys each show the instant at which they leave the slider."""
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    settle(browser, "now.motion?.points")
+    slider, last = browser.element(".track input"), state(browser, "now.motion.values.length - 1")
+    quarter = (slider.size["width"] - 16) / 4  # the knob's middle stays half its width from the ends
+    chain = ActionChains(browser.driver, duration=20).move_to_element_with_offset(slider, round(-quarter), 0)
+    chain.click().perform()
+    pressed = state(browser, "now.instant")
+    assert pressed == pytest.approx(last / 4, abs=0.03 * last)
+    chain = ActionChains(browser.driver, duration=20).move_to_element_with_offset(slider, round(-quarter), 0)
+    chain.click_and_hold().move_by_offset(round(quarter), 0).move_by_offset(round(quarter), 0).release().perform()
+    assert state(browser, "now.instant") == pytest.approx(0.75 * last, abs=0.03 * last)
+    slider.send_keys("\ue010")  # End
+    assert state(browser, "now.instant") == last == int(slider.get_property("value"))
+    slider.send_keys("\ue012")  # arrow left
+    assert state(browser, "now.instant") == last - 1
+    browser.run(PRESS, "Back to the case's pose")
 
 
 def test_a_load_line_is_dashed_and_its_levers_are_dotted(bench):

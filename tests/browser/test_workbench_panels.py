@@ -93,7 +93,7 @@ def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, ben
     show(browser, "parts")
     browser.wait(f"document.querySelector({WIDTH!r})")
     assert browser.element(WIDTH).get_attribute("value") == "8 mm"
-    write(browser, WIDTH, "16 mm")
+    write(browser, WIDTH, "16")  # in the unit of what stood there
     browser.wait(f"""{TEXT}.includes('width = "16 mm"')""")
     text = browser.run(f"return {TEXT}")
     assert text.replace('width = "16 mm"', 'width = "8 mm"') == case.read_text(encoding="utf-8")
@@ -141,6 +141,25 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
     browser.wait(f"document.querySelector({WIDTH!r})")
     write(browser, WIDTH, "9 mm")
     browser.wait("!document.querySelector('#plane svg.old')")
+    a_range_waits_for_its_second_value(browser)
+
+
+def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
+    """What was typed first stays, without a sentence, and both are stated at once."""
+    motion = [{"op": "set", "path": ["motion"], "value": {}}]
+    browser.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", motion)
+    show(browser, "motion")
+    first, second = (f"""[data-path='["motion","range",{place}]']""" for place in (0, 1))
+    browser.wait("document.querySelector('#panel-forms details')")
+    browser.run("document.querySelectorAll('#panel-forms details:not(.help)').forEach((one) => (one.open = true))")
+    browser.wait(f"document.querySelector({first!r})")
+    browser.run("return new Promise((done) => setTimeout(done, 900))")  # the edit is told once more when it is drawn
+    write(browser, first, "30 deg")
+    assert browser.run("return new Promise((done) => setTimeout(done, 600))") is None
+    assert browser.element(first).get_property("value") == "30 deg"
+    write(browser, second, "50 deg")
+    browser.wait(f"""{TEXT}.includes('range = ["30 deg", "50 deg"]')""")
+    browser.run("return import(document.baseURI + 'page/server.js').then(({ change }) => change('undo'))")
 
 
 def test_what_is_selected_in_the_drawing_is_shown(browser: chromium.Browser, bench: tuple[str, Path]) -> None:

@@ -214,7 +214,7 @@ class _Run:
             self._end("failed", told["sentence"])
             return
         else:  # the stage is done
-            self._end("done", "All links are checked")
+            self._end("done", "All links are checked.")
             return
         self._tell()
 

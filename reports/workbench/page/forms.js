@@ -22,7 +22,7 @@ export async function mount(holder, store) {
 
 class Forms {
   constructor(holder, store, root) {
-    Object.assign(this, { holder, store, root, table: "links", name: null, open: new Set(), refused: new Map(), drawn: "" });
+    Object.assign(this, { holder, store, root, table: "links", name: null, open: new Set(), refused: new Map(), unsent: new Map(), drawn: "" });
     this.tables = null;
     this.choice = make("select", { id: unused(), onchange: () => this.show(this.choice.value, null) });
     this.names = make("div", { class: "names", role: "group", "aria-label": "Entries of this table" });
@@ -400,11 +400,13 @@ class Forms {
     const shown = most <= 3 ? most : Math.min(most, now.length + 1);
     const inputs = [];
     const commit = () => {
-      const stated = inputs.map((input) => this.read(itemOf(option, 0), input.value));
+      const stated = inputs.map((input) => this.read(itemOf(option, 0), input.value, null, input.dataset.was));
+      for (const one of inputs) this.unsent.set(one.dataset.path, one.value);
       while (stated.length && stated.at(-1) === null) stated.pop();
       const filled = most <= 3 ? stated : stated.filter((one) => one !== null);
       const least = option.prefixItems ? most : (option.minItems ?? 0);
-      if (filled.length && (filled.includes(null) || filled.length < least)) return this.refuse(path, `State all ${least} values.`);
+      if (filled.length && (filled.includes(null) || filled.length < least)) return now.length ? this.refuse(path, `State all ${least} values.`) : null; // what is begun waits for the rest
+      for (const one of inputs) this.unsent.delete(one.dataset.path);
       const changed = filled.flatMap((one, place) => (one === now[place] ? [] : [place]));
       const single = filled.length === now.length && changed.length === 1;
       return this.send([single ? { op: "set", path: [...path, changed[0]], value: filled[changed[0]] } : { op: "set", path, value: filled.length ? filled : null }], null, path);
@@ -414,7 +416,7 @@ class Forms {
       const child = { ...itemOf(option, place), "x-refers": node["x-refers"] };
       if (examples[place] !== undefined) child.examples = [examples[place]];
       if (place >= (option.minItems ?? most)) child.default = "left out";
-      inputs.push(this.input(child, now[place], [...path, place], table, { id: place ? null : id, label: place || !id ? `${label}, value ${place + 1}` : null, commit }));
+      inputs.push(this.input(child, now[place] ?? this.unsent.get(key([...path, place])), [...path, place], table, { id: place ? null : id, label: place || !id ? `${label}, value ${place + 1}` : null, commit }));
     }
     return inputs;
   }
@@ -424,7 +426,7 @@ class Forms {
     const all = options(node);
     const names = node["x-refers"] ? this.namesOf(node, path, table) : all.every((one) => one.enum || one.const !== undefined) ? all.flatMap((one) => one.enum ?? [one.const]) : all[0]?.type === "boolean" && all.length === 1 ? [true, false] : null;
     const unset = node.default === undefined || node.default === null ? "" : node.default === "left out" ? node.default : `${this.told(node.default)} (default)`;
-    const send = ({ target }) => (commit ? commit() : this.send([{ op: "set", path, value: this.read(node, target.value, names) }], null, path));
+    const send = ({ target }) => (commit ? commit() : this.send([{ op: "set", path, value: this.read(node, target.value, names, target.dataset.was) }], null, path));
     const common = { id, "aria-label": label, "data-path": key(path), "data-was": value === undefined ? "" : String(value), onchange: send,
       "aria-invalid": wrong?.textContent ? "true" : null, "aria-describedby": wrong?.textContent ? wrong.id : null };
     if (names) {
@@ -448,13 +450,15 @@ class Forms {
     return typeof value === "object" ? "" : String(value);
   }
 
-  /** What was typed, as the file states it. */
-  read(node, text, names = null) {
+  /** What was typed, as the file states it; a bare number has the unit of the number that stood there. */
+  read(node, text, names, was) {
     const stated = text.trim();
     if (!stated) return null;
     if (names) return names.find((name) => String(name) === stated) ?? stated;
     const numeric = options(node).some((option) => ["number", "integer"].includes(option.type));
-    return numeric && /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(stated) ? Number(stated) : text;
+    if (!/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(stated)) return text;
+    const unit = was.match(/^[-+]?[\d.]+(?:e[-+]?\d+)?\s*([^\d\s]\S*)$/i)?.[1];
+    return unit ? `${stated} ${unit}` : numeric ? Number(stated) : text;
   }
 
   /** The names that an entry may refer to. */

@@ -14,8 +14,9 @@ export function mount(element) {
   const button = (label, act, more = {}) => make("button", { type: "button", onclick: act, ...more }, label);
   const box = make("input", { type: "checkbox", onchange: () => store.put("paths", box.checked) });
   const slid = () => {
+    const to = Number(parts.slider.value); // read first: to stop shows the old instant again
     stop();
-    store.put("instant", Number(parts.slider.value));
+    store.put("instant", to);
   };
   parts = {
     element,
@@ -24,11 +25,11 @@ export function mount(element) {
     dead: make("svg", { class: "dead", "aria-hidden": "true" }),
     said: make("output"),
     one: button("Let it turn once", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]), { hidden: true }),
-    use: button("Use this pose", take),
-    back: button("Back to the case's pose", leave),
+    use: button("Use this pose", take, { class: "kept" }),
+    back: button("Back to the case's pose", leave, { class: "kept" }),
   };
   const { play, slider, dead, said, one, use, back } = parts;
-  element.append(play, make("div", { class: "track" }, slider, dead), said, one, use, back, make("label", { class: "choice" }, box, " paths of points"));
+  element.append(play, make("div", { class: "track" }, slider, dead), said, use, back, make("label", { class: "choice" }, box, " paths of points"), one);
   store.on("motion", () => {
     const { motion, instant } = store.state;
     if (instant !== null && !(instant < motion?.values?.length)) leave();
@@ -89,7 +90,7 @@ function show() {
   if (!moves) {
     const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
     const none = motion?.problem && !told && !store.state.document?.tables?.motion;
-    parts.said.textContent = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
+    parts.said.textContent = parts.said.title = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
     parts.one.hidden = !none || store.state.drawn?.coordinate?.kind !== "angle";
     parts.dead.replaceChildren();
     return;
@@ -105,7 +106,7 @@ function show() {
   const text = `${number(instant === null ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
   parts.slider.setAttribute("aria-valuetext", text);
   const wide = instant === null && drawn?.coordinate && beyond(drawn.coordinate) ? "beyond the stated motion; " : "";
-  parts.said.textContent = `${text} (${wide}${range}${dead})`;
+  parts.said.textContent = parts.said.title = `${text} (${wide}${range}${dead})`;
   const share = (value) => `${(100 * (value - values[0])) / (values.at(-1) - values[0] || 1)}%`;
   parts.dead.replaceChildren(...(motion.dead ?? []).map((value) => make("line", { x1: share(value), x2: share(value), y1: 0, y2: 8 })));
 }

@@ -63,7 +63,7 @@ export function mount(holder, store) {
     said.textContent = doing;
     try {
       handOut(name, await (await ask(route)).blob());
-      said.textContent = `${name} was handed out.`;
+      said.textContent = `${name} is downloaded.`;
     } catch (problem) {
       said.textContent = problem.message;
     }
