@@ -146,8 +146,8 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
 
 def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
     """What was typed first stays, without a sentence, and both are stated at once."""
-    motion = [{"op": "set", "path": ["motion"], "value": {}}]
-    browser.run("import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))", motion)
+    edit = "return import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    browser.run(edit, [{"op": "set", "path": ["motion"], "value": {}}])
     show(browser, "motion")
     first, second = (f"""[data-path='["motion","range",{place}]']""" for place in (0, 1))
     browser.wait("document.querySelector('#panel-forms details')")
@@ -159,7 +159,8 @@ def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
     assert browser.element(first).get_property("value") == "30 deg"
     write(browser, second, "50 deg")
     browser.wait(f"""{TEXT}.includes('range = ["30 deg", "50 deg"]')""")
-    browser.run("return import(document.baseURI + 'page/server.js').then(({ change }) => change('undo'))")
+    browser.run(edit, [{"op": "remove", "path": ["motion"]}])
+    browser.wait(f"!{TEXT}.includes('[motion]')")
 
 
 def test_what_is_selected_in_the_drawing_is_shown(browser: chromium.Browser, bench: tuple[str, Path]) -> None:

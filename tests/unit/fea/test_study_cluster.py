@@ -69,8 +69,8 @@ def variants(poses: str) -> Variants:
 
 
 def rows(store: Store):
-    """What every point has, but for times."""
-    return [(position, values, a.state, a.numbers) for position, values, a, _ in store.rows()]
+    """What every point has, but for times; numbers as text, where what is not a number is like itself."""
+    return [(position, values, a.state, repr(a.numbers)) for position, values, a, _ in store.rows()]
 
 
 def test_a_cluster_answers_as_this_machine_does_and_survives_what_dies(tmp_path):
