@@ -25,7 +25,7 @@ def reading_within(*folders: Path) -> Iterator[None]:
     ------
     None
     """
-    before = _WITHIN.set(tuple(Path(os.path.realpath(folder)) for folder in folders))
+    before = _WITHIN.set(folders)
     try:
         yield
     finally:
@@ -45,12 +45,27 @@ def refuse_elsewhere(path: str | Path) -> None:
     CaseError
         For a file outside of the folders.
     """
-    if not (folders := _WITHIN.get()):
-        return
-    place = Path(os.path.realpath(str(path).replace("\0", "")))
-    if not any(place.is_relative_to(folder) for folder in folders):
+    folders = _WITHIN.get()
+    if folders and not lies_within(path, *folders):
         name = "".join(c if c.isprintable() else "?" for c in str(path))
         raise CaseError(f"'{name}' is not in the folder of this server, which reads no other; copy it there")
+
+
+def lies_within(path: str | Path, *folders: Path) -> bool:
+    """Return True where a file lies below one of some folders.
+
+    Parameters
+    ----------
+    path : str or Path
+    *folders : Path
+        Links in all of them are followed.
+
+    Returns
+    -------
+    bool
+    """
+    place = Path(os.path.realpath(str(path).replace("\0", "")))
+    return any(place.is_relative_to(os.path.realpath(folder)) for folder in folders)
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
+from alula.geometry.imported.files_read import lies_within
 from alula.geometry.keeping.cache_folder import cache_folder
 from alula.geometry.keeping.whole_file import write_whole
 from alula.loads.stated.part_points import named_files
@@ -111,7 +112,7 @@ def plain_name(name: str, suffix: str) -> str:
 
 
 def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
-    """Refuse a case that names files outside of its folder: the page reads nothing there.
+    """Refuse a case that names files outside of its folder, before it is read: ``case_of`` reads nothing there.
 
     Parameters
     ----------
@@ -123,13 +124,11 @@ def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
     ------
     CaseError
     """
-    home = Path(os.path.realpath(folder))
     for entry, table, key in named_files(tables):
-        file = table[key].replace("\0", "")
-        if not Path(os.path.realpath(home / file)).is_relative_to(home):
+        if not lies_within(folder / table[key], folder):
             raise CaseError(
-                f"{printable(entry)}: '{printable(file)}' is not in the folder of the case, and nothing else is read "
-                "here; copy it there"
+                f"{printable(entry)}: '{printable(table[key])}' is not in the folder of the case, and nothing else is "
+                "read here; copy it there"
             )
 
 

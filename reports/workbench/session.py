@@ -10,7 +10,6 @@ from typing import Any
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.linkage.pose import Pose
-from alula.loads.case.case_file import changed_case
 from alula.loads.compose.starting import case_files, write_new
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import LARGEST_FILE
@@ -27,6 +26,7 @@ from alula.reports.workbench.keeping import (
     stamp_of,
     write_file,
 )
+from alula.reports.workbench.live.answers import case_of
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
 
@@ -276,11 +276,8 @@ class Session:
     def _posed(self, text: str) -> Pose | None:
         """Return the pose of a text that balances by itself; other poses an edit finds on its own."""
         with suppress(AlulaError):
-            tables = Document(text).tables()
-            refuse_elsewhere(tables, self.folder)
-            if value_at(tables, ("pose", "equilibrium")):
-                case = changed_case(tables, (), str(self.path), str(self.folder))
-                return solve_case_statics(case, str(self.path)).pose
+            if value_at(Document(text).tables(), ("pose", "equilibrium")):
+                return solve_case_statics(case_of(text, str(self.path)), str(self.path)).pose
         return None
 
     def _changed(self) -> None:

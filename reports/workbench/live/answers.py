@@ -5,12 +5,14 @@ import time
 import tomllib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import AlulaError
+from alula.geometry.imported.files_read import reading_within
 from alula.geometry.linkage.continuation import DeadPointError
 from alula.geometry.linkage.motion import Motion, ends_of, solve_motion
 from alula.loads.case.case import Case
@@ -37,7 +39,7 @@ def case_of(text: str, name: str) -> Case:
     text : str
         Of the case file.
     name : str
-        Path or built-in name, whose folder has the files of parts.
+        Path or built-in name, whose folder has all files that the case names; no other is read.
 
     Returns
     -------
@@ -48,7 +50,9 @@ def case_of(text: str, name: str) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
-    return changed_case(parse_tables(text.removeprefix("\ufeff"), "case"), (), name, folder_of(name))
+    folder = folder_of(name)
+    with reading_within(Path(folder)):
+        return changed_case(parse_tables(text.removeprefix("\ufeff"), "case"), (), name, folder)
 
 
 def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = None) -> Plain:

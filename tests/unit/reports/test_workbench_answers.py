@@ -4,6 +4,7 @@ import json
 import math
 
 import numpy as np
+import programs
 import pytest
 import solved
 
@@ -24,6 +25,24 @@ def posed(name, *pairs):
         text = text.replace(old, new)
     found = pose_answer(text, name)
     return json.loads(json.dumps(found, allow_nan=False))
+
+
+def test_no_link_in_the_folder_leads_out_of_it(tmp_path):
+    """A level file names the files of its profiles itself, so that they are refused where they are read."""
+    home, entries = tmp_path / "home", programs.ROOT / "docs/examples/entries"
+    home.mkdir()
+    stated, begun, tests = (entries / "level.toml").read_text(encoding="utf-8").partition("[level.tests.")
+    in_file = ("standard", "name", "condition", "source", "read_from")
+    text = "\n".join(line for line in stated.splitlines() if line.partition(" ")[0] not in in_file)
+    text = text.replace("[level]", '[level]\nfile = "level.toml"')
+    (home / "level.toml").write_text(
+        'standard = "x"\nname = "x"\nsource = "x"\n' + (begun + tests).replace("[level.tests", "[tests")
+    )
+    (home / "heel-to-toe.csv").symlink_to(entries / "heel-to-toe.csv")
+    assert "heel-to-toe.csv' is not in the folder" in pose_answer(text, str(home / "mine.toml"))["problem"]
+    (home / "heel-to-toe.csv").unlink()
+    (home / "heel-to-toe.csv").write_bytes((entries / "heel-to-toe.csv").read_bytes())
+    assert pose_answer(text, str(home / "mine.toml"))["problem"] is None
 
 
 @pytest.mark.parametrize("name", ["owl-wing-static", "four-bar", "knee"])
