@@ -232,6 +232,7 @@ def _share(value: float, limit: float) -> float:
     return value / limit if limit > 0.0 else math.inf
 
 
+FATIGUE_QUANTITIES = (Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE)
 SIZES = (Quantity.SIZE_X, Quantity.SIZE_Y, Quantity.SIZE_Z)
 UNLOADED_QUANTITIES = tuple(quantity for quantity in Quantity if quantity.unloaded)
 """What does not come from loads."""

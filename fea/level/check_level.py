@@ -9,7 +9,7 @@ from alula.fea.asked.tiers import tier_of, worst_of
 from alula.fea.check.deciding import BY_HAND
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
-from alula.fea.common.verdict import CheckOutcome, Quantity, Tier, Verdict, overall
+from alula.fea.common.verdict import FATIGUE_QUANTITIES, CheckOutcome, Tier, Verdict, overall
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.outcomes.found import Found
 from alula.fea.outcomes.result import CheckResult
@@ -18,8 +18,6 @@ from alula.loads.case.case import Case
 from alula.loads.case.level_case import Demand, demanded, over_states
 from alula.loads.records.check_spec import FatigueCheck
 from alula.loads.stated.level_spec import LevelSpec, LevelTest
-
-FATIGUE = (Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,7 +194,7 @@ def _with_fatigue(
     case, given = result.case, {key: value for key, value in options.items() if key in ("threads", "effort")}
     states = case.level.tests[test].states if case.level else ()
     kept = {
-        x: ([one for one in of.checks if one.quantity not in FATIGUE], list(of.found))
+        x: ([one for one in of.checks if one.quantity not in FATIGUE_QUANTITIES], list(of.found))
         for x, of in result.load_cases.items()
     }
     try:
@@ -208,7 +206,7 @@ def _with_fatigue(
         warnings = result.warnings
     else:
         for outcome in over.checks:
-            if outcome.quantity in FATIGUE:
+            if outcome.quantity in FATIGUE_QUANTITIES:
                 found = over.links[outcome.link].load_cases[test]
                 at = states[found.pose].name
                 kept[at][0].append(replace(outcome, load_case=at))

@@ -47,7 +47,7 @@ class RimGrowth:
         Link with a beam -> of its stress.
     pins : mapping of str to Scatter
         Joint -> of the stress of its pin.
-    farther : Farther or None
+    farther : Farther
         How much farther nodes move.
     """
 

@@ -29,6 +29,7 @@ from dataclasses import replace
 from alula.fea.common.change import EXACT, MaterialChange, Property, VerdictChange, rounded
 from alula.fea.common.source import SourceKind, widest
 from alula.fea.common.verdict import (
+    FATIGUE_QUANTITIES,
     LINKAGE,
     MOTOR_QUANTITIES,
     UNLOADED_QUANTITIES,
@@ -173,7 +174,7 @@ def _load(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> float |
     if _by_definition(check) or check.quantity in MOTOR_QUANTITIES:
         return check.margin
     straight = load_case.large_displacement.state == "small" and str(check.subject) != case.linkage.ground
-    if not straight or check.quantity in (Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE, Quantity.PERMANENT_SET):
+    if not straight or check.quantity in (*FATIGUE_QUANTITIES, Quantity.PERMANENT_SET):
         return None
     if check.quantity is Quantity.LINE_CONTACT:
         return check.margin**2  # its stress goes with the root of the force

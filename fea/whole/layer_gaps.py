@@ -308,7 +308,7 @@ class LayerGaps:
                 near = [(float(np.linalg.norm(frame.model.nodes[n][:2] - middle)), n) for _, n in frame.stations[link]]
                 units[link] = self._units(frame, min(near)[1])
         for i, name in enumerate(self.case.joints):
-            for group in self._groups[name]:
+            for group in loose_holes(self.case, name):
                 each = []
                 for held, whole in group:
                     play, force = whole if shares is None else shares[i] * whole, np.zeros((len(over.places), 2, 2))
@@ -330,10 +330,6 @@ class LayerGaps:
             loads = [NodeLoad(node=node, wrench=unit) for unit in np.eye(6)[2:5]]
             self._known[node] = frame.model.nodes[node][:2], rim_forces(self.case, frame, loads)
         return self._known[node]
-
-    @cached_property
-    def _groups(self) -> dict[str, tuple[tuple[tuple[str, float], ...], ...]]:
-        return {name: loose_holes(self.case, name) for name in self.case.joints}
 
     @cached_property
     def _known(self) -> dict[int, tuple[Real, Sequence[Mapping[tuple[str, str], Real]]]]:

@@ -18,6 +18,7 @@ from alula.reports.level.tests import (
     OWN,
     TESTS,
     at_state,
+    by_tests,
     level_caveats,
     level_section,
     level_warnings,
@@ -122,12 +123,8 @@ def _shared(
     result: LevelResult, told_of: Callable[[TestResult], Iterable[tuple[str, str]]]
 ) -> tuple[tuple[str, str], ...]:
     """Return what is told of all tests under titles, each once; with the names of its tests where not all have it."""
-    found: dict[tuple[str, str], list[str]] = {}
-    for name, test in result.tests.items():
-        for one in dict.fromkeys(told_of(test)):
-            found.setdefault(one, []).append(name)
     texts: dict[str, list[str]] = {}
-    for (title, text), names in found.items():
+    for (title, text), names in by_tests(result, told_of).items():
         of = "" if len(names) == len(result.tests) else f" ({joined(names)})"
         texts.setdefault(f"{title[:1].upper()}{title[1:]}{of}", []).append(sentence(text))
     return tuple((title, " ".join(own)) for title, own in texts.items())

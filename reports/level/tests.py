@@ -1,11 +1,11 @@
 """A level of tests: what each test says, on the console, in ``result.json`` and in the folder of its reports."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from alula.fea.common.reason import Reason
-from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.level.check_level import FATIGUE, LevelResult, Statement, TestResult
+from alula.fea.common.verdict import FATIGUE_QUANTITIES, CheckOutcome, Verdict
+from alula.fea.level.check_level import LevelResult, Statement, TestResult
 from alula.loads.case.level_case import Demand
 from alula.loads.text.caveat import Caveat
 from alula.reports.renderers.console import print_parts, verdict_line
@@ -22,6 +22,7 @@ from alula.reports.words.terminal import say
 if TYPE_CHECKING:
     from rich.console import Console
 
+Told = TypeVar("Told")
 TESTS, OWN = "tests", "own"
 """Folders of the reports of the tests, and of the case's own load cases."""
 
@@ -113,7 +114,7 @@ def at_state(test: TestResult, decides: CheckOutcome) -> str:
     str
         "" of fatigue as well, which all states make together.
     """
-    return f", {decides.load_case}" if test.spec.profiled and decides.quantity not in FATIGUE else ""
+    return f", {decides.load_case}" if test.spec.profiled and decides.quantity not in FATIGUE_QUANTITIES else ""
 
 
 def _record(result: LevelResult, test: TestResult) -> dict[str, Any]:
@@ -121,7 +122,6 @@ def _record(result: LevelResult, test: TestResult) -> dict[str, Any]:
         "title": test.spec.title,
         "source": test.spec.source or result.level.source,
         "verdict": test.verdict.value,
-    } | {
         "force": test.spec.decisive.most,
         "least": test.spec.decisive.least,
         "cycles": test.spec.cycles,
@@ -166,13 +166,30 @@ def level_warnings(result: LevelResult) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    found: dict[str, list[str]] = {}
-    for name, test in result.tests.items():  # whose load case has its name
-        for text in dict.fromkeys(plain_warning(test, one) for one in test.result.warnings):
-            found.setdefault(text, []).append(name)
+    found = by_tests(result, lambda test: [plain_warning(test, one) for one in test.result.warnings])
     every = len(result.tests)
     of = {text: "all tests" if len(names) == every > 1 else joined(names) for text, names in found.items()}
     return tuple(sentence(f"warning ({of[text]}): {text}") for text in found)
+
+
+def by_tests(result: LevelResult, told_of: Callable[[TestResult], Iterable[Told]]) -> dict[Told, list[str]]:
+    """Return what is told of tests, each once, with the names of its tests.
+
+    Parameters
+    ----------
+    result : LevelResult
+    told_of : callable
+        Takes a test to what is told of it.
+
+    Returns
+    -------
+    dict
+    """
+    found: dict[Told, list[str]] = {}
+    for name, test in result.tests.items():
+        for one in dict.fromkeys(told_of(test)):
+            found.setdefault(one, []).append(name)
+    return found
 
 
 def print_level(result: LevelResult, sections: Sequence[Section], console: "Console") -> None:
