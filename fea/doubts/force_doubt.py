@@ -18,12 +18,12 @@ from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import Growths, telling
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import numbers_by_hand, on_plates, peaks_by_hand
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.rim_growth import rim_growth
 from alula.fea.standing.joint_forces import JointForces
-from alula.fea.superposition.link_answers import LinkAnswers, Rule, widest
+from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band, widest
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.statics.statics import Reactions
@@ -224,8 +224,8 @@ def growths_by_hand(
     """
     stress, displacement = {}, {}
     for link, one in answers.items():
-        stresses, moved = numbers_by_hand(case, link, one.every).tolist()
-        stress[link] = one.stress(stresses[0], stresses[1:])
+        moved = numbers_by_hand(case, link, one.every)[1].tolist()
+        stress[link] = on_band(one.stress, *peaks_by_hand(case, link, one.every).tolist())
         displacement[link] = one.displacement(moved[0], moved[1:])
     return Growths(
         stress=telling(stress), displacement=telling(displacement), joints=telling(_joints(stated, changes, rule))

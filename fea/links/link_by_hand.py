@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.beam.calibration import calibration_of, uncalibrated
+from alula.fea.beam.critical_locations import critical_locations
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.beam.deflection import Deflection, deflection
 from alula.fea.beam.details import Detail, details, remarks
@@ -22,6 +24,7 @@ from alula.fea.links.on_axis import on_axis
 from alula.fea.links.second_order import second_order_loads
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.unloaded import load_size, without_rounding
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import Body, hand_section, no_beam, reference_line
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
@@ -212,6 +215,45 @@ def _bent(body: Body, material: Material, forces: Piecewise) -> Deflection:
         flanks=flanks_of(body),
         cuts=body.cuts,
     )
+
+
+def peaks_by_hand(case: Case, link: str, answers: Sequence[Plates]) -> Real:
+    """Return the ends of the calibrated band of a link's peak by hand, in n states.
+
+    Of its plain sections alone no state tells: couples of a pin and forces on a single eye are borne beside them.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    answers : sequence of tuple of LinkLoads
+        As of ``numbers_by_hand``.
+
+    Returns
+    -------
+    ndarray, shape (2, n)
+        Least and largest, of the worse plate [MPa]; where there is no such band, twice the stress of
+        ``numbers_by_hand``.
+    """
+    material, body = case.material_of(link), case.body(link)
+    if no_beam(body) or uncalibrated(body, material.poissons_ratio):
+        return np.tile(numbers_by_hand(case, link, answers)[0], (2, 1))
+    calibration = calibration_of(body.part)
+
+    def ends(loads: LinkLoads) -> tuple[float, float]:
+        acting = on_axis(loads, body, material.density)
+        beam = check_beam(acting, body.part.section, material.allowable, material.poissons_ratio)
+        found = [
+            (place.estimate, calibration.factors(place.kind, brittle=material.brittle))
+            for place in critical_locations(body, loads, beam)
+        ]
+        return max(x * factor.low for x, factor in found), max(x * factor.high for x, factor in found)
+
+    try:
+        each = [np.max([ends(loads) for loads in plates], axis=0) for plates in answers]
+    except CannotRunError:  # a cross hole outside of the handbook's range, in all states alike
+        return np.tile(numbers_by_hand(case, link, answers)[0], (2, 1))
+    return np.array(each).T
 
 
 def numbers_by_hand(case: Case, link: str, answers: Sequence[Plates], *, columns: bool = False) -> Real:
