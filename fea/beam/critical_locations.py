@@ -23,8 +23,12 @@ from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import extent, patch_span
 from alula.geometry.bodies.eyes import eye_reach
+from alula.geometry.bodies.features import Ring
 from alula.geometry.parts.part import Body, HoleRow, Pin
+from alula.loads.statics.foundation import Foundation
 
+_HEIGHTS = 17
+"""Along a bore, at which the pressure of a pin that bends is looked at, with both rims, where it is largest."""
 LocationKind = Literal["eye", "hole", "end", "section"]
 
 
@@ -257,7 +261,7 @@ def _bore(
 
     Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin in a strip, net section, d/D of 0.15
     to 0.75, clipped; it holds for an edge one width or more beyond the pin, and an eye has half a width, which the
-    calibration takes up), its moments taken as the force of their largest linear pressure, 6M/t; of what passes through
+    calibration takes up), as if the largest pressure along the bore were that all along it; of what passes through
     the eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the
     plane; of a torque that the bore takes by shear.
     """
@@ -265,9 +269,7 @@ def _bore(
     wide, thick = ring.diameter, ring.thickness
     h = min(max(hole / wide, 0.15), 0.75)
     factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
-    tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
-    push = float(np.linalg.norm(load.wrench[:3]) + tilted * np.linalg.norm(load.wrench[3:5]))
-    pushed = factor * net_tension(push, wide, hole, thick)
+    pushed = factor * net_tension(_largest_push(ring, load), wide, hole, thick)
     through = min(abs(before[0]), abs(after[0])) if before[0] * after[0] > 0.0 else 0.0
     n, m_z = 3.0 * through / ((wide - hole) * thick), max(abs(before[5]), abs(after[5]))
     in_plane = 2.0 * 6.0 * m_z * hole / (thick * (wide**3 - hole**3))
@@ -276,6 +278,21 @@ def _bore(
     twisted = math.sqrt(3.0) * 2.0 * t / (0.2 * (wide - hole) * thick * min(wide, thick))
     sheared = math.sqrt(3.0) * 2.0 * abs(torque) / (math.pi * hole**2 * thick)
     return float(pushed + n + in_plane + out_of_plane + twisted + sheared)
+
+
+def _largest_push(ring: Ring, load: PinLoad) -> float:
+    """Largest resultant per length along a bore, of force and couple each, times the bore's length [N].
+
+    It is F + 6M/t of a stiff pin; one that bends presses more on the rim at which it is loaded
+    (``alula.loads.statics.foundation``).
+    """
+    force, couple = float(np.linalg.norm(load.wrench[:3])), float(np.linalg.norm(load.wrench[3:5]))
+    foundation = Foundation.of(load.seat)
+    if foundation is None:
+        tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
+        return force + tilted * couple
+    even, turning = foundation.shapes(np.linspace(-0.5, 0.5, _HEIGHTS) * foundation.length)
+    return float((np.abs(even) * force + np.abs(turning) * couple).max() * foundation.length)
 
 
 def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> CriticalLocation:
