@@ -15,7 +15,7 @@ from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
 from alula.fea.doubts.load_growth import LEAST, Growths, telling
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates, peaks_by_hand
+from alula.fea.links.link_by_hand import HandStates, on_plates
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band
@@ -177,7 +177,8 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
 
 def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:
     """Both ends of the stress by hand, displacement and inverse of the buckling factor (4, n)."""
-    return np.vstack([peaks_by_hand(case, link, answers), numbers_by_hand(case, link, answers, columns=True)[1:]])
+    hand = HandStates(case, link, answers)
+    return np.vstack([hand.peaks, hand.displacement, hand.inverse_buckling])
 
 
 def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:

@@ -13,7 +13,7 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.solid_frame import with_solids
 from alula.fea.common.sought import LEFT
 from alula.fea.doubts.force_doubt import outermost, sharing_answers, sharing_doubt
-from alula.fea.links.link_by_hand import numbers_by_hand, peaks_by_hand
+from alula.fea.links.link_by_hand import HandStates
 from alula.fea.links.solid_result import link_task
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from alula.fea.solid.solution import SolidSolution, solve_solid
@@ -40,7 +40,7 @@ def worst() -> Reactions:
     case, statics, forces = in_plane()
     body, loads = case.body("rocker"), statics.loads["l"]
     acting = [(link_loads("l", "rocker", body, one, loads),) for one in forces.sharings]
-    return forces.sharings[int(numbers_by_hand(case, "rocker", acting)[0].argmax())]
+    return forces.sharings[int(HandStates(case, "rocker", acting).stress.argmax())]
 
 
 @cache
@@ -94,13 +94,13 @@ def test_the_band_by_hand_of_a_bent_link_holds_its_solid_in_its_worst_way():
     statics = solve_case_statics(case)
     ways = sharing_answers(case, "l", "coupler", statics.forces["l"], statics.loads["l"])
     growth = sharing_doubt(case, "l", statics.forces["l"], statics.loads["l"], links=["coupler"]).stress["coupler"]
-    low, high = peaks_by_hand(case, "coupler", ways.every)
+    low, high = HandStates(case, "coupler", ways.every).peaks
     [acting] = ways.others[high[1:].argmax()]
     task, mesh = link_task(case, "coupler", [acting]), mesh_body(case.body("coupler"), START)
     alone = solve_solid(mesh, E=task.E, nu=task.nu, density=task.density, loads=[acting], line=task.line)
     found, _ = largest(alone)
     assert low[0] * growth.low < high[0] < found < high[0] * growth.high
-    plain, *others = numbers_by_hand(case, "coupler", ways.every)[0]
+    plain, *others = HandStates(case, "coupler", ways.every).stress
     assert found > high[0] * ways.stress(plain, others).high
 
 
