@@ -281,18 +281,20 @@ def _bore(
 
 
 def _largest_push(ring: Ring, load: PinLoad) -> float:
-    """Largest resultant per length along a bore, of force and couple each, times the bore's length [N].
+    """Largest resultant per length along a bore, times the bore's length [N].
 
     It is F + 6M/t of a stiff pin; one that bends presses more on the rim at which it is loaded
     (``alula.loads.statics.foundation``).
     """
-    force, couple = float(np.linalg.norm(load.wrench[:3])), float(np.linalg.norm(load.wrench[3:5]))
+    tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
+    stiff = float(np.linalg.norm(load.wrench[:3]) + tilted * np.linalg.norm(load.wrench[3:5]))
     foundation = Foundation.of(load.seat)
     if foundation is None:
-        tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
-        return force + tilted * couple
-    even, turning = foundation.shapes(np.linspace(-0.5, 0.5, _HEIGHTS) * foundation.length)
-    return float((np.abs(even) * force + np.abs(turning) * couple).max() * foundation.length)
+        return stiff
+    force = load.wrench[:2]
+    moment = np.array([load.wrench[4], -load.wrench[3]]) - ring.middle * force
+    even, turning = foundation.shapes(np.linspace(-0.5, 0.5, _HEIGHTS)[:, None] * foundation.length)
+    return max(stiff, float(np.linalg.norm(even * force + turning * moment, axis=1).max() * foundation.length))
 
 
 def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> CriticalLocation:
