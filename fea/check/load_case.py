@@ -39,7 +39,7 @@ from alula.loads.case.connection_rules import turned_by_drive
 SolvedAnswers = Mapping[str, Shares]
 """Cause -> what it makes of the numbers of a link on its solid."""
 LESS_BY_SOLID = 1.5
-"""By what the sharing of couples may change the stress of a solid less than that by hand: 22 of 26 ends have up to 1.4."""
+"""By what the sharing of couples may change the stress of a solid less than that by hand: 23 of 26 have up to 1.4."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
