@@ -102,7 +102,7 @@ def critical_locations(
     for i, end in enumerate(states[0].ends):
         place = next(e for e in body.ends if e.name == end.name)
         low, high = patch_span(body, place)
-        pushed = _norms([loads.ends[i].wrench for loads in states], slice(3))
+        pushed = np.linalg.norm([loads.ends[i].wrench[:3] for loads in states], axis=1)
         stress = _largest(body, forces, [(low, high)], poisson) + pushed / (place.patch * body.part.section.width)
         found.append(CriticalLocation(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low,
                                       high=high, each=stress))  # fmt: skip
@@ -239,11 +239,6 @@ def _largest(body: Body, forces: Piecewise, stretches: Sequence[tuple[float, flo
     return largest_stress(only(forces, stretches), body.part.section, poisson)
 
 
-def _norms(wrenches: Sequence[Floats], parts: slice) -> Floats:
-    """Sizes (n,) of a part of the same wrench in every state."""
-    return np.asarray(np.linalg.norm(np.array(wrenches)[:, parts], axis=1))
-
-
 def _eye(body: Body, pin: Pin, states: Sequence[LinkLoads], forces: Piecewise, poisson: float) -> CriticalLocation:
     part, (first, last) = body.part, extent(body)
     reach = eye_reach(body, pin)
@@ -306,20 +301,22 @@ def _bore(body: Body, pin: Pin, loads: Sequence[PinLoad], torque: Floats, before
 
 
 def _largest_push(ring: Ring, loads: Sequence[PinLoad]) -> Floats:
-    """Largest resultant (n,) per length along a bore, of force and couple each, times the bore's length [N].
+    """Largest resultant (n,) per length along a bore, times the bore's length [N].
 
     It is F + 6M/t of a stiff pin; one that bends presses more on the rim at which it is loaded
     (``alula.loads.statics.foundation``).
     """
-    wrenches = [load.wrench for load in loads]
-    force, couple = _norms(wrenches, slice(3)), _norms(wrenches, slice(3, 5))
+    wrenches = np.array([load.wrench for load in loads])
+    tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
+    stiff = np.linalg.norm(wrenches[:, :3], axis=1) + tilted * np.linalg.norm(wrenches[:, 3:5], axis=1)
     foundation = Foundation.of(loads[0].seat)
     if foundation is None:
-        tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
-        return np.asarray(force + tilted * couple)
-    even, turning = foundation.shapes(np.linspace(-0.5, 0.5, _HEIGHTS) * foundation.length)
-    along = np.abs(even)[:, None] * force + np.abs(turning)[:, None] * couple
-    return np.asarray(along.max(axis=0) * foundation.length)
+        return np.asarray(stiff)
+    force = wrenches[:, :2]
+    moment = np.column_stack([wrenches[:, 4], -wrenches[:, 3]]) - ring.middle * force
+    even, turning = foundation.shapes(np.linspace(-0.5, 0.5, _HEIGHTS)[:, None, None] * foundation.length)
+    along = np.linalg.norm(even * force + turning * moment, axis=2)
+    return np.asarray(np.maximum(stiff, along.max(axis=0) * foundation.length))
 
 
 def _hole(body: Body, row: HoleRow, number: int, x: float, forces: Piecewise, poisson: float) -> CriticalLocation:
