@@ -23,7 +23,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
 from alula.fea.doubts.force_doubt import sharing_answers
 from alula.fea.frame.build import build_frame
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import HandStates, on_plates
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.outcomes.pins import shared_stress, stresses_between
 from alula.fea.pins.states import PinStates, unstated
@@ -260,10 +260,10 @@ def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Ite
         own.append(borne[:, number.index(("link", link)) - len(number)])
         chosen = {int(i) for one in own for i in np.argsort(one)[-TRIED:]}
         answers = sharing_answers(case, "l", link, forces, loads)
-        every = numbers_by_hand(case, link, answers.every)[0]
+        every = HandStates(case, link, answers.every).stress
         acting = [link_loads("l", link, case.body(link), pins.reactions(v[i]), loads) for i in sorted(chosen)]
         grown = [on_tilting_pins(case, link, on_plates(case, link, one)) for one in acting]
-        of_draws = numbers_by_hand(case, link, grown)[0]
+        of_draws = HandStates(case, link, grown).stress
         growth = answers.stress(every[0], every[1:])
         yield from _beyond(f"stress of {link}", growth.low * every[0], growth.high * every[0], of_draws)
 

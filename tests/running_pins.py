@@ -10,7 +10,7 @@ import numpy as np
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.frame.system import natural_deformations
-from alula.fea.links.link_by_hand import cut_link, numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import HandStates, cut_link, on_plates
 from alula.fea.nonlinear.corotational import subdivide
 from alula.fea.nonlinear.deformed_links import balanced, on_deformed_shape
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
@@ -125,7 +125,7 @@ class RunningPins:
         }
         moved = LargeDisplacement(state="deformed", span=1.0, points={}, links=links, reactions=reactions, reason="")
         cut = {link: cut_link(case, link, self.load_case, moved, reactions, self.loads) for link in case.checked_links}
-        return {link: float(numbers_by_hand(case, link, [one])[0, 0]) for link, one in cut.items()}
+        return {link: float(HandStates(case, link, [one]).stress[0]) for link, one in cut.items()}
 
 
 def in_small_motions(case, load_case, statics, v):
@@ -136,4 +136,4 @@ def in_small_motions(case, load_case, statics, v):
         link: on_plates(case, link, link_loads(load_case, link, case.body(link), reactions, loads))
         for link in case.checked_links
     }
-    return {link: float(numbers_by_hand(case, link, [one])[0, 0]) for link, one in cut.items()}
+    return {link: float(HandStates(case, link, [one]).stress[0]) for link, one in cut.items()}

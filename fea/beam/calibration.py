@@ -6,7 +6,7 @@
 import itertools
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 
@@ -14,6 +14,7 @@ from alula.fea.beam.critical_locations import LocationKind
 from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import Body, PartKind, clamped_end, patch_span
 from alula.geometry.bodies.eyes import eye_reach
+from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 Interval = tuple[float, float]
 _GAPS = {
@@ -75,6 +76,23 @@ class Calibration:
     von_mises: Mapping[LocationKind, Factors]
     principal: Mapping[LocationKind, Factors]
     displacement: Factors
+
+    def factors(self, kind: LocationKind, *, brittle: bool) -> Factors:
+        """Return the factors of the stress that decides at a kind of place.
+
+        Parameters
+        ----------
+        kind : Kind
+        brittle : bool
+            True for the largest principal stress, else von Mises.
+
+        Returns
+        -------
+        Factors
+            In an eye they reach higher, by what pin contact adds.
+        """
+        found = (self.principal if brittle else self.von_mises)[kind]
+        return replace(found, high=found.high / (1.0 - CONTACT_SHORTFALL)) if kind == "eye" else found
 
     def outside(self, body: Body, nu: float) -> Reason | None:
         """Return which proportion of a link lies outside of what was measured.

@@ -1,5 +1,7 @@
 """Hand calculation of the stress at every place of a link that can bear its peak: eyes, holes, loaded ends, sections.
 
+In one state or in n: of these the places are alike, and the stress of each is an array.
+
 Section stresses of beam theory times the handbooks' concentration factors. The factors are for neighbouring shapes
 (a shoulder for the junction of an eye, a plate for the eye itself), so that these numbers are estimates, to be used
 with the factors that solid models of such links gave (``alula.fea.beam.calibration``). Lengths in mm, forces in N,
@@ -7,7 +9,7 @@ moments in N·mm, stresses in MPa.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,19 +18,24 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.deflection import deflection
 from alula.fea.beam.holes import net_tension, tube_hole_factors
-from alula.fea.beam.piecewise import Side
-from alula.fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
-from alula.fea.beam.theory import BeamCheck
+from alula.fea.beam.piecewise import Piecewise, Side, only
+from alula.fea.beam.section_stress import bending_stress, equivalent_stress, rim_shear
+from alula.fea.beam.theory import BeamCheck, largest_stress
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import extent, patch_span
 from alula.geometry.bodies.eyes import eye_reach
-from alula.geometry.parts.part import Body, HoleRow, Pin
+from alula.geometry.bodies.features import Ring
+from alula.geometry.parts.part import Body, HoleRow, Pin, Section
+from alula.loads.statics.foundation import Foundation
 
+_HEIGHTS = 17
+"""Along a bore, at which the pressure of a pin that bends is looked at, with both rims, where it is largest."""
 LocationKind = Literal["eye", "hole", "end", "section"]
+Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CriticalLocation:
     """A place of a link and the estimate of the largest von Mises stress there.
 
@@ -44,8 +51,8 @@ class CriticalLocation:
         Station at which it begins [mm].
     high : float
         Station at which it ends [mm].
-    estimate : float
-        By hand [MPa].
+    each : ndarray, shape (n,)
+        By hand in every state [MPa].
     """
 
     kind: LocationKind
@@ -53,20 +60,29 @@ class CriticalLocation:
     x: float
     low: float
     high: float
-    estimate: float
+    each: Floats
+
+    @property
+    def estimate(self) -> float:
+        """The stress of the first state, or of the only one [MPa]."""
+        return float(self.each[0])
 
 
-def critical_locations(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[CriticalLocation, ...]:
-    """Return every critical location of a link under one load case.
+def critical_locations(
+    body: Body, states: Sequence[LinkLoads], forces: Piecewise, poisson: float
+) -> tuple[CriticalLocation, ...]:
+    """Return every critical location of a link.
 
     Parameters
     ----------
     body : Body
         Geometry of the link.
-    loads : LinkLoads
-        Of one load case.
-    beam : BeamCheck
-        The link by beam theory.
+    states : sequence of LinkLoads
+        What acts in each state.
+    forces : Piecewise
+        Internal forces of all of them, on the link's axis.
+    poisson : float
+        Poisson's ratio.
 
     Returns
     -------
@@ -79,18 +95,19 @@ def critical_locations(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[C
         For a cross hole outside of the handbook's range.
     """
     first, last = extent(body)
-    found = [_eye(body, pin, loads, beam) for pin in body.pins]
-    found += [_hole(body, row, number, x, beam) for number, row in enumerate(body.holes) for x in row.positions]
-    for end in loads.ends:
+    found = [_eye(body, pin, states, forces, poisson) for pin in body.pins]
+    found += [
+        _hole(body, row, number, x, forces, poisson) for number, row in enumerate(body.holes) for x in row.positions
+    ]
+    for i, end in enumerate(states[0].ends):
         place = next(e for e in body.ends if e.name == end.name)
         low, high = patch_span(body, place)
-        force = float(np.linalg.norm(end.wrench[:3]))
-        stress = _largest(beam, low, high) + force / (place.patch * body.part.section.width)
+        pushed = np.linalg.norm([loads.ends[i].wrench[:3] for loads in states], axis=1)
+        stress = _largest(body, forces, [(low, high)], poisson) + pushed / (place.patch * body.part.section.width)
         found.append(CriticalLocation(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low,
-                                      high=high, estimate=stress))  # fmt: skip
-    between = max((_largest(beam, low, high) for low, high in _gaps(found, first, last)), default=0.0)
-    middle = (first + last) / 2.0
-    rest = CriticalLocation(kind="section", name="the plain section", x=middle, low=first, high=last, estimate=between)
+                                      high=high, each=stress))  # fmt: skip
+    rest = CriticalLocation(kind="section", name="the plain section", x=(first + last) / 2.0, low=first, high=last,
+                            each=_largest(body, forces, [*_gaps(found, first, last)], poisson))  # fmt: skip
     return (*found, rest)
 
 
@@ -185,13 +202,13 @@ def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float
     return found[0], found[1], found[2]
 
 
-def forces_at(beam: BeamCheck, x: float, side: Side = "after") -> NDArray[np.float64]:
+def forces_at(forces: Piecewise, x: float, side: Side = "after") -> Floats:
     """Return the internal forces at a station.
 
     Parameters
     ----------
-    beam : BeamCheck
-        The link by beam theory.
+    forces : Piecewise
+        Of one state or of n.
     x : float
         Station [mm].
     side : Side, optional
@@ -199,12 +216,11 @@ def forces_at(beam: BeamCheck, x: float, side: Side = "after") -> NDArray[np.flo
 
     Returns
     -------
-    ndarray, shape (6,)
+    ndarray, shape (6,) or (n, 6)
         Forces; zero on what stands out beyond the last loaded station.
     """
-    breaks = beam.forces.breaks
-    inside = breaks[0] <= x <= breaks[-1]
-    return np.asarray(beam.forces.at(x, side)) if inside else np.zeros(6)
+    inside = forces.breaks[0] <= x <= forces.breaks[-1]
+    return forces.at(x, side) if inside else np.zeros((*forces.coefficients.shape[:-3], 6))
 
 
 def _gaps(found: list[CriticalLocation], first: float, last: float) -> Iterator[tuple[float, float]]:
@@ -218,46 +234,54 @@ def _gaps(found: list[CriticalLocation], first: float, last: float) -> Iterator[
         yield reach, last
 
 
-def _largest(beam: BeamCheck, low: float, high: float) -> float:
-    """Largest equivalent stress by beam theory between two stations."""
-    stations = [x for x in beam.x if low <= x <= high] + [low, high]
-    sides: tuple[Side, Side] = ("before", "after")
-    found = [forces_at(beam, float(x), side) for x in stations for side in sides]
-    return float(equivalent_stress(beam.section, np.array(found), beam.poisson).max())
+def _largest(body: Body, forces: Piecewise, stretches: Sequence[tuple[float, float]], poisson: float) -> Floats:
+    """Largest equivalent stress (n,) by beam theory on some stretches."""
+    return largest_stress(only(forces, stretches), body.part.section, poisson)
 
 
-def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> CriticalLocation:
+def _eye(body: Body, pin: Pin, states: Sequence[LinkLoads], forces: Piecewise, poisson: float) -> CriticalLocation:
     part, (first, last) = body.part, extent(body)
     reach = eye_reach(body, pin)
-    load = next(p for p in loads.pins if p.name == pin.name)
-    torque = sum(c.torque for c in loads.couples if c.pin == pin.name) + float(load.wrench[5])
-    before = forces_at(beam, pin.x, "before") if pin.x > beam.forces.breaks[0] else np.zeros(6)
-    after = forces_at(beam, pin.x, "after") if pin.x < beam.forces.breaks[-1] else np.zeros(6)
-    found = [_bore(body, pin, load, torque, before, after)]
+    loads = [next(p for p in one.pins if p.name == pin.name) for one in states]
+    torques = [sum(float(c.torque) for c in one.couples if c.pin == pin.name) for one in states]
+    torque = np.array([sum_ + float(load.wrench[5]) for sum_, load in zip(torques, loads, strict=True)])
+    nothing = np.zeros((len(states), 6))
+    before = forces_at(forces, pin.x, "before") if pin.x > forces.breaks[0] else nothing
+    after = forces_at(forces, pin.x, "after") if pin.x < forces.breaks[-1] else nothing
+    found = [_bore(body, pin, loads, torque, before, after)]
     sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
-    found += [_junction(body, pin, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
+    found += [_junction(body, pin, forces_at(forces, x, side), poisson) for x, side in sides if first < x < last]
     far = reach + part.section.width / 2.0
     return CriticalLocation(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
-                estimate=max(found))  # fmt: skip
+                each=np.max(found, axis=0))  # fmt: skip
 
 
-def _junction(body: Body, pin: Pin, forces: NDArray[np.float64], poisson: float) -> float:
-    """Stress at the fillet between the section and an eye under the section's forces (6,)."""
-    part, width = body.part, body.part.section.width
-    stress = section_stress(part.section, forces, poisson)
-    tension, bending, torsion = shoulder_factors(width, (body.ring(pin).diameter - width) / 2.0, part.fillet_radius)
-    direct = tension * abs(stress.axial) + bending * stress.bending
-    return math.hypot(direct, math.sqrt(3.0) * (torsion * stress.torsion + stress.shear))
+def _alone(section: Section, forces: Floats, poisson: float) -> tuple[Floats, Floats]:
+    """Largest shear stress (n,) of the torque and of the shear forces, each by itself, of internal forces (n, 6)."""
+    twist, shear = np.zeros_like(forces), np.zeros_like(forces)
+    twist[:, 3], shear[:, 1:3] = forces[:, 3], forces[:, 1:3]
+    found = equivalent_stress(section, np.concatenate([twist, shear]), poisson) / math.sqrt(3.0)
+    return found[: len(forces)], found[len(forces) :]
 
 
-def _bore(
-    body: Body, pin: Pin, load: PinLoad, torque: float, before: NDArray[np.float64], after: NDArray[np.float64]
-) -> float:
-    """Stress at the edge of a pin hole.
+def _junction(body: Body, pin: Pin, forces: Floats, poisson: float) -> Floats:
+    """Stress (n,) at the fillet between the section and an eye under the section's forces (n, 6)."""
+    section, width = body.part.section, body.part.section.width
+    twisted, sheared = _alone(section, forces, poisson)
+    tension, bending, torsion = shoulder_factors(
+        width, (body.ring(pin).diameter - width) / 2.0, body.part.fillet_radius
+    )
+    bent = bending_stress(section, forces[:, 4], forces[:, 5])
+    direct = tension * np.abs(forces[:, 0]) / section.area + bending * bent
+    return np.hypot(direct, math.sqrt(3.0) * (torsion * twisted + sheared))
+
+
+def _bore(body: Body, pin: Pin, loads: Sequence[PinLoad], torque: Floats, before: Floats, after: Floats) -> Floats:
+    """Stress (n,) at the edge of a pin hole.
 
     Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin in a strip, net section, d/D of 0.15
     to 0.75, clipped; it holds for an edge one width or more beyond the pin, and an eye has half a width, which the
-    calibration takes up), its moments taken as the force of their largest linear pressure, 6M/t; of what passes through
+    calibration takes up), as if the largest pressure along the bore were that all along it; of what passes through
     the eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the
     plane; of a torque that the bore takes by shear.
     """
@@ -265,36 +289,53 @@ def _bore(
     wide, thick = ring.diameter, ring.thickness
     h = min(max(hole / wide, 0.15), 0.75)
     factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
+    pushed = factor * net_tension(1.0, wide, hole, thick) * _largest_push(ring, loads)
+    larger, passing = np.maximum(np.abs(before), np.abs(after)).T, before[:, 0] * after[:, 0] > 0.0
+    through = np.where(passing, np.minimum(np.abs(before[:, 0]), np.abs(after[:, 0])), 0.0)
+    n = 3.0 * through / ((wide - hole) * thick)
+    in_plane = 2.0 * 6.0 * larger[5] * hole / (thick * (wide**3 - hole**3))
+    out_of_plane = 3.0 * 6.0 * larger[4] / ((wide - hole) * thick**2)
+    twisted = math.sqrt(3.0) * 2.0 * larger[3] / (0.2 * (wide - hole) * thick * min(wide, thick))
+    sheared = math.sqrt(3.0) * 2.0 * np.abs(torque) / (math.pi * hole**2 * thick)
+    return np.asarray(pushed + n + in_plane + out_of_plane + twisted + sheared)
+
+
+def _largest_push(ring: Ring, loads: Sequence[PinLoad]) -> Floats:
+    """Largest resultant (n,) per length along a bore, times the bore's length [N].
+
+    It is F + 6M/t of a stiff pin; one that bends presses more on the rim at which it is loaded
+    (``alula.loads.statics.foundation``).
+    """
+    wrenches = np.array([load.wrench for load in loads])
     tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
-    push = float(np.linalg.norm(load.wrench[:3]) + tilted * np.linalg.norm(load.wrench[3:5]))
-    pushed = factor * net_tension(push, wide, hole, thick)
-    through = min(abs(before[0]), abs(after[0])) if before[0] * after[0] > 0.0 else 0.0
-    n, m_z = 3.0 * through / ((wide - hole) * thick), max(abs(before[5]), abs(after[5]))
-    in_plane = 2.0 * 6.0 * m_z * hole / (thick * (wide**3 - hole**3))
-    m_y, t = max(abs(before[4]), abs(after[4])), max(abs(before[3]), abs(after[3]))
-    out_of_plane = 3.0 * 6.0 * m_y / ((wide - hole) * thick**2)
-    twisted = math.sqrt(3.0) * 2.0 * t / (0.2 * (wide - hole) * thick * min(wide, thick))
-    sheared = math.sqrt(3.0) * 2.0 * abs(torque) / (math.pi * hole**2 * thick)
-    return float(pushed + n + in_plane + out_of_plane + twisted + sheared)
+    stiff = np.linalg.norm(wrenches[:, :3], axis=1) + tilted * np.linalg.norm(wrenches[:, 3:5], axis=1)
+    foundation = Foundation.of(loads[0].seat)
+    if foundation is None:
+        return np.asarray(stiff)
+    force = wrenches[:, :2]
+    moment = np.column_stack([wrenches[:, 4], -wrenches[:, 3]]) - ring.middle * force
+    even, turning = foundation.shapes(np.linspace(-0.5, 0.5, _HEIGHTS)[:, None, None] * foundation.length)
+    along = np.linalg.norm(even * force + turning * moment, axis=2)
+    return np.asarray(np.maximum(stiff, along.max(axis=0) * foundation.length))
 
 
-def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> CriticalLocation:
+def _hole(body: Body, row: HoleRow, number: int, x: float, forces: Piecewise, poisson: float) -> CriticalLocation:
     """Stress at the rim of a cross hole: N and M with the handbook's factors on the gross section, shear with 4.
 
     The shear of V is that where the hole opens: on a tube the wall's mean at the neutral axis, 4V/3A (1+m+m²)/(1+m²)
     with m the ratio of the radii (Gere & Goodno, 8th ed., section 5.9), on a bar that of the rim.
     """
     part, section = body.part, body.part.section
-    forces = forces_at(beam, x)
-    n, v_y, v_z, _, m_y, m_z = map(float, forces)
-    stress = section_stress(section, forces, beam.poisson)
+    here = forces_at(forces, x)
+    n, v_y, v_z, _, m_y, m_z = here.T
+    twisted, _ = _alone(section, here, poisson)
     opened, across = (m_z, m_y) if row.along == "y" else (m_y, m_z)
     shear = v_z if row.along == "y" else v_y
     if section.round:
         tension, bending = tube_hole_factors(section.width, section.radius_ratio * section.width, row.diameter)
         at_rim, aside = section.half_y / section.i_z, section.half_y / section.i_z
         m = section.radius_ratio
-        transverse = 4.0 / 3.0 * (1.0 + m + m**2) / (1.0 + m**2) * abs(shear) / section.area
+        transverse = 4.0 / 3.0 * (1.0 + m + m**2) / (1.0 + m**2) * np.abs(shear) / section.area
     else:
         width = part.section.across(row.along)
         h = row.diameter / width
@@ -304,8 +345,10 @@ def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> C
         half, second = (section.half_y, section.i_z) if row.along == "y" else (section.half_z, section.i_y)
         other, other_second = (section.half_z, section.i_y) if row.along == "y" else (section.half_y, section.i_z)
         at_rim, aside = half / second, other / other_second
-        transverse = rim_shear(section, beam.poisson)[1 if row.along == "y" else 0] * abs(shear)
-    rim = tension * abs(n) / section.area + bending * abs(opened) * at_rim + 4.0 * (stress.torsion + transverse)
-    estimate = max(rim, stress.equivalent, abs(n) / section.area + abs(across) * aside + rim / 3.0)
+        transverse = rim_shear(section, poisson)[1 if row.along == "y" else 0] * np.abs(shear)
+    axial = np.abs(n) / section.area
+    rim = tension * axial + bending * np.abs(opened) * at_rim + 4.0 * (twisted + transverse)
+    plain = equivalent_stress(section, here, poisson)
+    each = np.max([rim, plain, axial + np.abs(across) * aside + rim / 3.0], axis=0)
     return CriticalLocation(kind="hole", name=reason("hole_of_row", x=x, row=number + 1), x=x, low=x - row.diameter,
-                high=x + row.diameter, estimate=float(estimate))  # fmt: skip
+                high=x + row.diameter, each=each)  # fmt: skip

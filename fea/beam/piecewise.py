@@ -354,6 +354,26 @@ def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
     return Piecewise(breaks=breaks, coefficients=np.stack(rows, axis=-3))
 
 
+def only(functions: Piecewise, stretches: Sequence[tuple[float, float]]) -> Piecewise:
+    """Return the same functions on some stretches, and zero elsewhere.
+
+    Parameters
+    ----------
+    functions : Piecewise
+    stretches : sequence of tuple of 2 float
+        First and last station of each; what lies off the beam is left out [mm].
+
+    Returns
+    -------
+    Piecewise
+    """
+    parts = divided(functions, [x for stretch in stretches for x in stretch])
+    first, last = parts.breaks[:-1, None], parts.breaks[1:, None]
+    low, high = np.reshape(stretches, (-1, 2)).T
+    within = ((first >= low) & (last <= high)).any(axis=1)
+    return Piecewise(breaks=parts.breaks, coefficients=np.where(within[:, None, None], parts.coefficients, 0.0))
+
+
 def _refined(c: Floats, measure: Measure, low: Floats, high: Floats, s: Floats, peak: Floats) -> tuple[Floats, Floats]:
     """Search for maxima of q intervals, each between two places; a start (s, peak) stays if nothing better turns up."""
     powers, each = np.arange(c.shape[-1]), np.arange(len(c))

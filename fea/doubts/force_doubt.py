@@ -18,12 +18,12 @@ from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import Growths, telling
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import HandStates, on_plates
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.rim_growth import rim_growth
 from alula.fea.standing.joint_forces import JointForces
-from alula.fea.superposition.link_answers import LinkAnswers, Rule, widest
+from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band, widest
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.statics.statics import Reactions
@@ -195,7 +195,7 @@ def _by_itself(case: Case, load_case: str, link: str, forces: JointForces, loads
     """Growth of a link's ends of stress, by hand, that bends by itself on pins that tilt."""
     _, *ways = _ways(case, load_case, link, forces, loads)
     plain, tilted = [on_plates(case, link, way) for way in ways], _on_tilting_pins(case, link, ways)
-    numbers = numbers_by_hand(case, link, [*plain, *tilted])[0]
+    numbers = HandStates(case, link, [*plain, *tilted]).stress
     before, after = numbers[: len(ways)], numbers[len(ways) :]
     if not before.min() > 0.0:
         return Scatter()
@@ -224,9 +224,10 @@ def growths_by_hand(
     """
     stress, displacement = {}, {}
     for link, one in answers.items():
-        stresses, moved = numbers_by_hand(case, link, one.every).tolist()
-        stress[link] = one.stress(stresses[0], stresses[1:])
-        displacement[link] = one.displacement(moved[0], moved[1:])
+        hand = HandStates(case, link, one.every)
+        stress[link] = on_band(one.stress, *hand.peaks.tolist())
+        plain, *others = hand.displacement.tolist()
+        displacement[link] = one.displacement(plain, others)
     return Growths(
         stress=telling(stress), displacement=telling(displacement), joints=telling(_joints(stated, changes, rule))
     )

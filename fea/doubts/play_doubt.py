@@ -15,10 +15,10 @@ from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
 from alula.fea.doubts.load_growth import LEAST, Growths, telling
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import HandStates, on_plates
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.standing.joint_forces import JointForces, joint_forces
-from alula.fea.superposition.link_answers import LinkAnswers, Rule
+from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.bodies.body import Body
 from alula.loads.case.case import Case
@@ -62,7 +62,8 @@ def play_doubt(
     kinds: tuple[dict[str, Scatter], ...] = ({}, {}, {})
     for link in links:
         told = _play_on_link(case, load_case, link, forces, loads)
-        for kind, rule, numbers in zip(kinds, told.rules, told.by_hand.tolist(), strict=True):
+        kinds[0][link] = on_band(told.rules[0], *told.peaks.tolist())
+        for kind, rule, numbers in zip(kinds[1:], told.rules[1:], told.by_hand.tolist(), strict=True):
             kind[link] = rule(numbers[0], numbers[1:])
     stress, displacement, columns = map(telling, kinds)
     return Growths(stress=stress, displacement=displacement, joints=telling(joints), columns=columns)
@@ -118,12 +119,13 @@ def play_answers(case: Case, load_case: str, link: str, forces: JointForces, loa
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _OnLink:
-    """What play makes of a link: answers, as stated first, their numbers by hand (3, n), and the rule of each number.
+    """What play makes of a link: answers, as stated first, their numbers by hand, and the rule of each number.
 
-    Numbers are stress, displacement and inverse of the buckling factor.
+    Numbers are both ends of the stress (2, n), and displacement and inverse of the buckling factor (2, n).
     """
 
     answers: Sequence[Plates]
+    peaks: Real
     by_hand: Real
     rules: tuple[Rule, Rule, Rule]
 
@@ -135,12 +137,13 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
     if play.through_dead_point or play.nominal is None:
         lost = Scatter(low=0.0, high=np.inf, sources=(source,))
         without = [on_plates(case, link, acting)]
-        return _OnLink(answers=without, by_hand=np.zeros((3, 1)), rules=(lambda *_: lost,) * 3)
+        nothing = np.zeros((2, 1))
+        return _OnLink(answers=without, peaks=nothing, by_hand=nothing, rules=(lambda *_: lost,) * 3)
     at = partial(_at, load_case, link, body, acting)
     ends = _ends(play, forces)
     standing = [(_reactions(play, forces, play.nominal), play.nominal), *(end for _, _, end in ends)]
     answers = [on_plates(case, link, at(*state)) for state in standing]
-    numbers = numbers_by_hand(case, link, answers, columns=True)
+    numbers = _numbers(case, link, answers)
     worst = list[Plates]()
     for plain, *tried in numbers.tolist():
         slopes = {name: np.zeros(2) for name in play.loose.radii}
@@ -149,7 +152,7 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         if 2.0 * sum(float(np.linalg.norm(slope)) for slope in slopes.values()) > LEAST * plain:
             worst += [on_plates(case, link, at(*state)) for state in _worst(play, forces, slopes)]
     if worst:
-        numbers = np.hstack([numbers, numbers_by_hand(case, link, worst, columns=True)])
+        numbers = np.hstack([numbers, _numbers(case, link, worst)])
     held = [_scatter(play.forces[name], source) for name in case.linkage.joints_of(link)] if case.layered else []
 
     def alone(value: float, found: Sequence[float]) -> Scatter:
@@ -168,7 +171,14 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         low, high = min(one.low, *(pin.low for pin in held)), max(one.high, *(pin.high for pin in held))
         return Scatter(low=max(low, 0.0), high=high, sources=(source,))
 
-    return _OnLink(answers=[*answers, *worst], by_hand=numbers, rules=(with_couples, with_couples, alone))
+    rules = with_couples, with_couples, alone
+    return _OnLink(answers=[*answers, *worst], peaks=numbers[:2], by_hand=numbers[2:], rules=rules)
+
+
+def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:
+    """Both ends of the stress by hand, displacement and inverse of the buckling factor (4, n)."""
+    hand = HandStates(case, link, answers)
+    return np.vstack([hand.peaks, hand.displacement, hand.inverse_buckling])
 
 
 def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:

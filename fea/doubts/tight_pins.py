@@ -13,7 +13,7 @@ from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.doubts.force_doubt import sharing_answers
-from alula.fea.links.link_by_hand import numbers_by_hand
+from alula.fea.links.link_by_hand import HandStates
 from alula.fea.pins.states import running, unstated
 from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
@@ -104,8 +104,8 @@ class SharedCouples:
 
     def _left(self, link: str, forces: JointForces) -> Scatter:
         answers = sharing_answers(self.case, self.load_case, link, forces, self.loads, grown=self.grown)
-        plain, *others = numbers_by_hand(self.case, link, answers.every)[0].tolist()
-        return Scatter(low=min(others) / plain, high=max(others) / plain) if plain > 0.0 else Scatter()
+        (least, *low), (most, *high) = HandStates(self.case, link, answers.every).peaks.tolist()
+        return Scatter(low=min(low) / least, high=max(high) / most) if least > 0.0 else Scatter()
 
     @cached_property
     def _stated(self) -> Callable[[tuple[str, ...]], JointForces]:

@@ -50,7 +50,7 @@ def edge_stress(body: Body, beam: BeamCheck, largest: float) -> float:
         return EDGE * largest
     mouths = [mouth(body, end) for end in body.ends if end.clamped]
     nominal = [
-        float(equivalent_stress(body.section_at(x), forces_at(beam, x, side)[None], beam.poisson)[0])
+        float(equivalent_stress(body.section_at(x), forces_at(beam.forces, x, side)[None], beam.poisson)[0])
         for x in mouths
         for side in ("before", "after")
     ]

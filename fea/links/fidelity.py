@@ -13,6 +13,7 @@ from typing import Literal
 
 from alula.fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
 from alula.fea.beam.critical_locations import CriticalLocation, critical_locations, displacement_estimate
+from alula.fea.beam.piecewise import stacked
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
@@ -29,7 +30,6 @@ from alula.geometry.bodies.eyes import eye_reach
 from alula.geometry.meshing.mesh import MeshSettings
 from alula.geometry.meshing.tagged_mesh import TaggedMesh
 from alula.geometry.parts.part import Body
-from alula.loads.records.bearing import CONTACT_SHORTFALL
 
 Model = Literal["beam", "solid"]
 
@@ -326,7 +326,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     found: tuple[CriticalLocation, ...] = ()
     if not outside:
         try:
-            found = critical_locations(body, loads, beam)
+            found = critical_locations(body, [loads], stacked([beam.forces]), task.nu)
         except CannotRunError as error:
             outside = str(error)
     if outside:
@@ -337,8 +337,8 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     rows = [
         LocationBand(
             location=location,
-            von_mises=_at_location(location, calibration.von_mises[location.kind], sources),
-            principal=_at_location(location, calibration.principal[location.kind], sources),
+            von_mises=_at_location(location, calibration.factors(location.kind, brittle=False), sources),
+            principal=_at_location(location, calibration.factors(location.kind, brittle=True), sources),
         )
         for location in found
     ]
@@ -477,11 +477,8 @@ def _source(calibration: Calibration) -> Source:
 
 
 def _at_location(location: CriticalLocation, factors: Factors, sources: tuple[Source, ...]) -> Band:
-    """Band of the stress at a critical location; in an eye it reaches higher, by what pin contact adds."""
-    if location.kind != "eye":
-        return _band(location.estimate, factors, sources)
-    contact = replace(factors, high=factors.high / (1.0 - CONTACT_SHORTFALL))
-    return _band(location.estimate, contact, (*sources, CONTACT))
+    """Band of the stress at a critical location."""
+    return _band(location.estimate, factors, (*sources, CONTACT) if location.kind == "eye" else sources)
 
 
 def _band(estimate: float, factors: Factors, sources: tuple[Source, ...]) -> Band:

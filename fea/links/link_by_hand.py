@@ -1,11 +1,14 @@
 """What acts on one link cut free, with the growth of its bending, and its hand calculation, in one state or in many."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.fea.beam.calibration import calibration_of, uncalibrated
+from alula.fea.beam.critical_locations import critical_locations
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.beam.deflection import Deflection, deflection
 from alula.fea.beam.details import Detail, details, remarks
@@ -22,6 +25,7 @@ from alula.fea.links.on_axis import on_axis
 from alula.fea.links.second_order import second_order_loads
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.outcomes.unloaded import load_size, without_rounding
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import Body, hand_section, no_beam, reference_line
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
@@ -214,45 +218,95 @@ def _bent(body: Body, material: Material, forces: Piecewise) -> Deflection:
     )
 
 
-def numbers_by_hand(case: Case, link: str, answers: Sequence[Plates], *, columns: bool = False) -> Real:
-    """Return stress, displacement and, if wanted, the inverse of the buckling factor of a link by hand, in n states.
+@dataclass(frozen=True, eq=False)
+class HandStates:
+    """The hand calculation of a link in n states; each number is that of its worse plate.
 
-    Parameters
+    Attributes
     ----------
     case : Case
     link : str
     answers : sequence of tuple of LinkLoads
-        What acts on the link in each state, or on each plate of a pair: its numbers are those of the worse plate.
-    columns : bool, optional
-
-    Returns
-    -------
-    ndarray, shape (2 or 3, n)
-        [MPa], [mm], pure; each the largest pin force [N] of a link for which no beam stands.
+        What acts on the link in each state, or on each plate of a pair.
     """
-    first = np.cumsum([0, *(len(plates) for plates in answers[:-1])])
-    every, body = [loads for plates in answers for loads in plates], case.body(link)
-    if no_beam(body):
-        pulled = [max(float(np.linalg.norm(pin.wrench[:3])) for pin in loads.pins) for loads in every]
-        found = np.tile(pulled, (2 + columns, 1))
-    else:
-        found = _numbers(case, link, body, every, columns)
-    return np.asarray(np.maximum.reduceat(found, first, axis=1))
 
+    case: Case
+    link: str
+    answers: Sequence[Plates]
 
-def _numbers(case: Case, link: str, body: Body, every: Sequence[LinkLoads], columns: bool) -> Real:
-    material, section = case.material_of(link), hand_section(body)
-    poisson = material.poissons_ratio
-    found = np.zeros((2 + columns, len(every)))
-    alone = [internal_forces(on_axis(loads, body, material.density)) for loads in every]
-    for alike in alike_stations(alone):
-        forces = divided(stacked([alone[i] for i in alike]), [cut.x for cut in body.cuts])
-        found[0, alike] = largest_stress(forces, section, poisson, body.cuts)
-        for i in alike:
-            found[0, i] = max(
-                found[0, i], *(one.stress.equivalent for one in details(body, every[i], alone[i], poisson)), 0.0
-            )
-        found[1, alike] = _bent(body, material, forces).each
-        if columns:
-            found[2, alike] = 1.0 / least_factors(case, link, forces)
-    return found
+    @cached_property
+    def stress(self) -> Real:
+        """Largest stress (n,) of plain sections and details [MPa]; the largest pin force [N] where no beam stands."""
+        body, poisson = self._body, self._material.poissons_ratio
+
+        def of(alike: list[int], forces: Piecewise) -> Real:
+            plain = largest_stress(forces, hand_section(body), poisson, body.cuts)
+            for k, i in enumerate(alike):
+                places = details(body, self._every[i], forces.state(k), poisson)
+                plain[k] = max(plain[k], *(one.stress.equivalent for one in places), 0.0)
+            return plain
+
+        return self._worse(self._each(of))
+
+    @cached_property
+    def peaks(self) -> Real:
+        """Least and largest peak (2, n) of the calibrated band [MPa]; twice ``stress`` where there is none.
+
+        Plain sections alone do not tell it: couples of a pin and forces on a single eye are borne beside them.
+        """
+        material, body = self._material, self._body
+        if no_beam(body) or uncalibrated(body, material.poissons_ratio):
+            return np.tile(self.stress, (2, 1))
+        calibration, found = calibration_of(body.part), np.zeros((2, len(self._every)))
+        try:
+            for alike, forces in self._forces:
+                acting = [self._every[i] for i in alike]
+                for place in critical_locations(body, acting, forces, material.poissons_ratio):
+                    factors = calibration.factors(place.kind, brittle=material.brittle)
+                    ends = np.outer([factors.low, factors.high], place.each)
+                    found[:, alike] = np.maximum(found[:, alike], ends)
+        except CannotRunError:  # a cross hole outside of the handbook's range, in all states alike
+            return np.tile(self.stress, (2, 1))
+        return self._worse(found)
+
+    @cached_property
+    def displacement(self) -> Real:
+        """The largest (n,) [mm]; the largest pin force [N] where no beam stands."""
+        return self._worse(self._each(lambda _, forces: _bent(self._body, self._material, forces).each))
+
+    @cached_property
+    def inverse_buckling(self) -> Real:
+        """Inverse (n,) of the buckling factor; the largest pin force [N] where no beam stands."""
+        return self._worse(self._each(lambda _, forces: 1.0 / least_factors(self.case, self.link, forces)))
+
+    @property
+    def _material(self) -> Material:
+        return self.case.material_of(self.link)
+
+    @property
+    def _body(self) -> Body:
+        return self.case.body(self.link)
+
+    @cached_property
+    def _every(self) -> list[LinkLoads]:
+        return [loads for plates in self.answers for loads in plates]
+
+    def _worse(self, every: Real) -> Real:
+        first = np.cumsum([0, *(len(plates) for plates in self.answers[:-1])])
+        return np.asarray(np.maximum.reduceat(every, first, axis=-1))
+
+    @cached_property
+    def _forces(self) -> list[tuple[list[int], Piecewise]]:
+        """Numbers of the states whose stations are alike, and their internal forces."""
+        alone = [internal_forces(on_axis(loads, self._body, self._material.density)) for loads in self._every]
+        cuts = [cut.x for cut in self._body.cuts]
+        return [(alike, divided(stacked([alone[i] for i in alike]), cuts)) for alike in alike_stations(alone)]
+
+    def _each(self, number: Callable[[list[int], Piecewise], Real]) -> Real:
+        """A number (n,) of internal forces in every state."""
+        if no_beam(self._body):
+            return np.array([max(float(np.linalg.norm(pin.wrench[:3])) for pin in one.pins) for one in self._every])
+        found = np.zeros(len(self._every))
+        for alike, forces in self._forces:
+            found[alike] = number(alike, forces)
+        return found

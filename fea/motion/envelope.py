@@ -23,7 +23,7 @@ from alula.fea.common.verdict import CheckOutcome, overall
 from alula.fea.elements.space import DisplacementSpace, displacement_space
 from alula.fea.judging.linkage import unless_it_gives_way
 from alula.fea.links.clamp_edge import CLAMP_SCATTER
-from alula.fea.links.link_by_hand import numbers_by_hand
+from alula.fea.links.link_by_hand import HandStates
 from alula.fea.links.solid_result import link_task
 from alula.fea.motion.buckling_history import with_second_order
 from alula.fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
@@ -157,7 +157,7 @@ class _Envelope:
         answers = self.ways.get((load_case, link))
         if answers is None:
             return found
-        stated, *others = numbers_by_hand(self.moved.case, link, answers.every)[0].tolist()
+        stated, *others = HandStates(self.moved.case, link, answers.every).stress.tolist()
         return found.times(answers.stress(stated, others))
 
     def _tell(self, message: str) -> None:

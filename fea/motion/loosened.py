@@ -32,7 +32,7 @@ from alula.fea.common.source import distinct, play_source
 from alula.fea.doubts.force_doubt import rim_doubt
 from alula.fea.doubts.load_growth import LEAST, SOURCES, Growths, beyond_undeformed, by_hand_numbers
 from alula.fea.doubts.play_doubt import play_doubt
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates, plates_by_hand
+from alula.fea.links.link_by_hand import HandStates, on_plates, plates_by_hand
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.layered import forces_at
 from alula.fea.motion.link_history import link_histories
@@ -173,7 +173,7 @@ def _hand(moved: CaseMotion, load_case: str, link: str, pose: int) -> float:
     case, loads = moved.case, [chosen(load, pose) for load in moved.loads[load_case]]
     forces = forces_at(moved, load_case, pose)
     found = link_loads(load_case, link, case.body(link), forces.reactions, loads)
-    return float(numbers_by_hand(case, link, [on_plates(case, link, found)])[0, 0])
+    return float(HandStates(case, link, [on_plates(case, link, found)]).stress[0])
 
 
 def joint_growth(

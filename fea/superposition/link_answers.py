@@ -5,7 +5,7 @@ rule the numbers found under these become an interval (``docs/theory/bands.md``)
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from alula.fea.common.link_loads import Plates
 from alula.fea.common.scatter import Scatter
@@ -35,6 +35,24 @@ def widest(sources: tuple[Source, ...]) -> Rule:
         return Scatter(low=max(low, 0.0), high=high, sources=sources)
 
     return rule
+
+
+def on_band(rule: Rule, least: Sequence[float], most: Sequence[float]) -> Scatter:
+    """Return what all answers make of a number that each of them tells within a band.
+
+    Parameters
+    ----------
+    rule : callable
+    least, most : sequence of float
+        Ends of the band in every answer, as stated first.
+
+    Returns
+    -------
+    Scatter
+        On the ends of the band as stated. Where its lower end is 0, as of an idle plate, nothing is known of the least.
+    """
+    low, high = (rule(value, others) for value, *others in (least, most))
+    return replace(high, low=min(low.low, 1.0) if least[0] > 0.0 else 0.0, high=max(high.high, 1.0))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

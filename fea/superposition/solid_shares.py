@@ -19,7 +19,7 @@ from alula.fea.elements.space import DisplacementSpace
 from alula.fea.refine.link_series import STRESS, PeakQuantity
 from alula.fea.refine.link_task import ElasticLink, LinkTask
 from alula.fea.refine.refinement import RefinedSolid
-from alula.fea.superposition.link_answers import LinkAnswers, Rule
+from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band
 from alula.fea.superposition.link_measure import LinkMeasure
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.keeping.kept import kept
@@ -116,16 +116,8 @@ def _elsewhere(refined: RefinedSolid, quantity: PeakQuantity, cause: LinkAnswers
 
 
 def _factors(values: Real, answers: NDArray[np.int64], rule: Rule) -> Scatter:
-    """What all answers make of a value; variants and plates of a pair count by the worst one, and by the best one.
-
-    Where the best one is 0 as stated, as of an idle plate, nothing is known of the low end.
-    """
+    """What all answers make of a value; variants and plates of a pair count by the worst one, and by the best one."""
     each = [values[answers == number] for number in np.unique(answers)]
     if not each[0].max() > 0.0:
         raise CannotRunError("a link without stress has no share of one")
-    ends = [
-        rule(float(first), list(map(float, rest)))
-        for first, *rest in ([one.min() for one in each], [one.max() for one in each])
-    ]
-    low = min(ends[0].low, 1.0) if each[0].min() > 0.0 else 0.0
-    return replace(ends[1], low=low, high=max(ends[1].high, 1.0))
+    return on_band(rule, [float(one.min()) for one in each], [float(one.max()) for one in each])

@@ -10,7 +10,7 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.common.sought import LEFT
-from alula.fea.links.link_by_hand import link_by_hand, numbers_by_hand
+from alula.fea.links.link_by_hand import HandStates, link_by_hand
 from alula.fea.links.second_order import on_tilting_pins, second_order_loads
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.case import Case
@@ -53,7 +53,7 @@ def test_the_band_of_a_strut_in_layers_holds_the_secant_formula(share: float) ->
     statics = solve_case_statics(case)
     loose = statics.forces["lift"].reactions
     acting = link_loads("lift", "coupler", case.body("coupler"), loose, statics.loads["lift"])
-    [found, plain] = numbers_by_hand(case, "coupler", [on_tilting_pins(case, "coupler", [acting]), (acting,)])[0]
+    [found, plain] = HandStates(case, "coupler", [on_tilting_pins(case, "coupler", [acting]), (acting,)]).stress
     assert plain == pytest.approx(load / (WIDE * THICK) * (1.0 + OFF * 6.0 / THICK), rel=1e-3)
     assert found == pytest.approx(secant(share, load), rel=1e-3)
 

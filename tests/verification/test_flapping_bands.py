@@ -11,7 +11,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.alternatives import least_of_convex
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Verdict
-from alula.fea.links.link_by_hand import numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import HandStates, on_plates
 from alula.fea.motion.buckling_history import factors_over_motion
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.link_history import link_histories
@@ -169,7 +169,7 @@ def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
         body = one.case.body(link)
         acting = link_loads("air", link, body, one.forces["air"], one.loads["air"])
         poses = [on_plates(one.case, link, acting.chosen(i)) for i in range(len(every))]
-        return float(numbers_by_hand(one.case, link, poses)[0].max())
+        return float(HandStates(one.case, link, poses).stress.max())
 
     others = [solve_case_motion(swept(c, c, c)) for c in (1.2, 5.0, *RANDOM[:2])]
     for link in moved.case.checked_links:

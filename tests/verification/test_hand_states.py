@@ -16,7 +16,7 @@ from alula.fea.beam.theory import internal_forces
 from alula.fea.buckling.buckling import least_factor
 from alula.fea.buckling.holding import columns, holding
 from alula.fea.common.link_loads import LinkLoads
-from alula.fea.links.link_by_hand import link_by_hand, numbers_by_hand
+from alula.fea.links.link_by_hand import HandStates, link_by_hand
 from alula.fea.links.on_axis import on_axis
 from alula.fea.links.second_order import Bend, on_its_pins, on_tilting_pins
 from alula.fea.standing.case_statics import solve_case_statics
@@ -57,7 +57,8 @@ def test_every_state_of_many_is_that_state_alone(tmp_path: Path, name: str) -> N
     case, link, size = cases(tmp_path)[name]
     states = list(drawn(case, link, size))
     pairs = [(states[i], states[-1 - i]) if i % 3 == 0 else (one,) for i, one in enumerate(states)]
-    stress, displacement, inverse = numbers_by_hand(case, link, pairs, columns=True)
+    states = HandStates(case, link, pairs)
+    stress, displacement, inverse = states.stress, states.displacement, states.inverse_buckling
     hands = [[link_by_hand(case, link, plate) for plate in plates] for plates in pairs]
     alone = [max(hand.worst[1].equivalent for hand in each) for each in hands]
     assert stress == pytest.approx(alone, rel=1e-9)

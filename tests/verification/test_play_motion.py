@@ -16,7 +16,7 @@ from told_motion import record, rows, texts
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.source import SourceKind
 from alula.fea.findings.of_motion import motion_findings
-from alula.fea.links.link_by_hand import numbers_by_hand
+from alula.fea.links.link_by_hand import HandStates
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.loosened import joint_growth, loosened
 from alula.fea.refine.refinement import Effort
@@ -231,7 +231,7 @@ def test_an_envelope_holds_the_linkage_with_another_coupler() -> None:
         of = solve_case_motion(case)
         every = [link_loads("push", "rocker", case.body("rocker"), of.forces["push"], of.loads["push"])]
         poses = [(every[0].chosen(pose),) for pose in range(len(of.motion.angles))]
-        return float(numbers_by_hand(case, "rocker", poses)[0].max()), float(
+        return float(HandStates(case, "rocker", poses).stress.max()), float(
             np.linalg.norm(of.forces["push"].forces["B"], axis=1).max()
         )
 

@@ -9,7 +9,7 @@ from tilting_pins import checked, four_bar
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.load_case import LoadCaseByHand
 from alula.fea.doubts.load_growth import beyond_undeformed
-from alula.fea.links.link_by_hand import link_by_hand, numbers_by_hand, on_plates
+from alula.fea.links.link_by_hand import HandStates, link_by_hand, on_plates
 from alula.fea.nonlinear.large_displacement import examine, with_growth
 from alula.fea.outcomes.pins import shared_stress, stresses_between
 from alula.fea.standing.case_statics import solve_case_statics
@@ -30,9 +30,8 @@ def leaning(*clearance):
 
 
 def stress(case, statics, link, reactions):
-    return numbers_by_hand(
-        case, link, [on_plates(case, link, link_loads("l", link, case.body(link), reactions, statics.loads["l"]))]
-    )[0, 0]
+    acting = link_loads("l", link, case.body(link), reactions, statics.loads["l"])
+    return HandStates(case, link, [on_plates(case, link, acting)]).stress[0]
 
 
 def test_bands_hold_all_ways_of_sharing_beside_tight_pins():

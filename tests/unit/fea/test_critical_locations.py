@@ -1,6 +1,7 @@
 """Estimates by hand at an eye, term by term, against elementary formulas."""
 
 import math
+from dataclasses import replace
 
 import eye_link
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from alula.fea.beam.critical_locations import _bore, displacement_estimate
 from alula.fea.common.link_loads import PinLoad
+from alula.geometry.bodies.seat import Seat
 from alula.geometry.parts.part import Bar, Body, Pin
 
 WIDE, THICK, HOLE = 12.0, 4.0, 3.0
@@ -29,7 +31,8 @@ def bore(torque=0.0, **through):
     forces = np.zeros(6)
     for name, value in through.items():
         forces[names[name]] = value
-    return _bore(BODY, BODY.pins[0], IDLE, torque, forces, forces)
+    [found] = _bore(BODY, BODY.pins[0], [IDLE], np.array([torque]), forces[None], forces[None])
+    return found
 
 
 def test_a_torque_shears_the_bore_evenly():
@@ -44,6 +47,24 @@ def test_what_passes_through_an_eye_bears_on_its_net_section():
     assert bore(n=90.0) == pytest.approx(3.0 * 90.0 / area)
     assert bore(m_z=60.0) == pytest.approx(2.0 * 60.0 * (HOLE / 2.0) / second)
     assert bore(m_y=60.0) == pytest.approx(3.0 * 60.0 * (THICK / 2.0) / ((WIDE - HOLE) * THICK**3 / 12.0))
+
+
+@pytest.mark.parametrize("soft", [4.0, 8.0])
+def test_a_pin_that_bends_presses_on_the_rim_at_which_it_is_loaded(soft):
+    """2βF under a force there, 2β²M under a couple, of a long beam (Hetényi, 1946); of a stiff pin 4F/L and 6M/L²."""
+    pin_young = 1.5 * 70e3 / (4.0 * (math.pi * HOLE**4 / 64.0) * (soft / THICK) ** 4)
+    seat = Seat(young=70e3, pin_young=pin_young, diameter=HOLE, length=THICK, eye=WIDE, side=1)
+
+    def over_stiff(force, couple):
+        stiff = replace(IDLE, wrench=np.array([force, 0.0, 0.0, 0.0, couple, 0.0]))
+        idle = np.zeros((1, 6))
+        found = [
+            _bore(BODY, BODY.pins[0], [load], np.zeros(1), idle, idle) for load in (replace(stiff, seat=seat), stiff)
+        ]
+        return found[0][0] / found[1][0]
+
+    assert over_stiff(10.0, 10.0 * THICK / 2.0) == pytest.approx(soft / 2.0, rel=0.01)
+    assert over_stiff(0.0, 5.0) == pytest.approx(soft**2 / 3.0, rel=0.02)
 
 
 def test_a_pins_eye_gives_by_its_force_over_modulus_and_thickness():

@@ -20,7 +20,7 @@ from alula.fea.common.sought import LEFT
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.judging.walls import EXACT, ROUND, wall_factors, wall_outcome
-from alula.fea.links.link_by_hand import link_by_hand, numbers_by_hand
+from alula.fea.links.link_by_hand import HandStates, link_by_hand
 from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
@@ -300,7 +300,7 @@ def test_over_a_motion_play_and_the_sharing_of_couples_widen_the_band_and_edges_
     over.shares[key] = Scatter(high=9.0)
     [history] = over.loaded["rocker"]
     ways = [(history.chosen(pose),) for pose in (0, 6)]
-    stressed = numbers_by_hand(case, "rocker", ways)[0].tolist()
+    stressed = HandStates(case, "rocker", ways).stress.tolist()
     high = max(stressed) / min(stressed)
     assert high > 1.0
     high += LEFT * (high - 1.0)  # what a search may have left
