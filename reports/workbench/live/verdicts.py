@@ -2,13 +2,15 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import count
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import CheckOutcome, Subject, Tier, Verdict, by_nearness, overall
 from alula.fea.findings.of_check import with_findings
 from alula.fea.outcomes.result import CheckResult
+from alula.fea.sizing.section import following, larger, stated
 from alula.geometry.base.errors import AlulaError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
@@ -16,6 +18,7 @@ from alula.reports.check.changes import change_sentences, change_title, size_com
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import checks_of, first_lines, opening
 from alula.reports.words.numbers import sentence
+from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.live.answers import Plain, Stage, case_of
 
 _SO_FAR = (
@@ -79,7 +82,10 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
         result = check_case(case_of(text, name), name=name, fidelity="beam", threads=1)
         if early is not None:
             early(verdict_of(result, "whole", start))
-        return verdict_of(with_findings(result), "whole", start)
+        found = with_findings(result)
+        offers = [] if result.verdict is Verdict.PASS else list(_offers(found, text))
+        answer = verdict_of(found, "whole", start)
+        return answer | {"changes": offers + answer["changes"]}
     except AlulaError as error:
         return _open("whole", str(error), start)
 
@@ -175,6 +181,39 @@ def _changes(result: CheckResult) -> list[Plain]:
             wide = f"With {size.entry} = {size.last} it passes; the least that does lies between {size.first} and this."
             found.append({"text": wide, "command": None, "operations": operations})
     return found
+
+
+def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
+    """Yield sizes that can be set at once: those that follow a section, or a section with which the case passes."""
+    case = result.case
+    follow = {part: sizes for part in case.parts if (sizes := following(case, part))}
+    for part, sizes in follow.items():
+        yield _offer(f"Hand calculation is calibrated for the links of part {part} with", case, sizes, [])
+    checks, link = checks_of(result), result.changes[0].check.subject.name if result.changes else ""
+    if follow or link not in case.checked_links or result.changes[0].size is not None:
+        return
+    if sizes := larger(case, result.name, checks):
+        yield _offer("It passes with", case, sizes, [])
+        return
+    document, part = Document(text), case.links[link].part
+    if part is None or [one.part for one in case.links.values()].count(part) < 2:
+        return
+    own = next(name for k in count(2) if (name := f"{part}-{k}") not in case.parts)
+    path = ["parts", own]
+    alone = [
+        {"op": "set", "path": path, "value": document.tables()["parts"][part]},
+        {"op": "set", "path": ["links", link, "part"], "value": own},
+    ]
+    document.apply(alone, None)
+    changed = case_of(document.text, result.name)
+    if sizes := larger(changed, result.name, checks):
+        yield _offer(f"It passes with a part of its own for {link}, {own}, of which this differs", changed, sizes, alone)
+
+
+def _offer(title: str, case: Case, sizes: Mapping[str, str], first: Sequence[Plain]) -> Plain:
+    told_of = [f"{keys_of(path)[-1].replace('_', ' ')} of {keys_of(path)[1]} {now} (now {was})" for path, was, now in stated(case, sizes)]
+    operations = [*first, *({"op": "set", "path": keys_of(path), "value": size} for path, size in sizes.items())]
+    return {"text": f"{title}: {', '.join(told_of)}.", "command": None, "operations": operations}
 
 
 STAGES: Mapping[str, Stage] = {
