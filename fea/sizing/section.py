@@ -13,6 +13,8 @@ from alula.fea.check.run import check_case
 from alula.fea.common.change import rounded
 from alula.fea.common.verdict import CheckOutcome, Subject, Verdict, deciding
 from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.parts.bar import Bar
+from alula.geometry.parts.tube import Tube
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 
@@ -54,7 +56,7 @@ def following(case: Case, part: str) -> Sizes:
         that it has. Empty where nothing has to, or where that does not do.
     """
     kind, links = case.parts[part], _links(case, part)
-    if not links or kind.shape not in _SECTION or not any(_outside(case, link) for link in links):
+    if not isinstance(kind, Tube | Bar) or not any(_outside(case, link) for link in links):
         return {}
     entry = f"parts.{part}.{_SECTION[kind.shape][0]}"
     for factor in _FACTORS:
@@ -83,7 +85,7 @@ def larger(case: Case, name: str, checks: Sequence[CheckOutcome]) -> Sizes:
     Returns
     -------
     dict of str to str
-        Entry -> size; empty where the worst check is of no link with a section to enlarge, or none that was tried passes.
+        Entry -> size; empty where the worst check is of no link with a section to enlarge, or none tried passes.
     """
     subject, needed = _lacking(checks)
     part = case.links[subject.name].part if subject.kind == "link" else None
@@ -162,6 +164,7 @@ def _within(size: float, of: float, calibration: Calibration, proportion: str) -
 def _brought(case: Case, part: str) -> Sizes:
     """Return the sizes that follow the section of a part, each brought into its range."""
     kind, links, found = case.parts[part], _links(case, part), Sizes()
+    assert isinstance(kind, Tube | Bar)
     calibration = calibration_of(kind)
     for entry, proportion in _TO_WIDTH.items():
         if proportion in calibration.ranges and entry in kind.model_fields_set:

@@ -17,7 +17,7 @@ from alula.loads.case.case_file import keys_of
 from alula.reports.check.changes import change_sentences, change_title, size_command
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import checks_of, first_lines, opening
-from alula.reports.words.numbers import sentence
+from alula.reports.words.numbers import joined, sentence
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.live.answers import Plain, Stage, case_of
 
@@ -66,7 +66,7 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     name : str
         Path or built-in name.
     early : callable, optional
-        Is told the same before what would change it is tried, which takes several checks.
+        Is told the same before what would change it is tried, which takes several checks: ``changes`` is None then.
 
     Returns
     -------
@@ -80,12 +80,11 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     start = time.perf_counter()
     try:
         result = check_case(case_of(text, name), name=name, fidelity="beam", threads=1)
+        answer = verdict_of(result, "whole", start)
         if early is not None:
-            early(verdict_of(result, "whole", start))
+            early(answer | {"changes": None})
         found = with_findings(result)
-        offers = [] if result.verdict is Verdict.PASS else list(_offers(found, text))
-        answer = verdict_of(found, "whole", start)
-        return answer | {"changes": offers + answer["changes"]}
+        return answer | {"changes": [*_offers(found, text), *_changes(found)]}
     except AlulaError as error:
         return _open("whole", str(error), start)
 
@@ -185,35 +184,35 @@ def _changes(result: CheckResult) -> list[Plain]:
 
 def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
     """Yield sizes that can be set at once: those that follow a section, or a section with which the case passes."""
-    case = result.case
+    case, checks = result.case, checks_of(result)
     follow = {part: sizes for part in case.parts if (sizes := following(case, part))}
     for part, sizes in follow.items():
-        yield _offer(f"Hand calculation is calibrated for the links of part {part} with", case, sizes, [])
-    checks, link = checks_of(result), result.changes[0].check.subject.name if result.changes else ""
-    if follow or link not in case.checked_links or result.changes[0].size is not None:
+        yield _offer(f"Hand calculation is calibrated for links of part {part} with", case, sizes, [])
+    link = result.changes[0].check.subject.name if result.changes else ""
+    if result.verdict is Verdict.PASS or follow or link not in case.checked_links or result.changes[0].size is not None:
         return
+    document, part = Document(text), str(case.links[link].part)
     if sizes := larger(case, result.name, checks):
-        yield _offer("It passes with", case, sizes, [])
-        return
-    document, part = Document(text), case.links[link].part
-    if part is None or [one.part for one in case.links.values()].count(part) < 2:
-        return
-    own = next(name for k in count(2) if (name := f"{part}-{k}") not in case.parts)
-    path = ["parts", own]
-    alone = [
-        {"op": "set", "path": path, "value": document.tables()["parts"][part]},
-        {"op": "set", "path": ["links", link, "part"], "value": own},
-    ]
-    document.apply(alone, None)
-    changed = case_of(document.text, result.name)
-    if sizes := larger(changed, result.name, checks):
-        yield _offer(f"It passes with a part of its own for {link}, {own}, of which this differs", changed, sizes, alone)
+        yield _offer(f"It passes with another section of part {part}", case, sizes, [])
+    elif [one.part for one in case.links.values()].count(part) > 1:
+        own = next(name for k in count(2) if (name := f"{part}-{k}") not in case.parts)
+        alone = [
+            {"op": "set", "path": ["parts", own], "value": document.tables()["parts"][part]},
+            {"op": "set", "path": ["links", link, "part"], "value": own},
+        ]
+        document.apply(alone, None)
+        changed = case_of(document.text, result.name)
+        if sizes := larger(changed, result.name, checks):
+            yield _offer(f"It passes with a part of its own for {link}, {own}", changed, sizes, alone)
 
 
 def _offer(title: str, case: Case, sizes: Mapping[str, str], first: Sequence[Plain]) -> Plain:
-    told_of = [f"{keys_of(path)[-1].replace('_', ' ')} of {keys_of(path)[1]} {now} (now {was})" for path, was, now in stated(case, sizes)]
+    told_of = []
+    for path, was, now in stated(case, sizes):
+        table, name, entry = map(str, keys_of(path))
+        told_of.append(f"{entry.replace('_', ' ')}{'' if table == 'parts' else f' of {name}'} {now} (now {was})")
     operations = [*first, *({"op": "set", "path": keys_of(path), "value": size} for path, size in sizes.items())]
-    return {"text": f"{title}: {', '.join(told_of)}.", "command": None, "operations": operations}
+    return {"text": f"{title}: {joined(told_of)}.", "command": None, "operations": operations}
 
 
 STAGES: Mapping[str, Stage] = {

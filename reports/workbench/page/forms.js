@@ -215,7 +215,19 @@ class Forms {
     const buttons = make("p", { class: "row" },
       make("button", { type: "button", onclick: () => this.send([{ op: "set", path: [this.table, copied], value }], () => this.show(this.table, copied)) }, "Copy"),
       make("button", { type: "button", onclick: () => this.send([{ op: "remove", path }]) }, "Remove"));
-    return [this.nameField(path, WORDS[this.table]), this.help(option.description), this.error(path), buttons, ...this.kinds(node.additionalProperties, value, path), ...this.fields(option, value, path)];
+    return [this.nameField(path, WORDS[this.table]), this.help(option.description), this.error(path), buttons, this.part(value.part), ...this.kinds(node.additionalProperties, value, path), ...this.fields(option, value, path)];
+  }
+
+  /** Section and material of a link: they stand in its part, which other links may have as well. */
+  part(name) {
+    const value = this.tables.parts?.[name];
+    if (this.table !== "links" || !value) return null;
+    const others = Object.entries(this.tables.links).filter(([link, one]) => one.part === name && link !== this.name).map(([link]) => link);
+    const own = free(name, Object.keys(this.tables.parts));
+    const apart = () => this.send([{ op: "set", path: ["parts", own], value }, { op: "set", path: ["links", this.name, "part"], value: own }]);
+    return this.box(["parts", name], `Part ${name}${others.length ? `, shared with ${others.join(", ")}` : ""}`, () => [
+      others.length ? make("button", { type: "button", onclick: apart }, `Give ${this.name} a part of its own`) : null,
+      ...this.fields(optionOf(this.root.properties.parts.additionalProperties, value), value, ["parts", name])], true);
   }
 
   /** The name of an entry, which can be changed. */

@@ -24,7 +24,7 @@ export function mount(element) {
     slider: make("input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion", oninput: slid }),
     dead: make("svg", { class: "dead", "aria-hidden": "true" }),
     said: make("output"),
-    one: button("Let it turn once", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]), { hidden: true }),
+    one: button("", () => edit([{ op: "set", path: ["motion"], value: store.state.motion.offer }]), { hidden: true }),
     use: button("Use this pose", take, { class: "kept" }),
     back: button("Back to the case's pose", leave, { class: "kept" }),
   };
@@ -91,7 +91,9 @@ function show() {
     const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
     const none = motion?.problem && !told && !store.state.document?.tables?.motion;
     parts.said.textContent = parts.said.title = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
-    parts.one.hidden = !none || store.state.drawn?.coordinate?.kind !== "angle";
+    const { offer } = motion ?? {};
+    parts.one.hidden = !none || !offer;
+    parts.one.textContent = offer?.turn ? "Let it turn once" : `Let it move, ${offer?.range.join(" to ")}`;
     parts.dead.replaceChildren();
     return;
   }

@@ -43,9 +43,9 @@ export function mount(holder, store) {
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
     stamp.replaceChildren(...badge(found, now));
-    brief.textContent = found?.verdict ?? "";
+    brief.textContent = found?.verdict ?? "no verdict";
     brief.className = `stamp ${found?.verdict ?? ""} ${late ? "late" : ""}`;
-    brief.hidden = !found;
+    brief.hidden = !now?.path;
   }
 
   function draw() {
@@ -81,7 +81,7 @@ export function mount(holder, store) {
   }
 
   function changes(found) {
-    if (!found.changes?.length) return null;
+    if (!found.changes?.length) return found.changes === null ? make("p", { class: "soft" }, "What would change it is being tried ...") : null;
     const one = ({ text, command: typed, operations }) => make("li", {}, text, " ",
       operations?.length ? make("button", { type: "button", onclick: () => edit(operations).catch(() => {}) }, "Apply") : typed ? command(typed) : null);
     return [make("h2", {}, "What would change it"), make("ul", { class: "changes" }, ...found.changes.map(one))];
