@@ -2,7 +2,7 @@
 
 Proportions of a link are its sizes over the width of its section (``alula.fea.beam.calibration``). A section that is
 changed alone leaves fillet, eyes, pins and patches of loads behind; each of them is brought to the nearest end of its
-range, rounded inwards. Distances between eyes, holes and loads are those of the linkage, and nothing is brought to them.
+range, rounded inwards. Distances between eyes, holes and loads are those of the linkage: nothing is brought to them.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -110,7 +110,7 @@ class Forms {
     const [table = CASE] = tables;
     const name = Object.keys(this.tables[table] ?? {}).find((one) => this.begins([table, one])) ?? null;
     const title = [words(table) || "the case itself", name].filter(Boolean).join(", ");
-    return make("button", { type: "button", class: "to-line", onclick: () => this.show(table, name) }, `Something is wrong in ${title}: show it`);
+    return make("button", { type: "button", class: "plain to-line", onclick: () => this.show(table, name) }, `Something is wrong in ${title}: show it`);
   }
 
   /** The element of an entry, or the one of its elements that has a property. */
@@ -211,10 +211,7 @@ class Forms {
     const path = [this.table, this.name];
     const value = at(this.tables, path);
     const option = optionOf(node.additionalProperties, value);
-    const copied = this.free(this.name);
-    const buttons = make("p", { class: "row" },
-      make("button", { type: "button", onclick: () => this.send([{ op: "set", path: [this.table, copied], value }], () => this.show(this.table, copied)) }, "Copy"),
-      make("button", { type: "button", onclick: () => this.send([{ op: "remove", path }]) }, "Remove"));
+    const buttons = make("p", { class: "row" }, make("button", { type: "button", onclick: () => this.send([{ op: "remove", path }]) }, "Remove"));
     return [this.nameField(path, WORDS[this.table]), this.help(option.description), this.error(path), buttons, this.part(value.part), ...this.kinds(node.additionalProperties, value, path), ...this.fields(option, value, path)];
   }
 

@@ -311,7 +311,6 @@ function use(handle, place, free) {
   const { tool, ends } = store.state;
   store.put("ends", null);
   if (tool === "remove" && handle) removeOf(handle);
-  if (tool === "split" && handle?.kind === "joint") edit([{ op: "split", joint: handle.name }]);
   if (tool === "ground") {
     const one = endAt(handle, place, free);
     if (!handle || isGround(handle)) edit([{ op: "ground", at: one.at }]);

@@ -1,35 +1,31 @@
 /** The text of the case: with line numbers, and what is wrong at its line. */
 
 import { make } from "./elements.js";
-import { change, newGesture, send } from "./server.js";
+import { change, newGesture } from "./server.js";
 
 const PAUSE = 300; // ms after the last key until the text is sent
 export function mount(holder, store) {
   const numbers = make("pre", { class: "numbers", "aria-hidden": "true" });
   const area = make("textarea", { "aria-label": "Text of the case", spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off" });
-  const mark = make("div", { class: "mark", hidden: true });
   const wrong = make("p", { class: "at-line", id: "text-wrong", hidden: true });
-  const go = make("button", { type: "button", class: "to-line", hidden: true, onclick: () => jump(store.state.document.problem.line) });
-  const editor = make("div", { class: "editor" }, numbers, mark, area, wrong);
-  holder.append(go, editor);
+  const editor = make("div", { class: "editor" }, numbers, area, wrong);
+  holder.append(editor);
   let typed = null; // the timer of what was typed and not sent
   let gesture = newGesture();
-  let marked = null;
   let numbered = "";
   const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
 
   /** Put an element at a line; positions are set by script, since the page's policy knows no style attributes. */
-  function place(element, line, beside = false) {
+  function place(element, line) {
     const top = (line - 1) * lines() - area.scrollTop + Number.parseFloat(getComputedStyle(area).paddingTop);
     const below = top + lines() + element.offsetHeight <= area.clientHeight;
-    element.style.setProperty("top", `${beside ? (below ? top + lines() : top - element.offsetHeight) : top}px`);
+    element.style.setProperty("top", `${below ? top + lines() : top - element.offsetHeight}px`);
   }
 
   function follow() {
     numbers.scrollTop = area.scrollTop;
     const line = store.state.document?.problem?.line;
-    if (line) place(wrong, line, true);
-    if (marked) place(mark, marked);
+    if (line) place(wrong, line);
   }
 
   function number() {
@@ -69,34 +65,13 @@ export function mount(holder, store) {
     wrong.hidden = !line;
     area.setAttribute("aria-invalid", String(Boolean(sentence)));
     area.setAttribute("aria-describedby", "text-wrong");
-    go.hidden = !line;
-    go.textContent = `Go to line ${line}, which is wrong`;
-    point();
-  }
-
-  function jump(line) {
-    const start = area.value.split("\n").slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
-    area.focus();
-    area.setSelectionRange(start, start);
-    scrollTo(line);
-  }
-
-  /** Mark the line of what is selected in the drawing. */
-  async function point(scroll = false) {
-    const { kind, name, link, point: at, path: of } = store.state.selected ?? {};
-    const path = { link: ["links", name], joint: ["joints", name], point: ["links", link, "points", at], load: of }[kind];
-    const keys = (path ?? []).map((key) => `key=${encodeURIComponent(JSON.stringify(key))}`).join("&");
-    marked = path && !holder.hidden ? (await send(`line?${keys}`).catch(() => ({}))).line : null;
-    mark.hidden = !marked;
-    if (marked && scroll && !holder.hidden) scrollTo(marked);
     follow();
   }
 
-  /** The panel was opened: what is wrong is seen, otherwise what is selected. */
+  /** The panel was opened: what is wrong is seen. */
   function opened() {
     const line = store.state.document?.problem?.line;
     if (line) scrollTo(line);
-    else point(true);
   }
 
   function sendTyped() {
@@ -117,7 +92,6 @@ export function mount(holder, store) {
   });
   area.addEventListener("scroll", follow);
   store.on("document", show);
-  store.on("selected", () => point(true));
   store.on("panel", (name) => name === "text" && requestAnimationFrame(opened));
   show(store.state.document);
 }

@@ -27,7 +27,7 @@ export function mount(holder, store) {
   brief.addEventListener("click", () => store.put("panel", "verdict"));
   const stamp = make("p", { class: "stamp-line", role: "status", "aria-live": "polite" });
   const rest = make("div");
-  const open = new Set();
+  let open = false;
   holder.append(stamp, rest);
 
   /** What is known; a problem of the case stands above the drawing, and is no verdict. */
@@ -134,8 +134,8 @@ export function mount(holder, store) {
 
   function warnings(found) {
     if (!found.warnings?.length) return null;
-    const box = make("details", { open: open.has("warnings") }, make("summary", {}, `${found.warnings.length} warning${found.warnings.length > 1 ? "s" : ""}`), make("ul", {}, ...found.warnings.map((one) => make("li", {}, one))));
-    box.addEventListener("toggle", () => open[box.open ? "add" : "delete"]("warnings"));
+    const box = make("details", { open }, make("summary", {}, `${found.warnings.length} warning${found.warnings.length > 1 ? "s" : ""}`), make("ul", {}, ...found.warnings.map((one) => make("li", {}, one))));
+    box.addEventListener("toggle", () => (open = box.open));
     return box;
   }
 
