@@ -80,11 +80,11 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     start = time.perf_counter()
     try:
         result = check_case(case_of(text, name), name=name, fidelity="beam", threads=1)
-        answer = verdict_of(result, "whole", start)
+        soon = verdict_of(result, "whole", start)
         if early is not None:
-            early(answer | {"changes": None})
+            early(soon | {"changes": None})
         found = with_findings(result)
-        return answer | {"changes": _changes(found, text)}
+        return verdict_of(found, "whole", start) | {"changes": _changes(found, text), "ms": soon["ms"]}
     except AlulaError as error:
         return _open("whole", str(error), start)
 

@@ -82,9 +82,11 @@ export function mount(holder, store) {
     const value = path?.reduce((inside, step) => inside?.[step], store.state.document?.tables);
     const range = rangeOf(value);
     const file = quoted(store.state.document?.name ?? "case.toml");
+    const sizes = (shownVerdict(store.state.verdict)?.changes ?? []).map((change) => change.command).filter(Boolean);
     asked.replaceChildren(range
       ? make("p", {}, `Study ${path.join(".")}, which is ${value}, from half to double: `, command(`alula study ${file} --vary ${quoted(`${path.join(".")}=${range}/7`)} -o ${quoted(`${stem()}-study`)}`))
-      : make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the command for a study of it stands here then."));
+      : make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the command for a study of it stands here then."),
+      ...sizes.map((one) => make("p", {}, "Least size: ", command(one))));
   }
 
   function draw() {
@@ -102,7 +104,7 @@ export function mount(holder, store) {
     make("p", { class: "row" }, report, button("Case file", () => fetched("out/case", `${stem()}.toml`, "")), button("Picture, SVG", () => picture("svg")), button("Picture, PNG", () => picture("png"))),
     make("p", { class: "row" }, make("label", { for: steps.id }, "Solid of "), steps, button("STEP", () => steps.value && fetched(`out/step/${encodeURIComponent(steps.value)}`, `${steps.value}.step`, "The solid is being built ..."))),
     said,
-    make("h2", {}, "Ask for more"), make("p", { class: "soft" }, "The command for a least size stands under Verdict."),
+    make("h2", {}, "Ask for more"),
     asked,
   );
   mountDrop(holder, store);

@@ -5,7 +5,7 @@ import { shownVerdict } from "./verdict.js";
 import { beyond, freePoints, poseHandle, scene } from "./scene.js";
 import { add, Group, make } from "./elements.js";
 import { ahead, along, place } from "./labels.js";
-import { angle, fit, gridStep, leastOf, minus, number, plus, round125, size, toScreen, turned } from "./view.js";
+import { angle, fit, gridStep, leastOf, minus, number, plus, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
 const ARROW = 0.2;
@@ -383,11 +383,9 @@ function texts({ texts: labels, taken, width, height }) {
 function legend(now) {
   const element = document.getElementById("legend");
   const uses = now && Object.values(shownVerdict(store.state.verdict)?.links ?? {}).some((one) => one.use !== null);
-  const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
-  const key = largest ? round125(largest / 2) : 0;
   const entries = [
     ...(uses ? [["", "strength used, at the worst (✗ fails, ? undecided):"], ...USES.map(([, text, colour], k) => [k < USES.length - 1 ? "use" : "use over", text, colour])] : []),
-    ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
+    ...(now && forcesOf(now).length ? [["joint-force", "joint force"]] : []),
     ...(now?.loads.length ? [["load", now.loads.some((load) => load.line) ? "load; dashed: its line, dotted: rigid lever" : "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),
   ];

@@ -12,7 +12,6 @@ export function mount(holder, store) {
   holder.append(editor);
   let typed = null; // the timer of what was typed and not sent
   let gesture = newGesture();
-  let numbered = "";
   const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
 
   /** Put an element at a line; positions are set by script, since the page's policy knows no style attributes. */
@@ -31,8 +30,6 @@ export function mount(holder, store) {
   function number() {
     const count = area.value.split("\n").length;
     const bad = store.state.document?.problem?.line;
-    if (numbered === `${count} ${bad}`) return; // while one drags, lines stay as many
-    numbered = `${count} ${bad}`;
     numbers.replaceChildren(...Array.from({ length: count }, (_, k) => (k + 1 === bad ? make("b", {}, `${k + 1}\n`) : `${k + 1}\n`)));
   }
 
@@ -44,15 +41,14 @@ export function mount(holder, store) {
 
   /** Take a new text; caret and scroll stay with what they stood at. */
   function take(text) {
-    if (area.value === text) return;
-    const [was, start, end, top] = [area.value, area.selectionStart, area.selectionEnd, area.scrollTop];
+    const was = area.value;
+    if (was === text) return;
     let same = 0;
     while (same < was.length && was[same] === text[same]) same += 1;
     let tail = 0;
     while (tail < was.length - same && tail < text.length - same && was.at(-1 - tail) === text.at(-1 - tail)) tail += 1;
-    const moved = (caret) => (caret <= same ? caret : caret >= was.length - tail ? caret + text.length - was.length : Math.min(caret, text.length - tail));
-    area.value = text;
-    area.setSelectionRange(moved(start), moved(end));
+    const top = area.scrollTop;
+    area.setRangeText(text.slice(same, text.length - tail), same, was.length - tail, "preserve");
     area.scrollTop = top;
   }
 

@@ -73,10 +73,9 @@ export function mount(holder, store) {
   function badge(found, now) {
     if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict yet: the case is not whole." : "The verdict is being computed ...")];
     const computing = !now?.problem && (found.revision < (now?.revision ?? 0) || found.stage === "linear");
-    const running = store.state.solids?.state === "running" ? "solids are being solved" : "";
     return [
       make("strong", { class: `stamp ${found.verdict}` }, found.verdict),
-      make("span", { class: "soft" }, [STAGES[found.stage], time((found.ms ?? 0) / 1000), computing ? "being computed ..." : "", running].filter(Boolean).join("; ")),
+      make("span", { class: "soft" }, [STAGES[found.stage], time((found.ms ?? 0) / 1000), computing ? "being computed ..." : ""].filter(Boolean).join("; ")),
     ];
   }
 
@@ -119,14 +118,10 @@ export function mount(holder, store) {
     if (!pairs.length) return null;
     const links = new Map();
     for (const pair of pairs) if (!links.has(pair[1].subject)) links.set(pair[1].subject, pair);
-    const took = (name) => {
-      const seconds = store.state.solids?.links?.[name]?.seconds;
-      return seconds === null || seconds === undefined ? "" : `, ${time(seconds)}`;
-    };
-    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other, took(name))));
+    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other)));
     return [
       make("h2", {}, "By hand and as a solid"),
-      make("p", { class: "soft" }, `All links by hand took ${time((hand.ms ?? 0) / 1000)}. A bar is the band of a value; the upright line is the limit.`,
+      make("p", { class: "soft" }, `All links took ${time(hand.ms / 1000)} by hand and ${time(solids.ms / 1000)} as solids. A bar is the band of a value; the upright line is the limit.`,
         hand.revision === solids.revision ? "" : " The solids are of an earlier state of the case."),
       ...figures,
     ];
@@ -145,7 +140,7 @@ export function mount(holder, store) {
 }
 
 /** Two bars on a common logarithmic scale, with the limit. */
-function bands(name, hand, solid, took) {
+function bands(name, hand, solid) {
   const ends = ({ low, high, value }) => [low ?? value, high ?? value].map((end) => Math.max(end, 1e-9));
   const all = [...ends(hand), ...ends(solid), ...(solid.limit > 0 ? [solid.limit] : [])];
   const [least, most] = [Math.min(...all) / 1.15, Math.max(...all) * 1.15];
@@ -165,6 +160,6 @@ function bands(name, hand, solid, took) {
   const label = `${name}: ${told("by hand", hand)}; ${told("solid", solid)}; limit ${number(solid.limit)}`;
   return [
     make("svg", { viewBox: "0 0 306 56", role: "img", "aria-label": label, class: "bands" }, bar("by hand", hand, 6), bar("solid", solid, 26), ...limit),
-    make("p", { class: "soft" }, `${told("By hand", hand)}; ${told("solid", solid)}${took}.`),
+    make("p", { class: "soft" }, `${told("By hand", hand)}; ${told("solid", solid)}.`),
   ];
 }
