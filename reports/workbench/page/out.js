@@ -82,7 +82,7 @@ export function mount(holder, store) {
     const value = path?.reduce((inside, step) => inside?.[step], store.state.document?.tables);
     const range = rangeOf(value);
     const file = quoted(store.state.document?.name ?? "case.toml");
-    const sizes = (shownVerdict(store.state.verdict)?.changes ?? []).map((change) => change.command).filter(Boolean);
+    const sizes = (store.state.verdict.whole?.changes ?? []).map((change) => change.command).filter(Boolean);
     asked.replaceChildren(range
       ? make("p", {}, `Study ${path.join(".")}, which is ${value}, from half to double: `, command(`alula study ${file} --vary ${quoted(`${path.join(".")}=${range}/7`)} -o ${quoted(`${stem()}-study`)}`))
       : make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the command for a study of it stands here then."),
