@@ -92,7 +92,7 @@ function show() {
     parts.said.textContent = parts.said.title = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
     const { offer } = motion ?? {};
     parts.one.hidden = !none || !offer;
-    parts.one.textContent = offer?.turn ? "Let it turn once" : `Let it move, ${offer?.range.join(" to ")}`;
+    parts.one.textContent = offer?.turn ? "Let it turn once" : "Let it move";
     parts.dead.replaceChildren();
     return;
   }
