@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import count
 
@@ -11,7 +12,7 @@ from alula.fea.common.verdict import CheckOutcome, Subject, Tier, Verdict, by_ne
 from alula.fea.findings.of_check import with_findings
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.sizing.section import following, larger, stated
-from alula.geometry.base.errors import AlulaError
+from alula.geometry.base.errors import AlulaError, CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 from alula.reports.check.changes import change_records
@@ -200,10 +201,11 @@ def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
             {"op": "set", "path": ["parts", own], "value": document.tables()["parts"][part]},
             {"op": "set", "path": ["links", link, "part"], "value": own},
         ]
-        document.apply(alone, None)
-        changed = case_of(document.text, name)
-        if sizes := larger(changed, name, checks):
-            yield _offer(f"It passes with a part of its own for {link}, {own}", changed, sizes, alone)
+        with suppress(CaseError):  # a table that sets these entries, or a text that takes no edit
+            document.apply(alone, None)
+            changed = case_of(document.text, name)
+            if sizes := larger(changed, name, checks):
+                yield _offer(f"It passes with a part of its own for {link}, {own}", changed, sizes, alone)
 
 
 def _offer(title: str, case: Case, sizes: Mapping[str, str], first: Sequence[Plain] = ()) -> Plain:
