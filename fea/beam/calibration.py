@@ -11,7 +11,7 @@ from functools import cache
 from importlib.resources import files
 
 from alula.fea.beam.critical_locations import LocationKind
-from alula.fea.common.reason import Reason, reason
+from alula.fea.common.reason import Reason, reason, together
 from alula.geometry.bodies.body import Body, PartKind, clamped_end, patch_span
 from alula.geometry.bodies.eyes import eye_reach
 from alula.loads.records.bearing import CONTACT_SHORTFALL
@@ -94,8 +94,8 @@ class Calibration:
         found = (self.principal if brittle else self.von_mises)[kind]
         return replace(found, high=found.high / (1.0 - CONTACT_SHORTFALL)) if kind == "eye" else found
 
-    def outside(self, body: Body, nu: float) -> Reason | None:
-        """Return which proportion of a link lies outside of what was measured.
+    def outside(self, body: Body, nu: float) -> Reason | str | None:
+        """Return which proportions of a link lie outside of what was measured, all of them.
 
         Parameters
         ----------
@@ -106,20 +106,22 @@ class Calibration:
 
         Returns
         -------
-        Reason or None
+        Reason, str or None
             None where all proportions lie within.
         """
         if body.part.fillet_radius == 0.0:
             return reason("sharp_junctions")
         if any(pin.y != 0.0 for pin in body.pins):
             return reason("pin_off_axis")
+        found = []
         for name, value in proportions(body, nu).items():
             low, high = self.ranges.get(name, (1.0, 0.0))
             if not low * (1.0 - 1e-6) <= value <= high * (1.0 + 1e-6):
                 if name in _GAPS:
-                    return reason(_GAPS[name], gap=value, needed=low)
-                return reason("outside_calibration", proportion=name, value=value, low=low, high=high)
-        return None
+                    found.append(reason(_GAPS[name], gap=value, needed=low))
+                else:
+                    found.append(reason("outside_calibration", proportion=name, value=value, low=low, high=high))
+        return together(*found) or None
 
 
 def proportions(body: Body, nu: float) -> dict[str, float]:

@@ -177,13 +177,9 @@ def application(session: Session) -> Starlette:
     async def model(request: Request) -> Response:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
-    async def line(request: Request) -> Response:
-        path = [json.loads(key) for key in request.query_params.getlist("key")]
-        return JSONResponse({"line": session.document and session.document.line(path)})
-
     async def report(request: Request) -> Response:
         fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
-        data = await asyncio.to_thread(out.report, session.whole, str(session.path), fidelity)
+        data = await asyncio.to_thread(out.report, session.text, str(session.path), fidelity)
         return Response(data, media_type="text/html", headers={"Content-Security-Policy": REPORT})
 
     async def case(request: Request) -> Response:
@@ -191,7 +187,7 @@ def application(session: Session) -> Starlette:
 
     async def step(request: Request) -> Response:
         link = request.path_params["link"]
-        return _file(await asyncio.to_thread(out.step, session.whole, str(session.path), link), f"{link}.step")
+        return _file(await asyncio.to_thread(out.step, session.text, str(session.path), link), f"{link}.step")
 
     async def drop(request: Request) -> Response:
         data = await _received(request, LARGEST_FILE)
@@ -211,7 +207,6 @@ def application(session: Session) -> Starlette:
         Route("/starters", starters),
         Route("/schema", schema),
         Route("/model/{link}", model),
-        Route("/line", line),
         Route("/out/report", report),
         Route("/out/case", case),
         Route("/out/step/{link}", step),

@@ -5,16 +5,13 @@ import hashlib
 import importlib.util
 import json
 import os
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
-from alula.geometry.imported.files_read import lies_within
 from alula.geometry.keeping.cache_folder import cache_folder
 from alula.geometry.keeping.whole_file import write_whole
-from alula.loads.stated.part_points import named_files
 from alula.loads.text.explain import printable
 from alula.loads.text.file_text import file_text
 
@@ -109,27 +106,6 @@ def plain_name(name: str, suffix: str) -> str:
     if not is_plain(name, suffix):
         raise CaseError(f"'{printable(name)}' must be the plain name of a file that ends in {suffix}; write another")
     return name
-
-
-def refuse_elsewhere(tables: Mapping[str, Any], folder: Path) -> None:
-    """Refuse a case that names files outside of its folder, before it is read: ``case_of`` reads nothing there.
-
-    Parameters
-    ----------
-    tables : mapping
-        Of the case, not validated.
-    folder : Path
-
-    Raises
-    ------
-    CaseError
-    """
-    for entry, table, key in named_files(tables):
-        if not lies_within(folder / table[key], folder):
-            raise CaseError(
-                f"{printable(entry)}: '{printable(table[key])}' is not in the folder of the case, and nothing else is "
-                "read here; copy it there"
-            )
 
 
 def write_file(path: Path, text: str) -> None:

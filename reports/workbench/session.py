@@ -22,7 +22,6 @@ from alula.reports.workbench.keeping import (
     case_text,
     digest,
     plain_name,
-    refuse_elsewhere,
     stamp_of,
     write_file,
 )
@@ -243,7 +242,6 @@ class Session:
         """Start or stop the check by solids."""
         document = self._open()
         if do == "start":
-            refuse_elsewhere(document.tables(), self.folder)
             self.solids.start(document.revision, document.text, str(self.path))
         else:
             self.solids.stop()
@@ -252,18 +250,6 @@ class Session:
     def text(self) -> str:
         """Of the open case, without a byte order mark."""
         return self._open().text.removeprefix("\ufeff")
-
-    @property
-    def whole(self) -> str:
-        """The same, of a case that may be read.
-
-        Raises
-        ------
-        CaseError
-            As ``refuse_elsewhere``.
-        """
-        refuse_elsewhere(self._open().tables(), self.folder)
-        return self.text
 
     def _open(self, revision: int | None = None) -> Document:
         """Return the document, which has to be the one that a page knows."""
@@ -285,13 +271,8 @@ class Session:
         if self._draft is not None and self._set_aside(self._draft, "was not taken"):
             self._draft = None
         document = self._open()
-        try:
-            refuse_elsewhere(document.tables(), self.folder)
-        except CaseError as error:
-            self._find(str(error))
-        else:
-            self._tell_document()
-            self._workers.ask(document.revision, document.text, str(self.path))
+        self._tell_document()
+        self._workers.ask(document.revision, document.text, str(self.path))
 
     # The file.
 

@@ -135,6 +135,47 @@ def test_a_length_is_typed(bench):
     assert bench.elements(".entry") == []
 
 
+def test_the_width_of_a_link_is_typed_where_it_is_drawn(bench):
+    """The part of the link has it, and the form says that other links have that part; the bar above stays as it is."""
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    places = "return JSON.stringify([...document.querySelectorAll('header button')].map((one) => one.offsetLeft))"
+    before = bench.run(places)
+    ActionChains(bench.driver).double_click(bench.element('.bodies [aria-label^="Link rocker"]')).perform()
+    field = bench.element('.entry [aria-label="width of bar (2 more links) in mm"]')
+    assert field.get_attribute("value") == "8"
+    field.clear()
+    field.send_keys("9\n")
+    settle(bench, "now.document.undo")
+    assert state(bench, "now.document.tables.parts.bar.width") == "9 mm"
+    assert bench.element("#name").text.endswith("not saved")
+    assert bench.run(places) == before
+
+
+def test_the_whole_arrow_of_a_load_takes_a_press(bench):
+    """In its middle it opens its numbers, and pulled there its tip goes as far as the pointer."""
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    arrow = "now.drawn.loads.find((load) => load.kind === 'force')"
+    x, y, size = state(
+        bench,
+        f"[now.view.left + now.view.scale * {arrow}.at[0], now.view.top - now.view.scale * {arrow}.at[1],"
+        f" {arrow}.vector[1]]",
+    )
+    tip = bench.element('.handles [aria-label^="Load on rocker"]')
+    middle = round((y + float(tip.get_attribute("cy"))) / 2 - y)
+    chain = ActionChains(bench.driver, duration=20)
+    sheet = bench.run("return document.querySelector('#sheet').getBoundingClientRect().toJSON()")
+    chain.w3c_actions.pointer_action.move_to_location(round(sheet["x"] + x), round(sheet["y"] + y + middle))
+    chain.double_click().perform()
+    assert bench.element(".entry strong").text == "Load on rocker"
+    press(bench, "\ue00c")
+    chain.click_and_hold().move_by_offset(0, 30).release().perform()
+    settle(bench, "now.document.undo")
+    longer = state(bench, f"{arrow}.vector[1]")
+    assert longer / size == pytest.approx(1.0 + 30.0 / (2.0 * middle), rel=0.1)
+
+
 def test_an_arrow_and_the_pose_are_pulled(bench):
     pull(bench, "Load on rocker", (30, 10))
     vector = state(bench, "now.drawn.loads.find((load) => load.kind === 'force').vector")

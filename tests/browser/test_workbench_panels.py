@@ -32,13 +32,6 @@ const made = URL.createObjectURL;
 URL.createObjectURL = (blob) => (window.handed.push(blob), made.call(URL, blob));
 """
 READ = "const [kind, done] = arguments; window.handed.findLast(({ type }) => type.startsWith(kind)).text().then(done);"
-CHANGE = """
-return import(document.baseURI + 'page/store.js').then(({ store }) => {
-  const { whole } = store.state.verdict;
-  const change = { text: "A width that was tried passes.", command: null, operations: [arguments[0]] };
-  store.put("verdict", { linear: null, solids: null, whole: { ...whole, changes: [change] } });
-});
-"""
 PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 
 
@@ -106,8 +99,18 @@ def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, ben
     browser.wait(f"{shown}.includes('{factor:.4g}') && !document.querySelector('#panel-verdict.old')")
     assert browser.element("#panel-verdict .stamp").text.lower() == told.verdict.value
     browser.wait("document.querySelector('#panel-verdict .stamp-line').innerText.includes('whole')")
-    browser.run(CHANGE, {"op": "set", "path": ["parts", "bar", "width"], "value": "8 mm"})
+    apply = "[...document.querySelectorAll('#panel-verdict .changes button')].some((one) => one.innerText === 'Apply')"
+    browser.wait(apply)
+    assert "is calibrated for links of part bar with" in browser.element("#panel-verdict .changes").text
     browser.run(PRESS, "Apply")
+    browser.wait(f"!{TEXT}.includes('width = \"16 mm\"')")
+    browser.wait("!document.querySelector('#panel-verdict.old')")
+    assert "not calibrated" not in browser.element("#panel-verdict").text
+    browser.run("document.activeElement.blur()")
+    undo = "[...document.querySelectorAll('button')].find((one) => one.textContent.startsWith('Undo')).click()"
+    browser.run(undo)
+    browser.wait(f"{TEXT}.includes('width = \"16 mm\"')")
+    browser.run(undo)
     browser.wait(f"""{TEXT} === {json.dumps(case.read_text(encoding="utf-8"))}""")
 
 
@@ -125,6 +128,15 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
     area.send_keys("\ue003" * len("\n[parts.bar\n"))
     browser.wait("document.querySelector('#panel-text .at-line').hidden")
     browser.wait("!document.querySelector('#plane svg.old')")
+    browser.run(
+        "const area = document.querySelector('#panel-text textarea'); area.focus();"
+        "const at = area.value.indexOf('width = \"8 mm') + 12; area.setSelectionRange(at, at);"
+    )
+    area.send_keys("m")
+    browser.wait("document.querySelector('#panel-text .at-line').innerText.includes('\"mmm\" is not a unit')")
+    assert browser.element("#panel-text .numbers b").text == str(1 + lines.index('width = "8 mm"'))
+    area.send_keys("\ue003")
+    browser.wait("document.querySelector('#panel-text .at-line').hidden")
 
     open_panel(browser, "forms")
     show(browser, "parts")
@@ -171,11 +183,9 @@ def test_what_is_selected_in_the_drawing_is_shown(browser: chromium.Browser, ben
     browser.run(select, {"kind": "load", "path": ["load_cases", "lift", "forces", 0]})
     force = """[data-path='["load_cases","lift","forces",0,"force",1]']"""
     browser.wait(f"document.querySelector({force!r})?.value === '-5 N'")
-    open_panel(browser, "text")
-    lines = browser.run(f"return {TEXT}").split("\n")
-    marked = "document.querySelector('#panel-text .mark')"
-    place = 1 + lines.index("[[load_cases.lift.forces]]")
-    browser.wait(f"Math.abs({marked}.offsetTop + document.querySelector('.numbers').scrollTop - {place - 1} * 19) < 12")
+    browser.run(select, {"kind": "link", "name": "rocker"})
+    browser.wait(f"document.querySelector({WIDTH!r})?.value.endsWith(' mm')")
+    assert "Part bar, shared with crank, coupler" in browser.element("#panel-forms form").text
     assert browser.run("return document.documentElement.scrollWidth") <= chromium.PHONE[0]
 
 
@@ -223,11 +233,11 @@ def copied_commands_run(browser: chromium.Browser, case: Path) -> None:
     """What the page gives to be copied runs as a shell takes it, beside the case; by hand alone, which takes less."""
     entry = "return import(document.baseURI + 'page/store.js').then(({ store }) => store.put('entry', arguments[0]))"
     browser.run(entry, ["parts", "bar", "width"])
-    study, size = [one.text for one in browser.elements("#panel-out .command code")]
-    for command, more in ((study, ()), (size, ("--step", "4.5 mm"))):
+    study, *sizes = [one.text for one in browser.elements("#panel-out .command code")]
+    for command in (study, *sizes):  # sizes are those that the verdict names
         program, *words = shlex.split(command)
         assert program == "alula"
-        typed = [sys.executable, "-m", program, *words, *more, "--fidelity", "beam"]
+        typed = [sys.executable, "-m", program, *words, "--fidelity", "beam"]
         done = subprocess.run(typed, cwd=case.parent, capture_output=True, text=True, check=False)
         assert done.returncode in (0, 1, 3), done.stderr
     assert (case.parent / "mine-study" / "study.sqlite").is_file()
@@ -255,7 +265,7 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     assert "; solid " in told
     assert "with solids" in browser.element("#panel-verdict .stamp-line").text
     browser.element("[aria-keyshortcuts='Control+S']").click()
-    browser.wait("document.querySelector('#name').innerText === 'mine.toml'")
+    browser.wait("document.querySelector('#name').innerText.endsWith('\\nsaved')")
     open_panel(browser, "out")
     copied_commands_run(browser, case)
 

@@ -188,6 +188,7 @@ def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tm
         failed = page.verdict()
         assert failed["verdict"] == "fail" == page.stamp()
         assert failed["links"]["link-1"]["verdict"] == "fail"
+        page.until("now.verdict.whole.changes")
         page.press("Fit")
         page.picture("workbench-fail")
         page.control("s")

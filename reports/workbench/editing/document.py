@@ -150,7 +150,7 @@ class Document:
             if found := re.search(r"\(at line (\d+), column \d+\)", problem):
                 return int(found[1])
             return self.text.rstrip().count("\n") + 1 if "at end of document" in problem else None
-        entry = re.split(r"[:,](?:\s|\Z)", problem, maxsplit=1)[0]
+        entry = re.split(r"(?: \(it is .*)?[:,](?:\s|\Z)", problem, maxsplit=1)[0]
         return self.line([int(key) if key.isdecimal() else key.strip("\"'") for key in entry.split(".")])
 
     def line(self, path: Sequence[str | int]) -> int | None:

@@ -35,7 +35,7 @@ def perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) ->
     draft : TomlText
         The case.
     operation : mapping
-        "op" and what it needs: set, append, remove, rename, move, length, turn, link, join, split, hand, load, layer,
+        "op" and what it needs: set, append, remove, rename, move, length, turn, link, join, hand, load, layer,
         ground.
         Places are [x, y] in mm in the pose shown, angles in degrees.
     pose : Pose, optional
@@ -84,8 +84,6 @@ def _perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) -
             _link(draft, pose, operation, start, end)
         case {"op": "join", "ends": [first, second]}:
             _join(draft, pose, first, second)
-        case {"op": "split", "joint": str(joint)}:
-            remove(draft, ("joints", joint))
         case {"op": "hand", "link": str(link), "point": str(point), "to": str(to)}:
             _hand(draft, Plane(draft.tables, pose), (link, point), to)
         case {"op": "load", "load_case": str(name), "link": str(link), "point": str(point), "force": [*force]}:

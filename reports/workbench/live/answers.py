@@ -17,6 +17,7 @@ from alula.geometry.linkage.continuation import DeadPointError
 from alula.geometry.linkage.motion import Motion, ends_of, solve_motion
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import changed_case, folder_of, parse_tables
+from alula.loads.records.motion_spec import MotionSpec
 from alula.loads.states.case_motion import drive_angles
 from alula.loads.states.kinetostatics import dead_points
 from alula.reports.workbench.live.drawn import drawn, drawn_loosely, joint_forces
@@ -110,12 +111,14 @@ def motion_answer(text: str, name: str) -> Plain:
         ``values`` of the coordinate in ``unit``; ``points``: ``link.point`` -> places [mm]; ``angles``: link -> angles
         [deg]; ``dead``, values at which the drive is at a dead point, or the coordinate goes no further; ``range``, the
         ends that it reaches; ``turns``, true for a full turn. ``problem``: why it does not move, or not as far as the
-        case says, else None; without any motion it stands alone.
+        case says, else None; without any motion it stands alone, but for ``offer`` where none is stated: the
+        motion that there could be, a full turn or as far as the pose's coordinate gets; None of a travel.
     """
     try:
         case = case_of(text, name)
         if case.motion is None:
-            return {"problem": "motion: the case states none; add a [motion] with its range, or turn = true"}
+            none = "motion: the case states none; add a [motion] with its range, or turn = true"
+            return {"problem": none, "offer": _offered(case)}
         motion, stopped = _moved(case)
         ends = [] if case.pinned_drive is None else dead_points(motion, case.pinned_drive)
     except AlulaError as error:
@@ -135,6 +138,19 @@ def motion_answer(text: str, name: str) -> Plain:
         "turns": case.motion.turn and not stopped,
         "problem": str(stopped[0]) if stopped else None,
     }
+
+
+def _offered(case: Case) -> Plain | None:
+    """Return the motion that a case could state: a full turn, or the range of its coordinate."""
+    if case.pose.coordinate not in case.linkage.moving:
+        return None
+    start = math.degrees(case.solve_pose().angles[case.pose.coordinate])
+    spec = MotionSpec.model_validate({"range": [f"{start + half} deg" for half in (-180.0, 180.0)]})
+    motion, stopped = _moved(case.model_copy(update={"motion": spec}))
+    if not stopped:
+        return {"turn": True}
+    low, high = np.degrees(motion.angles[[0, -1]])
+    return {"range": [f"{math.ceil(low)} deg", f"{math.floor(high)} deg"]}
 
 
 def _moved(case: Case) -> tuple[Motion, list[DeadPointError]]:

@@ -23,7 +23,6 @@ from alula.geometry.linkage.linkage import Link
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
-from alula.loads.case.heights import thickness
 from alula.loads.records.aero import shares
 from alula.loads.records.applied import BodyForce, LineLoad, in_axes
 from alula.loads.records.load_case import LoadCase, PointForce, vector3
@@ -58,7 +57,7 @@ def drawn(case: Case, pose: Pose, statics: CaseStatics | None = None) -> Plain:
     Returns
     -------
     dict
-        Plain data: links, joints, loads, springs, coordinate, drive, size and the names of load cases.
+        Plain data: links, joints, loads, springs, coordinate, size and the names of load cases.
     """
     linkage, load_cases = pose.linkage, (case if statics is None else statics.case).load_cases
     whole = _size([complex(*pose.position(link, point)) for link, one in case.links.items() for point in one.points])
@@ -70,8 +69,7 @@ def drawn(case: Case, pose: Pose, statics: CaseStatics | None = None) -> Plain:
         for name, end in ends.items()
     ]
     loads = [load for name, one in load_cases.items() for load in _loads(case, pose, name, one, statics)]
-    drive = None if case.drive is None else {"link": case.drive.link, "joint": case.drive.joint}
-    standing = {"springs": _springs(case, pose, whole, statics), "coordinate": _coordinate(case, pose), "drive": drive}
+    standing = {"springs": _springs(case, pose, whole, statics), "coordinate": _coordinate(case, pose)}
     return {"links": links, "joints": joints, "loads": loads, **standing, "size": whole, "load_cases": [*load_cases]}
 
 
@@ -99,7 +97,7 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
         value = parse(pose.get(kind, "0 deg"), dimension) if pose.get("coordinate") else 0.0
         held = {"kind": kind, "value": math.degrees(value) if kind == "angle" else value, "least": None, "most": None}
         weight = {BODY_WEIGHT: weight_of(tables.get("body_mass"))}
-        load_cases, drive, whole = tables.get("load_cases", {}), tables.get("drive", {}), _size([*at.values()])
+        load_cases, whole = tables.get("load_cases", {}), _size([*at.values()])
         return {
             "links": [_link(name, one, frames[name], whole, case) for name, one in links.items()],
             "joints": [
@@ -110,7 +108,6 @@ def drawn_loosely(tables: Mapping[str, Any], case: Case | None = None) -> Plain 
             "loads": [load for name, one in load_cases.items() for load in _loose_loads(name, one, at, frames, weight)],
             "springs": [],
             "coordinate": {"name": pose["coordinate"], **held} if pose.get("coordinate") else None,
-            "drive": {"link": drive["link"], "joint": drive["joint"]} if drive.keys() >= {"link", "joint"} else None,
             "size": whole,
             "load_cases": list(load_cases),
         }
@@ -186,7 +183,6 @@ def _link(name: str, record: Link, frame: Frame, whole: float, case: Case | None
         ],
         "pieces": [list(piece) for piece in record.pieces],
         "width": _BAR * whole if part is None else part.section.width,
-        "thickness": thickness(record, {} if case is None else case.parts),
         "outline": outline,
         "holes": holes,
     }

@@ -2,20 +2,24 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
+from itertools import count
 
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import CheckOutcome, Subject, Tier, Verdict, by_nearness, overall
 from alula.fea.findings.of_check import with_findings
 from alula.fea.outcomes.result import CheckResult
-from alula.geometry.base.errors import AlulaError
+from alula.fea.sizing.section import following, larger, stated
+from alula.geometry.base.errors import AlulaError, CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
-from alula.reports.check.changes import change_sentences, change_title, size_command
+from alula.reports.check.changes import change_records
 from alula.reports.sentences import told
 from alula.reports.sentences.verdicts import checks_of, first_lines, opening
-from alula.reports.words.numbers import sentence
+from alula.reports.words.numbers import joined, sentence
+from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.live.answers import Plain, Stage, case_of
 
 _SO_FAR = (
@@ -63,7 +67,7 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     name : str
         Path or built-in name.
     early : callable, optional
-        Is told the same before what would change it is tried, which takes several checks.
+        Is told the same before what would change it is tried, which takes several checks: ``changes`` is None then.
 
     Returns
     -------
@@ -77,9 +81,11 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     start = time.perf_counter()
     try:
         result = check_case(case_of(text, name), name=name, fidelity="beam", threads=1)
+        soon = verdict_of(result, "whole", start)
         if early is not None:
-            early(verdict_of(result, "whole", start))
-        return verdict_of(with_findings(result), "whole", start)
+            early(soon | {"changes": None})
+        found = with_findings(result)
+        return verdict_of(found, "whole", start) | {"changes": _changes(found, text), "ms": soon["ms"]}
     except AlulaError as error:
         return _open("whole", str(error), start)
 
@@ -111,12 +117,12 @@ def verdict_of(result: CheckResult, stage: str, start: float) -> Plain:
         "stage": stage,
         "verdict": result.verdict.value,
         "sentences": [_here(one) for one in sentences],
-        "checks": [_check(result.case, check) for check in by_nearness(checks)],
+        "checks": [_check(check) for check in by_nearness(checks)],
         "links": {
             link: {"use": _use(own), "verdict": overall(one.verdict for one in own).value}
             for link, own in of_links.items()
         },
-        "changes": _changes(result),
+        "changes": [],
         "warnings": [_here(sentence(told(warning))) for warning in result.warnings],
         "ms": 1e3 * (time.perf_counter() - start),
     }
@@ -129,10 +135,9 @@ def _open(stage: str, problem: str, start: float) -> Plain:
     return {"stage": stage, "verdict": Verdict.UNDECIDED.value, "sentences": [problem], **nothing, "ms": ms}
 
 
-def _check(case: Case, check: CheckOutcome) -> Plain:
+def _check(check: CheckOutcome) -> Plain:
     return {
         "check": check.name,
-        "type": getattr(case.all_checks.get(check.name), "type", ""),
         "quantity": str(check.quantity),
         "subject": str(check.subject),
         "load_case": check.load_case,
@@ -163,18 +168,54 @@ def _use(checks: Sequence[CheckOutcome]) -> list[float] | None:
     return [max(ends) for ends in zip(*uses, strict=True)] or None
 
 
-def _changes(result: CheckResult) -> list[Plain]:
-    """Return what would change the verdict, as reports tell it; a size that was tried and passes can be set at once."""
-    several, found = len(result.load_cases) > 1, list[Plain]()
-    for change in result.changes:
-        title = sentence(change_title(change, several=several))[:-1]
-        told_of_it = f"{title}: {' '.join(change_sentences(change, result))}"
-        found.append({"text": _here(told_of_it), "command": size_command(change, result) or None, "operations": None})
-        if (size := change.size) is not None and change.check.verdict is not Verdict.PASS:
-            operations = [{"op": "set", "path": keys_of(size.entry), "value": size.last}]
-            wide = f"With {size.entry} = {size.last} it passes; the least that does lies between {size.first} and this."
-            found.append({"text": wide, "command": None, "operations": operations})
-    return found
+def _changes(result: CheckResult, text: str) -> list[Plain]:
+    """Return what would change the verdict: sizes that can be set at once first, then what reports tell."""
+    reported = [
+        {
+            "text": _here(f"{sentence(one['title'])[:-1]}: {' '.join(one['sentences'])}"),
+            "command": one["command"],
+            "operations": None,
+        }
+        for one in change_records(result)
+    ]
+    return [*_offers(result, text), *reported]
+
+
+def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
+    """Yield sizes that follow a section, so that it can be judged by hand, or else those with which the case passes."""
+    case, name, checks = result.case, result.name, checks_of(result)
+    follow = {part: sizes for part in case.parts if (sizes := following(case, part))}
+    for part, sizes in follow.items():
+        yield _offer(f"Hand calculation is calibrated for links of part {part} with", case, sizes)
+    if follow or result.verdict is Verdict.PASS or not result.changes:
+        return
+    link = result.changes[0].check.subject.name
+    if (size := result.changes[0].size) is not None:
+        yield _offer("It passes with", case, {size.entry: size.last})
+    elif sizes := larger(case, name, checks):
+        yield _offer("It passes with another section", case, sizes)
+    elif link in case.checked_links and [one.part for one in case.links.values()].count(case.links[link].part) > 1:
+        document, part = Document(text), str(case.links[link].part)
+        own = next(name for k in count(2) if (name := f"{part}-{k}") not in case.parts)
+        alone = [
+            {"op": "set", "path": ["parts", own], "value": document.tables()["parts"][part]},
+            {"op": "set", "path": ["links", link, "part"], "value": own},
+        ]
+        with suppress(CaseError):  # a table that sets these entries, or a text that takes no edit
+            document.apply(alone, None)
+            changed = case_of(document.text, name)
+            if sizes := larger(changed, name, checks):
+                yield _offer(f"It passes with a part of its own for {link}, {own}", changed, sizes, alone)
+
+
+def _offer(title: str, case: Case, sizes: Mapping[str, str], first: Sequence[Plain] = ()) -> Plain:
+    """Return what sets some sizes after other edits."""
+    told_of = []
+    for path, was, now in stated(case, sizes):
+        _, name, entry = map(str, keys_of(path))
+        told_of.append(f"{entry.replace('_', ' ')} of {name} {now} (now {was})")
+    operations = [*first, *({"op": "set", "path": keys_of(path), "value": size} for path, size in sizes.items())]
+    return {"text": f"{title}: {joined(told_of)}.", "command": None, "operations": operations}
 
 
 STAGES: Mapping[str, Stage] = {

@@ -1,6 +1,7 @@
 /** Exact numbers: a small form beside what is chosen. */
 
 import { edit, tell } from "./server.js";
+import { store } from "./store.js";
 import { scene, key } from "./scene.js";
 import { add, make } from "./elements.js";
 import { minus, number, size, toScreen } from "./view.js";
@@ -39,6 +40,13 @@ function asked(handle) {
     .filter(({ link, names }) => !points || names.some((name) => points.includes(key(link.name, name))))
     .map(({ link, ends, names }) => ({ label: `${link.name} ${names.join("–")}`, value: size(minus(...ends)), unit: "mm",
       make: (text) => ({ op: "length", link: link.name, points: names, value: Number.isFinite(parsed(text)) ? `${parsed(text)} mm` : text }) }));
+  /** Sizes of a link's part; links that have it as well are told. */
+  const sizes = ({ part }) => ["width", "thickness", "outer_diameter", "inner_diameter"].flatMap((entry) => {
+    const [, value] = String(store.state.document.tables?.parts?.[part]?.[entry]).match(/^([\d.]+) mm$/) ?? [];
+    const others = links.filter((one) => one.part === part).length - 1;
+    return value ? [{ label: `${entry.replace("_", " ")} of ${part}${others ? ` (${others} more ${others > 1 ? "links" : "link"})` : ""}`, value: Number(value), unit: "mm",
+      make: (text) => ({ op: "set", path: ["parts", part, entry], value: Number.isFinite(parsed(text)) ? `${parsed(text)} mm` : text }) }] : [];
+  });
   /** A place with the lengths of links; what it is moved as. */
   const placed = (at, title, what, points, more = {}) => {
     const fields = [{ label: "x", value: at[0], unit: "mm" }, { label: "y", value: at[1], unit: "mm" }, ...lengths(links, points)];
@@ -55,7 +63,7 @@ function asked(handle) {
       return placed(at, `Point ${handle.point} of ${handle.link}`, what, [key(handle.link, handle.point)], { choice });
     }),
     link: () => links.filter((one) => one.name === handle.name).map((link) => {
-      const fields = lengths([link]);
+      const fields = [...lengths([link]), ...sizes(link)];
       return { at: link.pieces[0]?.[0] ?? link.origin, title: `Link ${link.name}`, fields, change: (texts, changed) => made(fields, texts, changed) };
     }),
     load: () => now.loads.filter((one) => String(one.path) === String(handle.path)).map((load) => {

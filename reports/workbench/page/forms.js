@@ -110,7 +110,7 @@ class Forms {
     const [table = CASE] = tables;
     const name = Object.keys(this.tables[table] ?? {}).find((one) => this.begins([table, one])) ?? null;
     const title = [words(table) || "the case itself", name].filter(Boolean).join(", ");
-    return make("button", { type: "button", class: "to-line", onclick: () => this.show(table, name) }, `Something is wrong in ${title}: show it`);
+    return make("button", { type: "button", class: "plain to-line", onclick: () => this.show(table, name) }, `Something is wrong in ${title}: show it`);
   }
 
   /** The element of an entry, or the one of its elements that has a property. */
@@ -211,11 +211,20 @@ class Forms {
     const path = [this.table, this.name];
     const value = at(this.tables, path);
     const option = optionOf(node.additionalProperties, value);
-    const copied = this.free(this.name);
-    const buttons = make("p", { class: "row" },
-      make("button", { type: "button", onclick: () => this.send([{ op: "set", path: [this.table, copied], value }], () => this.show(this.table, copied)) }, "Copy"),
-      make("button", { type: "button", onclick: () => this.send([{ op: "remove", path }]) }, "Remove"));
-    return [this.nameField(path, WORDS[this.table]), this.help(option.description), this.error(path), buttons, ...this.kinds(node.additionalProperties, value, path), ...this.fields(option, value, path)];
+    const buttons = make("p", { class: "row" }, make("button", { type: "button", onclick: () => this.send([{ op: "remove", path }]) }, "Remove"));
+    return [this.nameField(path, WORDS[this.table]), this.help(option.description), this.error(path), buttons, this.part(value.part), ...this.kinds(node.additionalProperties, value, path), ...this.fields(option, value, path)];
+  }
+
+  /** Section and material of a link: they stand in its part, which other links may have as well. */
+  part(name) {
+    const value = this.tables.parts?.[name];
+    if (this.table !== "links" || !value) return null;
+    const others = Object.entries(this.tables.links).filter(([link, one]) => one.part === name && link !== this.name).map(([link]) => link);
+    const own = free(name, Object.keys(this.tables.parts));
+    const apart = () => this.send([{ op: "set", path: ["parts", own], value }, { op: "set", path: ["links", this.name, "part"], value: own }]);
+    return this.box(["parts", name], `Part ${name}${others.length ? `, shared with ${others.join(", ")}` : ""}`, () => [
+      others.length ? make("button", { type: "button", onclick: apart }, `Give ${this.name} a part of its own`) : null,
+      ...this.fields(optionOf(this.root.properties.parts.additionalProperties, value), value, ["parts", name])], true);
   }
 
   /** The name of an entry, which can be changed. */

@@ -59,7 +59,7 @@ function down(event) {
   if (fingers.size === 2) return pinch();
   const { handle = null } = event.button === 1 ? {} : event.target;
   if (handle) {
-    event.target.focus({ preventScroll: true });
+    (event.target.tip ?? event.target).focus({ preventScroll: true }); // of an arrow its tip
     store.put("selected", handle); // one that has the focus already tells of no new one
   }
   else document.activeElement?.blur();
@@ -152,7 +152,7 @@ function dragOf(handle, start) {
     return null;
   }
   if (handle.kind === "joint" || handle.kind === "point") return movingTo(handle);
-  if (handle.kind === "load") return forcing(handle, now);
+  if (handle.kind === "load") return forcing(handle, now, start);
   if (handle.kind === "pose") return turning(now, start);
   if (handle.kind === "link") return following(handle, now, start);
   return null;
@@ -176,13 +176,13 @@ function movingTo(handle) {
 const forceStep = (per = newtonLength()) => round125(6 / store.state.view.scale / per);
 const newtonLength = () => arrowLength() || (0.02 * store.state.drawn?.size) || 1;
 
-function forcing(handle, now) {
+function forcing(handle, now, start) {
   const load = now.loads.find((one) => same(one.path, handle.path));
   if (!load) return null;
   const per = newtonLength();
   return (place, free) => {
     const step = forceStep(per) / (free ? 100 : 1);
-    return force(load, minus(place, load.at).map((part) => rounded(part / per, step)), per);
+    return force(load, plus(load.vector, minus(place, start), 1 / per).map((part) => rounded(part, step)), per);
   };
 }
 
@@ -311,7 +311,6 @@ function use(handle, place, free) {
   const { tool, ends } = store.state;
   store.put("ends", null);
   if (tool === "remove" && handle) removeOf(handle);
-  if (tool === "split" && handle?.kind === "joint") edit([{ op: "split", joint: handle.name }]);
   if (tool === "ground") {
     const one = endAt(handle, place, free);
     if (!handle || isGround(handle)) edit([{ op: "ground", at: one.at }]);

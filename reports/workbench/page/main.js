@@ -48,9 +48,9 @@ function tabs() {
 /** The name of the file, what is wrong with it, and what happened. */
 function said() {
   store.on("document", (now) => {
-    const name = (now.name ?? "alula") + (now.saved ? "" : " (not saved)");
-    find("name").textContent = name;
-    document.title = now.name ? `${name} - alula` : name;
+    const name = now.name ?? "alula";
+    find("name").textContent = find("name").title = now.name ? `${name}\n${now.saved ? "saved" : "not saved"}` : name;
+    document.title = now.name ? `${name}${now.saved ? "" : " (not saved)"} - alula` : name;
     const line = now.problem?.line ? `Line ${now.problem.line}: ` : "";
     find("problem").textContent = now.problem ? line + now.problem.sentence : "";
     find("problem").hidden = !now.problem || Boolean(tools.nextStep(now)); // what is only begun is no mistake

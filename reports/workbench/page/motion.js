@@ -1,7 +1,6 @@
 /** The motion: a slider over its instants, play, paths of points, dead points, and taking over a pose. */
 
 import { store } from "./store.js";
-import { beyond } from "./scene.js";
 import { edit } from "./server.js";
 import { make } from "./elements.js";
 import { leastOf, number } from "./view.js";
@@ -24,7 +23,7 @@ export function mount(element) {
     slider: make("input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion", oninput: slid }),
     dead: make("svg", { class: "dead", "aria-hidden": "true" }),
     said: make("output"),
-    one: button("Let it turn once", () => edit([{ op: "set", path: ["motion"], value: { turn: true } }]), { hidden: true }),
+    one: button("", () => edit([{ op: "set", path: ["motion"], value: store.state.motion.offer }]), { hidden: true }),
     use: button("Use this pose", take, { class: "kept" }),
     back: button("Back to the case's pose", leave, { class: "kept" }),
   };
@@ -80,7 +79,7 @@ function nearest() {
 }
 
 function show() {
-  const { drawn, motion, instant } = store.state;
+  const { motion, instant } = store.state;
   const moves = Boolean(motion?.values?.length);
   for (const one of [parts.play, parts.slider]) one.disabled = !moves;
   parts.use.hidden = parts.back.hidden = instant === null;
@@ -91,7 +90,9 @@ function show() {
     const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
     const none = motion?.problem && !told && !store.state.document?.tables?.motion;
     parts.said.textContent = parts.said.title = none ? "no motion is stated" : (!told && motion?.problem) || "no motion";
-    parts.one.hidden = !none || store.state.drawn?.coordinate?.kind !== "angle";
+    const { offer } = motion ?? {};
+    parts.one.hidden = !none || !offer;
+    parts.one.textContent = offer?.turn ? "Let it turn once" : "Let it move";
     parts.dead.replaceChildren();
     return;
   }
@@ -105,8 +106,7 @@ function show() {
   const dead = motion.dead?.length ? `; dead at ${motion.dead.map((one) => number(one) + signs).join(", ")}` : "";
   const text = `${number(instant === null ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
   parts.slider.setAttribute("aria-valuetext", text);
-  const wide = instant === null && drawn?.coordinate && beyond(drawn.coordinate) ? "beyond the stated motion; " : "";
-  parts.said.textContent = parts.said.title = `${text} (${wide}${range}${dead})`;
+  parts.said.textContent = parts.said.title = `${text} (${range}${dead})`;
   const share = (value) => `${(100 * (value - values[0])) / (values.at(-1) - values[0] || 1)}%`;
   parts.dead.replaceChildren(...(motion.dead ?? []).map((value) => make("line", { x1: share(value), x2: share(value), y1: 0, y2: 8 })));
 }

@@ -82,12 +82,11 @@ export function mount(holder, store) {
     const value = path?.reduce((inside, step) => inside?.[step], store.state.document?.tables);
     const range = rangeOf(value);
     const file = quoted(store.state.document?.name ?? "case.toml");
-    const vary = (count) => quoted(`${path.join(".")}=${range}${count}`);
-    asked.replaceChildren(...(range
-      ? [make("p", {}, `Of ${path.join(".")}, which is ${value}, from half to double:`),
-        make("p", {}, "Study this ", command(`alula study ${file} --vary ${vary("/7")} -o ${quoted(`${stem()}-study`)}`)),
-        make("p", {}, "Least size ", command(`alula size ${file} --vary ${vary("")}`))]
-      : [make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the commands for a study of it, and for its least size that passes, stand here then.")]));
+    const sizes = (store.state.verdict.whole?.changes ?? []).map((change) => change.command).filter(Boolean);
+    asked.replaceChildren(range
+      ? make("p", {}, `Study ${path.join(".")}, which is ${value}, from half to double: `, command(`alula study ${file} --vary ${quoted(`${path.join(".")}=${range}/7`)} -o ${quoted(`${stem()}-study`)}`))
+      : make("p", { class: "soft" }, "Choose an entry with a unit under Entries, such as the width of a part: the command for a study of it stands here then."),
+      ...sizes.map((one) => make("p", {}, "Least size: ", command(one))));
   }
 
   function draw() {
@@ -99,7 +98,7 @@ export function mount(holder, store) {
     commands();
   }
 
-  const report = make("a", { href: "out/report", target: "_blank", rel: "noopener", class: "button" }, "Report");
+  const report = make("a", { href: "out/report", target: "_blank", rel: "noopener", class: "button", onclick: () => (said.textContent = "The report is made, and opens in a tab of its own.") }, "Report");
   holder.append(
     make("h2", {}, "Take with you"),
     make("p", { class: "row" }, report, button("Case file", () => fetched("out/case", `${stem()}.toml`, "")), button("Picture, SVG", () => picture("svg")), button("Picture, PNG", () => picture("png"))),

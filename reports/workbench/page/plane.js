@@ -5,7 +5,7 @@ import { shownVerdict } from "./verdict.js";
 import { beyond, freePoints, poseHandle, scene } from "./scene.js";
 import { add, Group, make } from "./elements.js";
 import { ahead, along, place } from "./labels.js";
-import { angle, fit, gridStep, leastOf, minus, number, plus, round125, size, toScreen, turned } from "./view.js";
+import { angle, fit, gridStep, leastOf, minus, number, plus, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
 const ARROW = 0.2;
@@ -309,14 +309,17 @@ function moments({ now, texts, taken }) {
 
 /** What a hand, a finger or the keyboard takes hold of: at least 24 px wide. */
 function handles({ now, taken, texts }) {
-  const put = (key, handle, [x, y], label, more = {}) => {
-    const target = groups.handles.put(key, "circle", { cx: x, cy: y, r: 14, tabindex: 0, role: "button", "aria-label": label, ...more });
+  const put = (key, handle, [x, y], label) => {
+    const target = groups.handles.put(key, "circle", { cx: x, cy: y, r: 14, tabindex: 0, role: "button", "aria-label": label });
     target.handle = handle;
+    return target;
   };
   const where = (at) => `at ${number(at[0], 5)}, ${number(at[1], 5)} mm`;
   for (const load of now.loads) {
     if (load.kind !== "force") continue;
-    put(`load ${load.path.join(".")}`, { kind: "load", path: load.path }, toScreen(plus(load.at, load.vector, perNewton)), `Load on ${load.link} at ${load.point}, ${number(load.vector[0])}, ${number(load.vector[1])} N`);
+    const [name, tip] = [`load ${load.path.join(".")}`, plus(load.at, load.vector, perNewton)];
+    const target = put(name, { kind: "load", path: load.path }, toScreen(tip), `Load on ${load.link} at ${load.point}, ${number(load.vector[0])}, ${number(load.vector[1])} N`);
+    if (["select", "remove"].includes(store.state.tool)) Object.assign(groups.bodies.put(name, "path", { d: trace([load.at, tip], false), "stroke-width": 20 }), { handle: target.handle, tip: target });
   }
   for (const free of freePoints(now)) put(`point ${free.link}.${free.point}`, { kind: "point", link: free.link, point: free.point }, toScreen(free.at), `Point ${free.point} of ${free.link} ${where(free.at)}`);
   for (const joint of now.joints) put(`joint ${joint.name}`, { kind: "joint", name: joint.name }, toScreen(joint.at), `Joint ${joint.name} of ${joint.links.join(" and ")}, ${joint.kind}, ${where(joint.at)}`);
@@ -380,11 +383,9 @@ function texts({ texts: labels, taken, width, height }) {
 function legend(now) {
   const element = document.getElementById("legend");
   const uses = now && Object.values(shownVerdict(store.state.verdict)?.links ?? {}).some((one) => one.use !== null);
-  const largest = now ? Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force))) : 0;
-  const key = largest ? round125(largest / 2) : 0;
   const entries = [
     ...(uses ? [["", "strength used, at the worst (✗ fails, ? undecided):"], ...USES.map(([, text, colour], k) => [k < USES.length - 1 ? "use" : "use over", text, colour])] : []),
-    ...(largest ? [["joint-force", `joint force (${number(key)} N is ${number(key * perNewton, 2)} mm long)`]] : []),
+    ...(now && forcesOf(now).length ? [["joint-force", "joint force"]] : []),
     ...(now?.loads.length ? [["load", now.loads.some((load) => load.line) ? "load; dashed: its line, dotted: rigid lever" : "load"]] : []), ...(now?.forces.drive ? [["torque", "drive"]] : []),
     ...(now?.springs.length ? [["spring", "springs, stops"]] : []),
   ];

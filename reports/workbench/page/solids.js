@@ -42,8 +42,7 @@ export function mount(holder, store) {
     start.disabled = running || Boolean(store.state.document?.problem);
     stop.disabled = !running;
     const stale = now && store.state.document && now.revision < store.state.document.revision && now.state !== "idle";
-    const wrong = store.state.document?.problem ? "The case has to be mended first." : "";
-    said.textContent = [wrong, now?.sentence, stale ? "The case has changed since." : ""].filter(Boolean).join(" ");
+    said.textContent = [now?.sentence, stale ? "The case has changed since." : ""].filter(Boolean).join(" ");
     const links = Object.entries(now?.links ?? {});
     list.hidden = !links.length;
     list.tBodies[0].replaceChildren(...links.map(([name, { state, seconds, model }]) => {

@@ -23,11 +23,10 @@ export const store = {
     paths: false, // whether paths of points are shown
   },
 
-  /** Call `listener(value)` after each change of a key; returns a function that ends this. */
+  /** Call `listener(value)` after each change of a key. */
   on(key, listener) {
     if (!listeners.has(key)) listeners.set(key, new Set());
     listeners.get(key).add(listener);
-    return () => listeners.get(key).delete(listener);
   },
 
   /** Set a key and tell its listeners. */

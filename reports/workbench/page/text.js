@@ -1,42 +1,35 @@
 /** The text of the case: with line numbers, and what is wrong at its line. */
 
 import { make } from "./elements.js";
-import { change, newGesture, send } from "./server.js";
+import { change, newGesture } from "./server.js";
 
 const PAUSE = 300; // ms after the last key until the text is sent
 export function mount(holder, store) {
   const numbers = make("pre", { class: "numbers", "aria-hidden": "true" });
   const area = make("textarea", { "aria-label": "Text of the case", spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off" });
-  const mark = make("div", { class: "mark", hidden: true });
   const wrong = make("p", { class: "at-line", id: "text-wrong", hidden: true });
-  const go = make("button", { type: "button", class: "to-line", hidden: true, onclick: () => jump(store.state.document.problem.line) });
-  const editor = make("div", { class: "editor" }, numbers, mark, area, wrong);
-  holder.append(go, editor);
+  const editor = make("div", { class: "editor" }, numbers, area, wrong);
+  holder.append(editor);
   let typed = null; // the timer of what was typed and not sent
   let gesture = newGesture();
-  let marked = null;
-  let numbered = "";
   const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
 
   /** Put an element at a line; positions are set by script, since the page's policy knows no style attributes. */
-  function place(element, line, beside = false) {
+  function place(element, line) {
     const top = (line - 1) * lines() - area.scrollTop + Number.parseFloat(getComputedStyle(area).paddingTop);
     const below = top + lines() + element.offsetHeight <= area.clientHeight;
-    element.style.setProperty("top", `${beside ? (below ? top + lines() : top - element.offsetHeight) : top}px`);
+    element.style.setProperty("top", `${below ? top + lines() : top - element.offsetHeight}px`);
   }
 
   function follow() {
     numbers.scrollTop = area.scrollTop;
     const line = store.state.document?.problem?.line;
-    if (line) place(wrong, line, true);
-    if (marked) place(mark, marked);
+    if (line) place(wrong, line);
   }
 
   function number() {
     const count = area.value.split("\n").length;
     const bad = store.state.document?.problem?.line;
-    if (numbered === `${count} ${bad}`) return; // while one drags, lines stay as many
-    numbered = `${count} ${bad}`;
     numbers.replaceChildren(...Array.from({ length: count }, (_, k) => (k + 1 === bad ? make("b", {}, `${k + 1}\n`) : `${k + 1}\n`)));
   }
 
@@ -48,15 +41,14 @@ export function mount(holder, store) {
 
   /** Take a new text; caret and scroll stay with what they stood at. */
   function take(text) {
-    if (area.value === text) return;
-    const [was, start, end, top] = [area.value, area.selectionStart, area.selectionEnd, area.scrollTop];
+    const was = area.value;
+    if (was === text) return;
     let same = 0;
     while (same < was.length && was[same] === text[same]) same += 1;
     let tail = 0;
     while (tail < was.length - same && tail < text.length - same && was.at(-1 - tail) === text.at(-1 - tail)) tail += 1;
-    const moved = (caret) => (caret <= same ? caret : caret >= was.length - tail ? caret + text.length - was.length : Math.min(caret, text.length - tail));
-    area.value = text;
-    area.setSelectionRange(moved(start), moved(end));
+    const top = area.scrollTop;
+    area.setRangeText(text.slice(same, text.length - tail), same, was.length - tail, "preserve");
     area.scrollTop = top;
   }
 
@@ -69,34 +61,13 @@ export function mount(holder, store) {
     wrong.hidden = !line;
     area.setAttribute("aria-invalid", String(Boolean(sentence)));
     area.setAttribute("aria-describedby", "text-wrong");
-    go.hidden = !line;
-    go.textContent = `Go to line ${line}, which is wrong`;
-    point();
-  }
-
-  function jump(line) {
-    const start = area.value.split("\n").slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
-    area.focus();
-    area.setSelectionRange(start, start);
-    scrollTo(line);
-  }
-
-  /** Mark the line of what is selected in the drawing. */
-  async function point(scroll = false) {
-    const { kind, name, link, point: at, path: of } = store.state.selected ?? {};
-    const path = { link: ["links", name], joint: ["joints", name], point: ["links", link, "points", at], load: of }[kind];
-    const keys = (path ?? []).map((key) => `key=${encodeURIComponent(JSON.stringify(key))}`).join("&");
-    marked = path && !holder.hidden ? (await send(`line?${keys}`).catch(() => ({}))).line : null;
-    mark.hidden = !marked;
-    if (marked && scroll && !holder.hidden) scrollTo(marked);
     follow();
   }
 
-  /** The panel was opened: what is wrong is seen, otherwise what is selected. */
+  /** The panel was opened: what is wrong is seen. */
   function opened() {
     const line = store.state.document?.problem?.line;
     if (line) scrollTo(line);
-    else point(true);
   }
 
   function sendTyped() {
@@ -117,7 +88,6 @@ export function mount(holder, store) {
   });
   area.addEventListener("scroll", follow);
   store.on("document", show);
-  store.on("selected", () => point(true));
   store.on("panel", (name) => name === "text" && requestAnimationFrame(opened));
   show(store.state.document);
 }

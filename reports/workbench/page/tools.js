@@ -12,8 +12,7 @@ const TOOLS = [
   ["ground", "Add ground pin", "g", "Press on a place: a point of the ground. On a pin or an end of a link: it is held there."],
   ["load", "Add load", "f", "Press on a point or a link and pull the arrow of the force."],
   ["join", "Join", "j", "Press on a point and release on another: they become one joint."],
-  ["split", "Split", "s", "Press on a joint: it is taken apart."],
-  ["remove", "Remove", "Delete", "Press on what shall go, with all that refers to it."],
+  ["remove", "Remove", "Delete", "Press on what shall go, with all that refers to it; a joint is taken apart."],
 ];
 const named = (key) => (key === "Delete" ? "Del" : key.toUpperCase());
 
@@ -24,12 +23,12 @@ export function mount(element) {
     store.on("tool", (tool) => one.setAttribute("aria-pressed", String(tool === name)));
   }
   const steps = group(element, "Steps");
-  const undo = button(steps, "Undo", "Ctrl+Z", "", () => ask("undo"));
-  const redo = button(steps, "Redo", "Ctrl+Y", "", () => ask("redo"));
+  const undo = button(steps, "Undo", "Ctrl+Z", "", () => change("undo"));
+  const redo = button(steps, "Redo", "Ctrl+Y", "", () => change("redo"));
   button(steps, "Fit", "0", "Show all of the linkage", fitAll);
   const keeping = group(element, "File");
-  const save = button(keeping, "Save", "Ctrl+S", "", () => ask("save"));
-  const box = make("input", { type: "checkbox", onchange: () => ask("save", { always: box.checked }) });
+  const save = button(keeping, "Save", "Ctrl+S", "", () => change("save"));
+  const box = make("input", { type: "checkbox", onchange: () => change("save", { always: box.checked }) });
   add(keeping, "label", { class: "choice" }, box, " save as one goes");
   loadCases(group(element, "Load case"));
   store.on("document", (now) => {
@@ -52,13 +51,10 @@ function button(parent, label, key, title, act) {
   return add(parent, "button", told, `${label} `, key.startsWith("Ctrl") ? null : make("kbd", {}, named(key)));
 }
 
-const ask = (route, body) => change(route, body).catch(() => {}); // refusals are told as notices
-
-/** Take up a tool; removing and splitting act at once on what is selected. */
+/** Take up a tool; removing acts at once on what is selected. */
 function choose(name) {
   const { selected, tool } = store.state;
   if (name === "remove" && selected && tool === "select") return removeOf(selected);
-  if (name === "split" && selected?.kind === "joint" && tool === "select") return edit([{ op: "split", joint: selected.name }]);
   store.put("ends", null);
   const sheet = document.getElementById("sheet");
   store.put("cursor", store.state.view ? toPlane([sheet.clientWidth / 2, sheet.clientHeight / 2]).map(Math.round) : null);
@@ -121,7 +117,7 @@ function shortcut(event) {
     const writing = event.target.closest?.("input, textarea, select");
     if (!route || (writing && route !== "save")) return;
     event.preventDefault();
-    ask(route);
+    change(route);
     return;
   }
   if (event.altKey || event.target.closest?.("input, textarea, select, [contenteditable]")) return;

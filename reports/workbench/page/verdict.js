@@ -27,7 +27,7 @@ export function mount(holder, store) {
   brief.addEventListener("click", () => store.put("panel", "verdict"));
   const stamp = make("p", { class: "stamp-line", role: "status", "aria-live": "polite" });
   const rest = make("div");
-  const open = new Set();
+  let open = false;
   holder.append(stamp, rest);
 
   /** What is known; a problem of the case stands above the drawing, and is no verdict. */
@@ -43,9 +43,9 @@ export function mount(holder, store) {
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
     stamp.replaceChildren(...badge(found, now));
-    brief.textContent = found?.verdict ?? "";
+    brief.textContent = found?.verdict ?? "no verdict";
     brief.className = `stamp ${found?.verdict ?? ""} ${late ? "late" : ""}`;
-    brief.hidden = !found;
+    brief.hidden = !now?.path;
   }
 
   function draw() {
@@ -73,15 +73,14 @@ export function mount(holder, store) {
   function badge(found, now) {
     if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict yet: the case is not whole." : "The verdict is being computed ...")];
     const computing = !now?.problem && (found.revision < (now?.revision ?? 0) || found.stage === "linear");
-    const running = store.state.solids?.state === "running" ? "solids are being solved" : "";
     return [
       make("strong", { class: `stamp ${found.verdict}` }, found.verdict),
-      make("span", { class: "soft" }, [STAGES[found.stage], time((found.ms ?? 0) / 1000), computing ? "being computed ..." : "", running].filter(Boolean).join("; ")),
+      make("span", { class: "soft" }, [STAGES[found.stage], time((found.ms ?? 0) / 1000), computing ? "being computed ..." : ""].filter(Boolean).join("; ")),
     ];
   }
 
   function changes(found) {
-    if (!found.changes?.length) return null;
+    if (!found.changes?.length) return found.changes === null ? make("p", { class: "soft" }, "What would change it is being tried ...") : null;
     const one = ({ text, command: typed, operations }) => make("li", {}, text, " ",
       operations?.length ? make("button", { type: "button", onclick: () => edit(operations).catch(() => {}) }, "Apply") : typed ? command(typed) : null);
     return [make("h2", {}, "What would change it"), make("ul", { class: "changes" }, ...found.changes.map(one))];
@@ -119,14 +118,10 @@ export function mount(holder, store) {
     if (!pairs.length) return null;
     const links = new Map();
     for (const pair of pairs) if (!links.has(pair[1].subject)) links.set(pair[1].subject, pair);
-    const took = (name) => {
-      const seconds = store.state.solids?.links?.[name]?.seconds;
-      return seconds === null || seconds === undefined ? "" : `, ${time(seconds)}`;
-    };
-    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other, took(name))));
+    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other)));
     return [
       make("h2", {}, "By hand and as a solid"),
-      make("p", { class: "soft" }, `All links by hand took ${time((hand.ms ?? 0) / 1000)}. A bar is the band of a value; the upright line is the limit.`,
+      make("p", { class: "soft" }, `All links took ${time(hand.ms / 1000)} by hand and ${time(solids.ms / 1000)} as solids. A bar is the band of a value; the upright line is the limit.`,
         hand.revision === solids.revision ? "" : " The solids are of an earlier state of the case."),
       ...figures,
     ];
@@ -134,8 +129,8 @@ export function mount(holder, store) {
 
   function warnings(found) {
     if (!found.warnings?.length) return null;
-    const box = make("details", { open: open.has("warnings") }, make("summary", {}, `${found.warnings.length} warning${found.warnings.length > 1 ? "s" : ""}`), make("ul", {}, ...found.warnings.map((one) => make("li", {}, one))));
-    box.addEventListener("toggle", () => open[box.open ? "add" : "delete"]("warnings"));
+    const box = make("details", { open }, make("summary", {}, `${found.warnings.length} warning${found.warnings.length > 1 ? "s" : ""}`), make("ul", {}, ...found.warnings.map((one) => make("li", {}, one))));
+    box.addEventListener("toggle", () => (open = box.open));
     return box;
   }
 
@@ -145,7 +140,7 @@ export function mount(holder, store) {
 }
 
 /** Two bars on a common logarithmic scale, with the limit. */
-function bands(name, hand, solid, took) {
+function bands(name, hand, solid) {
   const ends = ({ low, high, value }) => [low ?? value, high ?? value].map((end) => Math.max(end, 1e-9));
   const all = [...ends(hand), ...ends(solid), ...(solid.limit > 0 ? [solid.limit] : [])];
   const [least, most] = [Math.min(...all) / 1.15, Math.max(...all) * 1.15];
@@ -165,6 +160,6 @@ function bands(name, hand, solid, took) {
   const label = `${name}: ${told("by hand", hand)}; ${told("solid", solid)}; limit ${number(solid.limit)}`;
   return [
     make("svg", { viewBox: "0 0 306 56", role: "img", "aria-label": label, class: "bands" }, bar("by hand", hand, 6), bar("solid", solid, 26), ...limit),
-    make("p", { class: "soft" }, `${told("By hand", hand)}; ${told("solid", solid)}${took}.`),
+    make("p", { class: "soft" }, `${told("By hand", hand)}; ${told("solid", solid)}.`),
   ];
 }

@@ -218,6 +218,7 @@ def test_the_line_of_an_entry_that_a_sentence_names() -> None:
         "joints.B: link 'x' does not exist": 'B = { links = ["coupler", "rocker"], pin_diameter = "3 mm" }',
         "joints.B.pin_diameter: it": 'B = { links = ["coupler", "rocker"], pin_diameter = "3 mm" }',
         "pose.near: 2 assemblies fit it": 'near = { coupler = "20 deg", rocker = "57 deg" }',
+        "parts.bar.width (it is '6 mmm'): \"mmm\" is not a unit of length": 'width = "8 mm"',
         "load_cases.lift.forces.0.force.1: no": 'force = ["0 N", "-5 N"]',
     }.items():
         found = document.line_of(problem)
