@@ -296,7 +296,8 @@ def _standing(case: Case, states: CycleMotion) -> CaseMotion:
             else "take a constraint away, or state the cycles as a step with least and force"
         )
         raise CaseError(
-            f"cycle: the structure is redundant, so that its joint forces do not follow from equilibrium alone; {remedy}"
+            "cycle: the structure is redundant, so that its joint forces do not follow from equilibrium alone; "
+            + remedy
         )
     return CaseMotion(
         case=case,

@@ -89,7 +89,7 @@ def level_page(result: LevelResult, sections: tuple[Section, ...]) -> Page:
         kind=f"Tests of a level: {result.level.title}",
         heading=result.case.title,
         verdict=result.verdict.value,
-        lead=(f"{result.level.title}: {result.verdict}.", *map(headed, each), *level_besides(result)),
+        lead=(f"{result.level.title}: {result.verdict}.", *map(headed, each), " ".join(level_besides(result))),
         sections=sections[1:],
         footer=(f"Units: mm, N, N·mm, MPa, s. All numbers as data: {code('result.json')} in the same folder.",),
     )
