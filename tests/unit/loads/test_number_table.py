@@ -47,6 +47,8 @@ def test_a_file_may_begin_with_a_byte_order_mark(tmp_path):
         read_number_table(str(tmp_path), "gait.csv")
     with pytest.raises(CaseError, match=r"table '.*': there is no such file"):
         read_number_table(str(tmp_path), "none.csv")
+    with pytest.raises(CaseError, match="a table needs the name of its file"):
+        read_number_table(str(tmp_path), "nul\0.csv")
 
 
 @pytest.mark.parametrize(
