@@ -9,12 +9,13 @@ import threading
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, PlainValidator, ValidationError, WithJsonSchema
 
 import alula
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
+from alula.geometry.base.model import refusal
 from alula.geometry.base.version import extra_command
 from alula.geometry.imported.files_read import reading_within
 from alula.loads.case.case_file import folder_of
@@ -163,7 +164,15 @@ def _tool(
     return tool
 
 
-_VALUES = dict[str, str | float | bool] | None
+def _entry(stated: object) -> object:
+    """Return what stands in an entry of a case, so that one sentence tells of what cannot."""
+    if not isinstance(stated, str | float | int):
+        raise refusal('it must be a text, a number, true or false; write for example "6 mm"')
+    return stated
+
+
+_ENTRY = Annotated[Any, PlainValidator(_entry), WithJsonSchema({"type": ["string", "number", "boolean"]})]
+_VALUES = dict[str, _ENTRY] | None
 
 
 def _plain(parameter: inspect.Parameter) -> inspect.Parameter:

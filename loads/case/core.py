@@ -558,8 +558,9 @@ class CoreCase(Revisable):
         """
         name = None if self.motion is None else self.motion.coordinate or self.pose.coordinate
         if self.motion is None or name is None:
+            tests = "" if self.level is None else "; tests of its level stand in the pose: alula check goes over them"
             raise CaseError(
-                "motion: the case states no motion; add [motion] with a coordinate and a range or turn = true"
+                f"motion: the case states no motion; add [motion] with a coordinate and a range or turn = true{tests}"
             )
         return Coordinate(name, Measure.ANGLE if self.motion.travel is None else Measure.TRAVEL)
 

@@ -18,7 +18,8 @@ PINS = "pins"
 STRENGTHS = ("yield_strength", "ultimate_strength", "strength_across_layers")
 MODULUS = "youngs_modulus"
 KNOWN = (
-    "pins, links.NAME.points.NAME, pose.angle, pose.travel, load_cases.NAME, load_cases.NAME.forces.0, "
+    "pins, links.NAME.points.NAME, pose.angle, pose.travel, load_cases.NAME, load_cases.NAME.forces.0 (or load_lines, "
+    "moments, spread), "
     "materials.NAME with yield_strength, ultimate_strength, strength_across_layers or youngs_modulus, and sizes: "
     "a length of parts.NAME, joints.NAME.pin_diameter, links.NAME.eyes.NAME.diameter or links.NAME.holes.0.diameter"
 )
@@ -161,6 +162,9 @@ def _load(case: CoreCase, entry: str, path: str, load_case: str, rest: list[str]
             nominal = record.forces[int(rest[1])].force[int(component)]
             half = _half(entry, tolerance, "force", nominal, case.body_weight)
             return make(kind="force", target=(load_case, number, int(component)), half=half)
+        case ["from" | "to", *_] if rest[0] == "load_lines":
+            varied = f'alula study --vary "{printable(path)}=10 mm, 20 mm"'
+            raise CaseError(f"{entry}: places of load lines have no tolerance; vary them with {varied}")
     raise CaseError(f"{entry}: this entry cannot have a tolerance; choose one of {KNOWN}")
 
 

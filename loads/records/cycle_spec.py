@@ -5,7 +5,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic import Field, PlainValidator, Strict, WithJsonSchema
 
 from alula.geometry.base.model import CaseModel, Text, refusal
 from alula.geometry.base.units import POSITIVE, Time
@@ -48,10 +48,10 @@ class CycleSpec(CaseModel):
     """The instant at which the case is checked, in per cent of the cycle; between two rows linear."""
     period: Annotated[Time, POSITIVE] | None = None
     """How long a cycle takes; with it, or with a column of time, links have speed and inertia."""
-    periodic: bool = True
+    periodic: Annotated[bool, Strict()] = True
     """Whether the cycle goes on into itself: its last row is its first, or 100 % is left out. One that does not is
     repeated all the same, with a jump from its last row to its first."""
-    instants: Annotated[int, Field(ge=3, le=10_000)] | None = None
+    instants: Annotated[int, Strict(), Field(ge=3, le=10_000)] | None = None
     """Number of evenly spaced instants at which the table is read, between its rows: loads linear, the angle as a cubic
     spline. The rows as they stand where it is left out."""
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import Field, PrivateAttr, Strict, ValidationInfo, model_validator
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Name, Text, refusal
@@ -17,6 +17,9 @@ from alula.loads.text.number_table import read_number_table
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Stated = Annotated[Text, Field(min_length=1)]
+Number = Annotated[float, Strict(), Field(gt=0)]
+"""True is no number of cycles, and no is no false: what a test asks for is taken as it stands."""
+Asked = Annotated[bool, Strict()]
 
 
 class Offsets(CaseModel):
@@ -65,13 +68,13 @@ class LevelStep(CaseModel):
     """How long it is held."""
     least: Annotated[Force, NOT_NEGATIVE] | None = None
     """The least force of each cycle; none at all where left out."""
-    cycles: Annotated[float, Field(gt=0)] | None = None
+    cycles: Number | None = None
     """How often it comes and goes, or the profile is run through."""
     profile: Annotated[Text, Field(max_length=1000)] | None = None
     """In place of a force, the name of a CSV file beside the case with the columns ``time [ms]``, ``force [N]`` and, if
     the load line turns, ``tilt [deg]``. Positive, the tilt brings the lower end of the line forward of its upper one,
     as where the shank leans forward at the end of a step."""
-    scale: Annotated[float, Field(gt=0)] | None = None
+    scale: Number | None = None
     """By which the forces of the profile are multiplied; 1 where left out."""
     _rows: tuple[LoadState, ...] = PrivateAttr(())
 
@@ -166,13 +169,13 @@ class LevelTest(CaseModel):
     tilts_about: Offsets | None = None
     """The point about which the load line of a profile turns, by an axis along outward: that of the tilting table, or
     the ``top`` where the line always goes through it. Needed where a profile has a tilt."""
-    elastic: bool = False
+    elastic: Asked = False
     """True: nothing may yield."""
     permanent_set: Annotated[Length, POSITIVE] | None = None
     """How much the distance of the ends of the load line may be changed after the force is gone."""
-    no_break: bool = False
+    no_break: Asked = False
     """True: nothing may break or give way."""
-    lasts: bool = False
+    lasts: Asked = False
     """True: nothing may fail by fatigue before the end of the cycles."""
 
     @property

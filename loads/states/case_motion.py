@@ -290,9 +290,14 @@ def _standing(case: Case, states: CycleMotion) -> CaseMotion:
     loads = {name: acting_loads(case, one, place, masses) for name, one in case.load_cases.items()}
     power = Power(kinetic=none, kinetic_rate=none, potential=none, potential_rate=none, applied=none)
     if case.linkage.borne != 3 * len(case.linkage.moving):
+        remedy = (
+            "check single instants by cycle.instant"
+            if case.level is None or case.level.test is None
+            else "take a constraint away, or state the cycles as a step with least and force"
+        )
         raise CaseError(
-            "cycle: the structure is redundant, so that its joint forces do not follow from equilibrium alone; check "
-            "single instants by cycle.instant"
+            "cycle: the structure is redundant, so that its joint forces do not follow from equilibrium alone; "
+            + remedy
         )
     return CaseMotion(
         case=case,

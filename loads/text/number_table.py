@@ -230,13 +230,14 @@ def number_table(text: str, name: str, head: str = _HEAD) -> NumberTable:
         cells = [next(csv.reader([lines[i]], delimiter=separator, strict=True)) for i in kept]
     except csv.Error as error:
         raise CaseError(f"'{name}': it is not valid CSV ({error}); correct it") from None
-    units, rows = _head(cells[0], name), tuple(i + 1 for i in kept[1:])
+    units, rows = _head(cells[0], name, head), tuple(i + 1 for i in kept[1:])
     table = NumberTable(name=name, units=units, values={}, rows=rows)
     points = any("." in cell for row in cells[1:] for cell in row)
     numbers = np.empty((len(rows), len(units)))
     for i, (row, stated) in enumerate(zip(rows, cells[1:], strict=True)):
         if len(stated) != len(units):
-            commas = "; numbers with decimal commas need semicolons or tabs between columns" if separator == "," else ""
+            more = len(stated) > len(units) and separator == ","
+            commas = "; numbers with decimal commas need semicolons or tabs between columns" if more else ""
             raise CaseError(
                 f"'{name}', row {row}: it has {len(stated)} values for {len(units)} columns{commas}; correct that row"
             )
@@ -245,7 +246,7 @@ def number_table(text: str, name: str, head: str = _HEAD) -> NumberTable:
     return replace(table, values=dict(zip(units, numbers.T, strict=True)))
 
 
-def _head(cells: list[str], name: str) -> dict[str, str]:
+def _head(cells: list[str], name: str, example: str) -> dict[str, str]:
     """Return the unit of every column."""
     found: dict[str, str] = {}
     for number, cell in enumerate(cells, 1):
@@ -253,7 +254,7 @@ def _head(cells: list[str], name: str) -> dict[str, str]:
         if match is None:
             raise CaseError(
                 f"'{name}', column {number}: its head '{printable(cell.strip())}' is no name with a unit in brackets; "
-                "write for example 'Fy [N]'"
+                f"write a head such as '{example}'"
             )
         if match[1] in found:
             raise CaseError(f"'{name}', column {number}: '{printable(match[1])}' is there twice; rename one of them")

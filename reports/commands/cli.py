@@ -268,6 +268,7 @@ def claims(
     from alula.fea.claims.sources import check_all, check_claims
     from alula.geometry.base.errors import CaseError
     from alula.loads.sources.claim import read_source, sources
+    from alula.loads.text.explain import printable
     from alula.reports.check.published import as_json, as_markdown
     from alula.reports.sections.published import claims_section, count
     from alula.reports.words.limits import limited
@@ -279,6 +280,8 @@ def claims(
             found = check_all(fidelity=fidelity, threads=threads)
         else:
             found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
+            if not found[case]:
+                raise CaseError(f"'{printable(case)}' states no claims, so that none could hold; add [[claims]]")
     results = [result for group in found.values() for result in group]
     titles = {name: read_source(name).title if name in sources() else name for name in found}
     if json:

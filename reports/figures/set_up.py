@@ -111,12 +111,14 @@ def profile_drawing(step: LevelStep) -> Canvas:
 def _lines(result: LevelResult) -> list[tuple[Real, list[str]]]:
     """Return the ends of each load line (2, 3) in the axes of the standard, and the tests that have it.
 
-    Of a profile those of the least and of the largest tilt of all states that load.
+    Of a profile those of the least and of the largest tilt of all states that load, and that of forces beside it.
     """
     found: list[tuple[Real, list[str]]] = []
     for name, test in result.tests.items():
-        tilts = [state.tilt for state in test.spec.states if state.force > 0.0]
-        for tilt in dict.fromkeys((min(tilts), max(tilts))):
+        loading = [state for state in test.spec.states if state.force > 0.0]
+        tilts = [state.tilt for state in loading]
+        beside = [state.tilt for state in loading if state.time is None]
+        for tilt in dict.fromkeys((min(tilts), max(tilts), *beside)):
             ends = turned(test.spec, tilt)
             told = f"{name}, tilted by {plain(float(np.degrees(tilt)))}°" if tilt else name
             alike = next((names for other, names in found if np.array_equal(other, ends)), None)

@@ -19,7 +19,7 @@ from alula.reports.level.tests import (
     TESTS,
     at_state,
     by_tests,
-    level_caveats,
+    level_besides,
     level_section,
     level_warnings,
     statement_words,
@@ -33,7 +33,6 @@ from alula.reports.sections.section import Group, Items, Part, Picture, Section,
 from alula.reports.sections.table import Cell, Column, Mark, Number, Table, words
 from alula.reports.sentences import told
 from alula.reports.sentences.caveats import caveat
-from alula.reports.sentences.verdicts import besides
 from alula.reports.words.numbers import joined, number, plain, sentence
 
 PAGE = "level.html"
@@ -90,7 +89,7 @@ def level_page(result: LevelResult, sections: tuple[Section, ...]) -> Page:
         kind=f"Tests of a level: {result.level.title}",
         heading=result.case.title,
         verdict=result.verdict.value,
-        lead=(f"{result.level.title}: {result.verdict}.", *map(headed, each), besides(level_caveats(result))),
+        lead=(f"{result.level.title}: {result.verdict}.", *map(headed, each), " ".join(level_besides(result))),
         sections=sections[1:],
         footer=(f"Units: mm, N, N·mm, MPa, s. All numbers as data: {code('result.json')} in the same folder.",),
     )
@@ -154,7 +153,7 @@ def _set_up(result: LevelResult) -> Section:
         name=SET_UP,
         alt="The load lines of all tests about the links, from the side and from the front",
         caption="Arrows show the force; tests with one load line share a colour. Of one that tilts, the ends of its "
-        "way are drawn.",
+        "way are drawn, and where it lies under forces that do not tilt.",
         draw=lambda: set_up_drawing(result),
     )
     return Section(key=SET_UP, title="Set-up", short="Set-up", parts=(picture, table, *about))

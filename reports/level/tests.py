@@ -141,8 +141,8 @@ def _record(result: LevelResult, test: TestResult) -> dict[str, Any]:
     }
 
 
-def level_caveats(result: LevelResult) -> tuple[Caveat, ...]:
-    """Return what a reader of a level's verdict must know besides, of all tests, each once.
+def level_besides(result: LevelResult) -> tuple[str, ...]:
+    """Return what the verdict of a level stands on besides, each thing once behind the names of its tests.
 
     Parameters
     ----------
@@ -150,9 +150,14 @@ def level_caveats(result: LevelResult) -> tuple[Caveat, ...]:
 
     Returns
     -------
-    tuple of Caveat
+    tuple of str
+        Of all tests first, without their names.
     """
-    return tuple(dict.fromkeys(one for test in result.tests.values() for one in test.result.caveats))
+    groups: dict[str, list[Caveat]] = {"": []}
+    for one, names in by_tests(result, lambda test: test.result.caveats).items():
+        of = "" if len(names) == len(result.tests) else f" ({joined(names)})"
+        groups.setdefault(of, []).append(one)
+    return tuple(line for of, own in groups.items() if (line := besides(own, of)))
 
 
 def level_warnings(result: LevelResult) -> tuple[str, ...]:
@@ -205,7 +210,7 @@ def print_level(result: LevelResult, sections: Sequence[Section], console: "Cons
     verdict_line(result.worst, result.case.title, console)
     say(console, f"{sections[0].title}: {result.verdict}.")
     print_parts(sections[0].parts, console, [])
-    if line := besides(level_caveats(result)):
+    for line in level_besides(result):
         say(console, line)
     for warning in level_warnings(result):
         say(console, warning, style="yellow")

@@ -179,12 +179,14 @@ def _stands(check: CheckOutcome, *, several: bool) -> str:
     return f"{named(check)}{under} {value}{sign}{KEPT}{plain(check.limit)} {check.unit}".rstrip()
 
 
-def besides(found: Iterable[Caveat]) -> str:
+def besides(found: Iterable[Caveat], of: str = "") -> str:
     """Return what a verdict stands on besides as sentences; empty where there is nothing.
 
     Parameters
     ----------
     found : iterable of Caveat
+    of : str, optional
+        Behind each heading, of what it is, such as `` (proof)``.
 
     Returns
     -------
@@ -193,7 +195,7 @@ def besides(found: Iterable[Caveat]) -> str:
     """
     order = (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
     by_order = sorted(found, key=lambda one: order.index(one.heading))
-    return " ".join(f"{heading}: {told}" for heading, told in by_heading(by_order, short=True))
+    return " ".join(f"{heading}{of}: {told}" for heading, told in by_heading(by_order, short=True))
 
 
 def decision(

@@ -167,7 +167,7 @@ def _panel(
         if shown and max(shown) > ceiling:
             axes.annotate(
                 f"above {number(ceiling, 2)} not drawn", (0.99, 0.98), xycoords="axes fraction", ha="right", va="top",
-                fontsize=7.5,
+                fontsize=7.5, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
             )  # fmt: skip
     axes.set_xlim(float(np.min(angles)), float(np.max(angles)))
     axes.yaxis.set_major_formatter(lambda value, position: plain(value))

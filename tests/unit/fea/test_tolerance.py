@@ -264,6 +264,7 @@ def test_confidence_intervals_are_those_of_clopper_and_pearson():
     [
         ({"parts.bar.thickness": "4 mm"}, "as large as the size itself"),
         ({"links.arm.end_patch": "0.1 mm"}, "cannot have a tolerance"),
+        ({"load_cases.pull.load_lines.0.to.1": "1 mm"}, "names none of the 0 load_lines"),
         ({"links.arm.points.X": "0.1 mm"}, "'X' is no point of link arm"),
         ({"links.arm.points.P": "10 %"}, "above zero"),
         ({"links.arm.points.P": "0.1 N"}, "not a unit of length"),

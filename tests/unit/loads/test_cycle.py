@@ -291,6 +291,8 @@ def test_points_of_a_load_line_may_be_columns(tmp_path):
         ((), {"instant": "120 %"}, r"cycle\.instant .* share of the cycle from \"0 %\" to \"100 %\""),
         ((), {"instant": 45}, r"cycle\.instant .* share of the cycle"),
         ((), {"instant": "97 %", "periodic": False}, "cycle.instant: 97 % is not in the table, from 0 to 95 %"),
+        ((), {"periodic": "no"}, r"cycle\.periodic \(it is 'no'\): it must be true or false"),
+        ((), {"instants": True}, r"cycle\.instants \(it is True\): it must be a whole number"),
         ((), {"speed": "1"}, r"cycle\.speed: this key is unknown"),
         ((), {"motion": {"range": ["0 deg", "9 deg"]}}, r"motion\.range: the table of the cycle says how"),
         ((), {"motion": {"instant_centre": "coupler"}}, r"motion\.instant_centre: 'coupler' is not a moving link"),

@@ -13,6 +13,7 @@ from alula.loads.case.level_case import Demand, demanded, level_caveats, over_st
 from alula.loads.compose.stated_case import StatedCase
 from alula.loads.records.load_case import Block
 from alula.loads.stated.level_spec import LevelSpec
+from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.sentences.caveats import caveat
 
 
@@ -154,6 +155,10 @@ SECOND = "level.tests.second"
         (with_test(PROOF, steps=[{"force": "1.1 body_weight"}]), "no body is stated that weighs so much"),
         (with_test(PROOF, steps=[{"force": "nan N"}]), f"{SECOND}.steps.0.force (it is 'nan N'): "),
         (with_test(PROOF, steps=[{"force": "-5 N"}]), f"{SECOND}.steps.0.force (it is '-5 N'): it must be greater"),
+        (with_test(PROOF, elastic="yes"), f"{SECOND}.elastic (it is 'yes'): it must be true or false"),
+        (with_test(CYCLIC, lasts=1), f"{SECOND}.lasts (it is 1): it must be true or false"),
+        (with_test(CYCLIC, steps=[{"force": "5 N", "cycles": True}]), f"{SECOND}.steps.0.cycles (it is True)"),
+        (with_test(CYCLIC, steps=[{"force": "5 N", "cycles": "3e6"}]), f"{SECOND}.steps.0.cycles (it is '3e6')"),
         (with_test(PROOF, elastic=False), f"{SECOND}: it asks for nothing; write elastic = true"),
         (with_test(PROOF, permanent_set="0 mm"), f"{SECOND}.permanent_set (it is '0 mm'): "),
         (with_test(PROOF, lasts=True), f"{SECOND}: lasts = true needs a step with cycles"),
@@ -401,3 +406,19 @@ def test_forces_of_a_profile_may_be_shares_of_the_body_weight(tmp_path):
     del stated["body_mass"]
     with pytest.raises(CaseError, match="row 2, column force: no body is stated"):
         validate(stated, str(tmp_path))
+
+
+def test_a_level_without_a_motion_says_which_command_goes_over_its_tests():
+    with pytest.raises(CaseError, match=r"^motion: .*; tests of its level stand in the pose: alula check goes over"):
+        _ = validate(pylon(level={"test": "cyclic"})).motion_coordinate
+
+
+def test_a_redundant_structure_under_a_profile_says_what_to_do(tmp_path):
+    (tmp_path / "roll.csv").write_text(TABLE, encoding="utf-8")
+    stated = pylon(level={"tests": {"roll": ROLL}, "test": "roll"})
+    stated["links"]["foot"]["points"]["T"] = ["0 mm", "380 mm"]
+    stated["links"]["pylon"]["points"]["M"] = ["150 mm", "0 mm"]
+    stated["joints"]["T"] = {"links": ["foot", "pylon"], "pin_diameter": "4 mm"}
+    stated["level"]["enters"] = {"link": "pylon", "at": "M"}
+    with pytest.raises(CaseError, match=r"redundant.*; take a constraint away, or state the cycles as a step with"):
+        solve_case_motion(over_states(validate(stated, str(tmp_path))))

@@ -230,6 +230,11 @@ def test_the_tolerance_of_a_line_changes_its_loads_alone():
     assert sampled[3].wrench[:, 0] == pytest.approx(70.0 * np.array([1.0, 1.0, 1.1, 1.0]))
 
 
+def test_the_place_of_a_line_is_varied_by_a_study_and_has_no_tolerance():
+    with pytest.raises(CaseError, match=r'vary them with alula study --vary "load_cases.stand.load_lines.0.to.1='):
+        two(tolerances={"load_cases.stand.load_lines.0.to.1": "1 mm"})
+
+
 def test_of_lines_that_cancel_nothing_is_asked():
     """Two that are opposed, at one point, wherever along the line they begin; each alone is a load."""
     back = {**FIRST, "from": FIRST["to"], "to": FIRST["from"]}

@@ -47,6 +47,8 @@ def test_a_file_may_begin_with_a_byte_order_mark(tmp_path):
         read_number_table(str(tmp_path), "gait.csv")
     with pytest.raises(CaseError, match=r"table '.*': there is no such file"):
         read_number_table(str(tmp_path), "none.csv")
+    with pytest.raises(CaseError, match="a table needs the name of its file"):
+        read_number_table(str(tmp_path), "nul\0.csv")
 
 
 @pytest.mark.parametrize(
@@ -58,9 +60,9 @@ def test_a_file_may_begin_with_a_byte_order_mark(tmp_path):
         ("50,-20", "50,-20 N", "row 3, column Fy: '-20 N' is not one finite number; state it without its unit"),
         ("50,-20", '50,"-20,5"', "row 3, column Fy: the comma in '-20,5' may part decimals or thousands"),
         ("50,-20", "50,-20,5", "row 3: it has 4 values for 3 columns; numbers with decimal commas need semicolons"),
-        ("50,-20,2e1", "50,-20", "row 3: it has 2 values for 3 columns"),
+        ("50,-20,2e1", "50,-20", "row 3: it has 2 values for 3 columns; correct that row"),
         ("M [N*m]", "Fy [N]", "column 3: 'Fy' is there twice"),
-        ("M [N*m]", "M", "column 3: its head 'M' is no name with a unit in brackets"),
+        ("M [N*m]", "M", r"column 3: its head 'M' is no .*; write a head such as 'cycle \[%\],Fy \[N\]'"),
         ("M [N*m]", "", "column 3: its head '' is no name with a unit"),
         ("M [N*m]", "[N*m]", "is no name with a unit in brackets"),
         ("50,-20", '50,"-20', "it is not valid CSV"),

@@ -46,6 +46,11 @@ def test_strict_passes_where_nothing_is_refuted(tmp_path):
     )
 
 
+def test_a_case_without_claims_is_bad_input():
+    with pytest.raises(CaseError, match=r"^'pylon' states no claims, so that none could hold; add \[\[claims\]\]$"):
+        CliRunner().invoke(app, ["claims", "pylon", "--strict"], catch_exceptions=False)
+
+
 def test_json_is_a_list_of_findings():
     found = json.loads(run("flapping-wing-tables", "--json").stdout)
     assert len(found) == 444

@@ -120,6 +120,7 @@ def rolled(folder, *names):
         name: CYCLIC | {"tilts_about": about, "steps": [{"profile": f"{name}.csv", "cycles": 1e5}], "elastic": True}
         for name in ("there", "back")
     }
+    tests["held"] = tests["there"] | {"steps": [*tests["there"]["steps"], {"force": "1 kN"}]}
     tests["two"] = CYCLIC | {"steps": [*CYCLIC["steps"], {"force": "900 N", "cycles": 1e4}]}
     case = pylon(level={"tests": {name: tests[name] for name in names}})
     case["materials"] = {"steel": steel()}
@@ -141,6 +142,12 @@ def steel():
         "sources": dict.fromkeys(values, "invented"),
         "status": dict.fromkeys(values, "assumed"),
     }
+
+
+def test_the_line_of_a_force_beside_a_profile_is_drawn(tmp_path):
+    sheet = set_up_drawing(check_level(rolled(tmp_path, "there", "held"), fidelity="beam"))
+    lines = [one.text for one in sheet.texts if "held" in one.text]
+    assert lines == ["there, tilted by −15°, held, tilted by −15°", "there, tilted by 5°, held, tilted by 5°", "held"]
 
 
 def test_the_worst_row_of_a_profile_is_told_wherever_it_stands(tmp_path):

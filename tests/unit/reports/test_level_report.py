@@ -5,6 +5,7 @@ import json
 import re
 from copy import deepcopy
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 import tomlkit
@@ -20,11 +21,12 @@ from alula.fea.refine.refinement import Effort
 from alula.loads.case.case_file import validate
 from alula.loads.case.level_case import Demand
 from alula.loads.compose.stated_case import StatedCase
+from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.reports.check.folder import REPORT
 from alula.reports.commands.cli import app
 from alula.reports.level import folder
 from alula.reports.level.page import level_page, level_sections
-from alula.reports.level.tests import level_section, level_warnings, print_level, statement_words
+from alula.reports.level.tests import level_besides, level_section, level_warnings, print_level, statement_words
 from alula.reports.renderers.page import as_page
 
 COARSE = Effort(max_unknowns=1000)
@@ -146,6 +148,26 @@ def test_warnings_tell_of_which_tests_they_are(checked):
     printed = console.file.getvalue()
     page = as_page(level_page(warned, level_sections(warned)))
     assert all(text in printed and text in page for text in expected)
+
+
+def test_what_is_assumed_says_of_which_tests_it_is(checked):
+    """Each thing once: of all tests without their names, of some behind them."""
+    proof = checked.tests["proof"]
+    both, own, missing = (
+        Caveat(heading=heading, topic=Topic.LOADS, what=what)
+        for heading, what in (
+            (Heading.ASSUMED, "a lever"),
+            (Heading.ASSUMED, "a step"),
+            (Heading.NOT_CHECKED, "creep"),
+        )
+    )
+    of = {"proof": (own, both), "hard": (both, missing), "other": (both, missing)}
+    tests = {name: replace(proof, name=name, result=SimpleNamespace(caveats=caveats)) for name, caveats in of.items()}
+    assert level_besides(replace(checked, tests=tests)) == (
+        "Assumed: a lever.",
+        "Assumed (proof): a step.",
+        "Not checked (hard and other): creep.",
+    )
 
 
 def test_the_command_writes_a_report_for_each_test(tmp_path, monkeypatch):

@@ -116,11 +116,13 @@ def test_a_mistake_is_one_sentence(home):
         ("statics", {"case": 3}),
         ("statics", {"case": CASE, "fidelity": "beam"}),
         ("statics", {}),
+        ("statics", {"case": CASE, "values": {"title": ["a"]}}),
     )
     assert [one.content[0].text for one in wrong] == [
         "case (it is 3): it must be text; write it in double quotes",
         "fidelity: statics has no such argument; it has case, matrix, values",
         "case: this entry is missing; add it",
+        "values.title (it is ['a']): it must be a text, a number, true or false; write for example \"6 mm\"",
     ]
     assert answer.is_error
     assert "fidelity: 'plate' is unknown" in answer.content[0].text
