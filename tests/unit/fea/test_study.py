@@ -203,7 +203,7 @@ def test_the_view_has_a_column_for_each_entry(tmp_path):
 
 
 def test_a_number_that_has_no_band_keeps_none(tmp_path):
-    """The factor of a clamped link was told with the scatter of its load as its band, clear of the limit and undecided."""
+    """The factor of a clamped link by hand was told with a band clear of its limit, and as undecided."""
     by_hand = Band(value=9.6, low=9.5, high=9.6, without="not calibrated")
     outcome = CheckOutcome.of("strength", Subject.link("pylon"), "stance", Quantity.SAFETY_FACTOR, by_hand, 2.0)
     unknown = VariantNumber.of(outcome)
