@@ -207,7 +207,8 @@ def test_the_wheel_alone_checks_composes_draws_and_serves(installed, tmp_path):
     run(alula, "export", "four-bar", "--step", cwd=tmp_path)
     inspect = [alula, "inspect", "parts/crank.step", "-o", "out"]
     bare = subprocess.run(inspect, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert f"pyvista is not installed; run {installed}/bin/python -m pip install 'alula[pictures]'" in bare.stderr
+    command = f"uv pip install --python {installed}/bin/python 'alula[pictures]'"  # the environment has no pip
+    assert f"pyvista is not installed; run {command}" in bare.stderr
     assert bare.returncode == 0
     snippets = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
     [composed] = (text for text in snippets if "alula.Case(" in text)

@@ -213,10 +213,13 @@ class Quantity(StrEnum):
         Returns
         -------
         tuple of float
-            Of the value, of the unfavourable and of the favourable end; NaN from 0 to infinity where one is not known.
+            Of the value, of the unfavourable and of the favourable end; from 0 to infinity where the band is not known,
+            with NaN where the value is not.
         """
-        if any(map(math.isnan, (value, low, high, limit))):
+        if math.isnan(value) or math.isnan(limit):
             return math.nan, 0.0, math.inf
+        if math.isnan(low) or math.isnan(high):
+            return self.margins(value, value, value, limit)[0], 0.0, math.inf
         if self.sense is Sense.AT_MOST:
             value, high, low = (limit / end if end > 0.0 else math.inf for end in (value, low, high))
             return value, low, high

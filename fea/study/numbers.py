@@ -43,7 +43,7 @@ class VariantNumber:
     unit : str
         "1" for a pure number.
     value, low, high : float
-        NaN where nothing stands for it.
+        NaN where nothing stands for it; the ends also where the band covers no error of the model.
     limit : float
         NaN without check.
     verdict : Verdict or None
@@ -93,11 +93,17 @@ class VariantNumber:
         -------
         VariantNumber
         """
-        low, high = float(band.low), float(band.high)
+        low, high = float(band.told.low), float(band.told.high)
         return cls(
             quantity=quantity, unit=unit, value=float(band.value), low=low, high=high, subject=subject,
             load_case=load_case,
         )  # fmt: skip
+
+    @property
+    def band(self) -> Band:
+        """The number with its band, whose sources are not kept."""
+        without = "not kept" if math.isnan(self.low) else ""
+        return Band(value=self.value, low=self.low, high=self.high, without=without)
 
     @classmethod
     def of(cls, outcome: CheckOutcome) -> "VariantNumber":

@@ -355,7 +355,8 @@ def _view(paths: Sequence[str]) -> str:
         f"CREATE VIEW variants AS SELECT p.position, {' '.join(columns)} r.state, r.verdict, r.sentence, r.attempts,"
         " r.seconds, r.processor, (SELECT f.value FROM numbers f JOIN quantities q ON q.id = f.quantity WHERE"
         " f.result = r.id AND q.quantity = 'mass' AND q.subject = 'the linkage') AS mass_g,"
-        " (SELECT min(f.low) FROM numbers f JOIN quantities q ON q.id = f.quantity WHERE f.result = r.id AND"
+        " (SELECT CASE WHEN count(*) = count(f.low) THEN min(f.low) END FROM numbers f JOIN quantities q"
+        " ON q.id = f.quantity WHERE f.result = r.id AND"
         " q.quantity = 'safety factor') AS least_safety_factor FROM points p JOIN results r ON r.id = p.result"
     )
 

@@ -21,7 +21,8 @@ def alula_version() -> str:
 def extra_command(extra: str) -> str:
     """Return the command that adds an extra to this installation of alula.
 
-    It names the interpreter, since another's pip would look for alula elsewhere; the version that is here stays.
+    It names the interpreter, since another's pip would look for alula elsewhere; the version that is here stays. An
+    environment that uv made has no pip.
 
     Parameters
     ----------
@@ -33,10 +34,13 @@ def extra_command(extra: str) -> str:
     str
         A line for the shell.
     """
+    import importlib.util
     import shlex
     import sys
 
-    return f"{shlex.quote(sys.executable)} -m pip install 'alula[{extra}]'"
+    python = shlex.quote(sys.executable)
+    pip = f"{python} -m pip install" if importlib.util.find_spec("pip") else f"uv pip install --python {python}"
+    return f"{pip} 'alula[{extra}]'"
 
 
 def result_stamp() -> dict[str, object]:

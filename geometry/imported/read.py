@@ -132,10 +132,10 @@ def file_digest(path: Path, *, mesh: bool = False) -> str:
             stream.seek(max(0, size - _TAIL))
             end = stream.read()
             if not start.startswith(_FIRST):
-                what = "is empty" if size == 0 else f"is no STEP file: it does not begin with {_FIRST.decode()}"
+                what = "is empty" if size == 0 else f"is no STEP file: it does not begin with '{_FIRST.decode()}'"
                 raise CaseError(f"'{path}' {what}; export the part as STEP (AP203, AP214 or AP242)")
             if _LAST not in end:
-                raise CaseError(f"'{path}' is cut off: it does not end with {_LAST.decode()}; export the part anew")
+                raise CaseError(f"'{path}' is cut off: it does not end with '{_LAST.decode()}'; export the part anew")
             stream.seek(0)
             return note_read(path, hashlib.file_digest(stream, "sha256").hexdigest())
     except OSError as error:

@@ -196,7 +196,9 @@ def _count(text: str, named: str) -> int:
 
 
 def _steps(steps: float, named: str) -> int:
-    if not (0.5 < steps < MOST_VALUES) or abs(steps - round(steps)) > _FITS:
+    if steps >= MOST_VALUES:
+        raise CaseError(f"{named} the range has more than {MOST_VALUES} values; make the step larger")
+    if steps <= 0.5 or abs(steps - round(steps)) > _FITS:
         raise CaseError(f"{named} the step does not divide the range into whole steps; correct the step or an end")
     return round(steps)
 

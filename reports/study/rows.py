@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from alula.fea.common.band import Band
 from alula.fea.common.verdict import Verdict
 from alula.fea.study.margin import margin, nearest, sense_of
 from alula.fea.study.numbers import VariantNumber, VariantResult
@@ -181,7 +180,7 @@ def checked(found: VariantNumber) -> dict[str, Any]:
         A text and two numbers.
     """
     unit = shown_unit(found)
-    value = Band(value=found.value, low=found.low, high=found.high)
+    value = found.band
     return {
         "what": f"{found.quantity} of {found.subject}",
         "value": Number(value, unit, digits_beside(value, found.limit)),

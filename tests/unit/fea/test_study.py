@@ -11,15 +11,19 @@ import pytest
 import solved
 from edited_cases import PLANAR
 
-from alula.fea.common.verdict import Verdict
+from alula.fea.common.band import Band
+from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.study.engine import CrashError, Engine, local_engine
 from alula.fea.study.evaluate import Task, _folder, evaluate
+from alula.fea.study.margin import least_margin
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.fea.study.store import ATTEMPTS, NAME, VERSION, Store
 from alula.fea.study.study import Study
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.plans.plan import plan_of
 from alula.loads.plans.variants import Variants
+from alula.reports.study.rows import number_text
+from alula.reports.words.terminal import KEPT
 
 CASE = "owl-wing-static"
 DIAMETER = "parts.tube.outer_diameter"
@@ -196,6 +200,18 @@ def test_the_view_has_a_column_for_each_entry(tmp_path):
     assert [row[DIAMETER] for row in rows] == ["4 mm", "5 mm", "6 mm"]
     assert rows[0]["verdict"] == "pass"
     assert rows[0]["least_safety_factor"] == 1.5
+
+
+def test_a_number_that_has_no_band_keeps_none(tmp_path):
+    """The factor of a clamped link by hand was told with a band clear of its limit, and as undecided."""
+    by_hand = Band(value=9.6, low=9.5, high=9.6, without="not calibrated")
+    outcome = CheckOutcome.of("strength", Subject.link("pylon"), "stance", Quantity.SAFETY_FACTOR, by_hand, 2.0)
+    unknown = VariantNumber.of(outcome)
+    assert number_text(unknown) == f"safety factor of pylon 9.60 (no band) (≥{KEPT}2)"
+    assert least_margin(VariantResult(state="done", numbers=(unknown,))) == (4.8, 0.0, math.inf)
+    run(tmp_path, Desk(lambda diameter, _: VariantResult(state="done", numbers=(FACTOR, unknown))))
+    with closing(sqlite3.connect(tmp_path / NAME)) as db:
+        assert set(db.execute("SELECT least_safety_factor FROM variants")) == {(None,)}
 
 
 def test_a_key_depends_on_all_that_the_answer_depends_on():

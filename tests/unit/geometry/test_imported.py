@@ -217,7 +217,7 @@ EMPTY = HEADER + b"FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\nENDSEC;\
     ("content", "sentence"),
     [
         (b"", "is empty"),
-        (b"solid knee\nendsolid", "is no STEP file: it does not begin with ISO-10303-21;"),
+        (b"solid knee\nendsolid", "is no STEP file: it does not begin with 'ISO-10303-21;'; export"),
         (bytes(range(256)) * 40, "is no STEP file"),
         ((FILES / "inch.step").read_bytes()[:5000], "is cut off"),
         (EMPTY, "holds no solid|cannot be read as STEP"),

@@ -47,6 +47,7 @@ def test_values_of_an_entry(stated, values):
         ("2 mm..8 mm by 5 mm", "whole steps"),
         ("2 mm..8 mm by 0 mm", "whole steps"),
         ("2 mm..8 mm by -1 mm", "whole steps"),
+        ("2 mm..8 mm by 1e-9 mm", "more than 1000000 values; make the step larger"),
         ("2 mm..8 mm/1", "from 2 to"),
         ("2 mm..8 mm/x", "from 2 to"),
         ("2 mm..8 mm/", "from 2 to"),

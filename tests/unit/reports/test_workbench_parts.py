@@ -53,7 +53,7 @@ def test_no_file_is_written_over(tmp_path: Path) -> None:
     ("name", "data", "told"),
     [
         ("arm.stl", BELL_CRANK, "no STEP file by its name"),
-        ("arm.step", b"MZ\x90 not a part", "does not begin with ISO-10303-21"),
+        ("arm.step", b"MZ\x90 not a part", "does not begin with 'ISO-10303-21;'"),
         ("arm.step", b"", "is empty"),
         ("arm.step", BELL_CRANK[:-200], "cut off"),
         ("two.step", (STEP / "two_solids.step").read_bytes(), "holds 2 solids"),
