@@ -83,7 +83,7 @@ lengths."""
 
 @cache
 def by_hand(name: str, *overrides: str) -> CheckResult:
-    """Check a built-in case by hand calculation, with entries set anew; as tests take it (``WINGS``, ``FEWER``) if not."""
+    """Check a built-in case by hand calculation, with entries set anew; without any, by ``WINGS`` and ``FEWER``."""
 
     def solve() -> CheckResult:
         case = read_case(name, overrides) if overrides else few(name, read_case(name, WINGS.get(name, ())))

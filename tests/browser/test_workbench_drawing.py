@@ -3,11 +3,12 @@
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import chromium
 import pytest
-from chromium import LOCAL, PHONE
+from chromium import FLAT, LOCAL, PHONE
 
 from alula.reports.workbench.editing.document import Document
 
@@ -21,7 +22,7 @@ def local_browser(tmp_path_factory):
     """A browser that reaches servers of this machine."""
     if chromium.programs() is None:
         pytest.skip(chromium.MISSING)
-    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL) as started:
+    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL, *FLAT) as started:
         yield started
 
 
@@ -72,6 +73,7 @@ def settle(browser, what="true"):
     for _ in range(1000):
         if state(browser, f"{followed} && !now.held && {what}"):
             return
+        time.sleep(0.02)
     pytest.fail("the drawing does not follow the text")
 
 

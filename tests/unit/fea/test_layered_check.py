@@ -21,6 +21,7 @@ FLAT = [*OFF, *(f"links.{link}.layer=0" for link in LINKS), 'layer_spacing="0 mm
 IN = ("AG", "CF", "CF", "ED", "ED", "CF", "AG")
 TIGHT = [f'joints.{joint}.tight_in="{link}"' for joint, link in zip("ABCDEFG", IN, strict=True)]
 
+
 @cache
 def checked(*further: str) -> CheckResult:
     return check_case(
