@@ -58,7 +58,10 @@ FRAMED = "linkage"
 
 
 def commands() -> dict[str, list[str]]:
-    """Every golden result by its name: the arguments of the command that gives it as JSON."""
+    """Every golden result by its name: the arguments of the command that gives it as JSON.
+
+    Hand calculation and statics of long cases are kept under fewer load cases (``solved.FEWER``).
+    """
     found = {"synth": ["synth", "--json"], "claims": ["claims", "--fidelity", "beam", "--json"]}
     for case in built_in_cases():
         sets = [word for entry in solved.WINGS.get(case, ()) for word in ("--set", entry)]

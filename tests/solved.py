@@ -66,8 +66,8 @@ FEWER = {
     "ornithopter": ("slow", "wings-10-air", "wings-12-air"),
     "owl-wing-flight": ("as-published", "complete"),
 }
-"""Load cases under which tests take long cases by hand; the others are these with other numbers, or stand in another of
-them, and ``make verify`` has them all."""
+"""Load cases under which tests take long cases by hand; the others are these with other numbers. ``make verify`` has
+all of what flaps by its solids, and all of the flight in other air (``owl-wing-braking``)."""
 
 
 def few(name: str, case: Case) -> Case:
