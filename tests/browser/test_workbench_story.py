@@ -196,6 +196,7 @@ def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tm
         same_as_the_command(page, folder / "clamp.toml", failed)
 
         page.pull((20, 36), (30, 20), 10)
+        page.until("now.drawn.joints.find((one) => one.name === 'A').at[1] < 22")
         assert page.verdict()["verdict"] == "undecided"
         field = page.browser.element('.entry [aria-label="y in mm"]')
         field.clear()

@@ -59,14 +59,15 @@ def test_peaks_of_an_envelope_are_those_of_checks(mesh, tractions) -> None:
     columns = np.hstack([tractions.coefficients(loads, law, transfer) for law, transfer in VARIANTS])
     solved = solve_units(tractions, columns, np.tile(loads.size(40.0), len(VARIANTS)), E=E, nu=NU, threads=1)
     peaks = largest(of_stress(solved.stress, brittle=False), solved.combination)
-    poses = [loads.chosen(pose) for pose in range(loads.poses)]
-    direct = solve_solid(mesh, E=E, nu=NU, density=RHO, loads=poses, line=("bore:A", "bore:B"), threads=1)
-    assert len(direct.cases) == len(VARIANTS) * loads.poses
-    for (pose, number), case in zip(np.ndindex(loads.poses, len(VARIANTS)), direct.cases, strict=True):
-        field = stress_field(direct.space, case.displacement, E=E, nu=NU)
-        assert peaks.value[number * loads.poses + pose] == pytest.approx(field.peak.value, rel=5e-3)
-        whole = np.einsum("nim,m->ni", solved.stress, solved.combination[:, number * loads.poses + pose])
-        assert np.abs(whole - field.nodal).max() < 5e-2 * field.peak.value  # where a pressure turns along its bore
+    for pose in range(loads.poses):
+        direct = solve_solid(
+            mesh, E=E, nu=NU, density=RHO, loads=[loads.chosen(pose)], line=("bore:A", "bore:B"), threads=1
+        )
+        for number, case in enumerate(direct.cases):
+            field = stress_field(direct.space, case.displacement, E=E, nu=NU)
+            assert peaks.value[number * loads.poses + pose] == pytest.approx(field.peak.value, rel=5e-3)
+            whole = np.einsum("nim,m->ni", solved.stress, solved.combination[:, number * loads.poses + pose])
+            assert np.abs(whole - field.nodal).max() < 5e-2 * field.peak.value  # where a pressure turns along its bore
 
 
 def test_a_thrust_pushes_on_the_flat_face_of_its_side(tractions) -> None:
