@@ -67,7 +67,7 @@ class Browser:
         """Wait until an expression of the page is true, and return it."""
         from selenium.webdriver.support.ui import WebDriverWait
 
-        return WebDriverWait(self.driver, seconds, 0.05).until(lambda driver: driver.execute_script(f"return {script}"))
+        return WebDriverWait(self.driver, seconds, 0.02).until(lambda driver: driver.execute_script(f"return {script}"))
 
     def element(self, selector: str) -> Any:
         """Return the first element of a CSS selector."""

@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import chromium
@@ -73,7 +72,6 @@ def settle(browser, what="true"):
     for _ in range(1000):
         if state(browser, f"{followed} && !now.held && {what}"):
             return
-        time.sleep(0.02)
     pytest.fail("the drawing does not follow the text")
 
 
