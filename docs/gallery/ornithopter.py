@@ -28,7 +28,7 @@ print(f"the wing swings from {wing.min():.1f} to {wing.max():.1f} deg")
 # Torque is that of the weight, which does not depend on speed, and that of inertia, which grows with its square.
 # Three speeds show both: the differences of their torques stand to each other as those of the squares.
 speeds = (150.0, 1500.0, 3000.0)
-case = alula.read_case("ornithopter")
+case = alula.read_case("ornithopter").with_values({"motion.poses": 73})
 slow, middle, fast = (
     alula.motion(case.with_values({"load_cases.fast.speed": f"{speed} rpm"})).drive_efforts["fast"] for speed in speeds
 )

@@ -10,7 +10,7 @@ import numpy as np
 
 import alula
 
-case = alula.read_case("slider-crank").with_values({"motion.poses": 73})
+case = alula.read_case("slider-crank").with_values({"motion.poses": 37})
 moved = alula.motion(case)
 moved.plot_drive()
 

@@ -58,7 +58,8 @@ class PinStates:
     rims : RimFrame
     radii : Radii
     like : PinStates or None
-        Those of a pose and loads that are nearly these: the search starts at the shares it found there, without draws.
+        Those of nearly these pose and loads, or of wider holes: the search starts at the shares that it found there,
+        without draws.
     """
 
     rims: RimFrame
@@ -350,4 +351,4 @@ def running(case: Case, pins: PinStates, joints: Collection[str]) -> PinStates:
             low, high = fit(RUNNING, pin_size(case, name)).bounds
             one = replace(one, low=low, value=(low + high) / 2.0, high=high)
         found.append(one)
-    return replace(pins, radii=replace(pins.radii, clearances=tuple(found)))
+    return replace(pins, radii=replace(pins.radii, clearances=tuple(found)), like=pins)

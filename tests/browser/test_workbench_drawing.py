@@ -7,7 +7,7 @@ from pathlib import Path
 
 import chromium
 import pytest
-from chromium import LOCAL, PHONE
+from chromium import FLAT, LOCAL, PHONE
 
 from alula.reports.workbench.editing.document import Document
 
@@ -21,7 +21,7 @@ def local_browser(tmp_path_factory):
     """A browser that reaches servers of this machine."""
     if chromium.programs() is None:
         pytest.skip(chromium.MISSING)
-    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL) as started:
+    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL, *FLAT) as started:
         yield started
 
 

@@ -13,7 +13,7 @@ import rocker_case
 
 from alula.reports.commands import ending
 
-STATICS = ("statics", "owl-wing-static")
+STATICS = ("statics", "four-bar")
 """It prints letters beyond ASCII."""
 
 

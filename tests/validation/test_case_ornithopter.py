@@ -93,6 +93,8 @@ def test_the_three_variants_run_at_both_speeds(name: str) -> None:
     variant = read_case("ornithopter", as_settings(rules))
     assert variant.body("lever-right").part == rules.bodies("resin-405nm")["lever"].part
     assert variant.body("crank").part.diameter == 2.0 * rules.dimensions().crank_disc_radius
+    asked = {name: variant.load_cases[name] for name in ("slow", "fast")}
+    variant = variant.model_copy(update={"load_cases": asked})
     turned = solve_case_motion(variant)
     closed = rules.drive().motion(turned.motion.angles - math.pi / 2.0, 150.0 * RPM)
     np.testing.assert_allclose(-turned.motion.angle("lever-right"), closed.wing_angle, atol=1e-9)
@@ -102,9 +104,8 @@ def test_the_three_variants_run_at_both_speeds(name: str) -> None:
         np.testing.assert_allclose(-slots[0].centre[:, 0], closed.slot_position, atol=1e-9)
         slow, fast = (np.abs(slot.wrench[:, 1]).max() for slot in slots)
         assert fast > 20.0 * slow
-    asked = {name: variant.load_cases[name] for name in ("slow", "fast")}
     strength = {"strength": variant.checks["strength"]}
-    result = check_case(variant.model_copy(update={"load_cases": asked, "checks": strength}), fidelity="beam")
+    result = check_case(variant.model_copy(update={"checks": strength}), fidelity="beam")
     for load_case in asked:
         assert all(link.safety_factor.low > 6.0 for link in result.load_cases[load_case].links.values())
         said = " ".join(map(in_words, result.load_cases[load_case].links["lever-right"].notes))
@@ -192,11 +193,21 @@ def test_the_power_of_the_wings_is_that_of_the_closed_form(case, moved) -> None:
     assert np.abs(solved.drive_torque).max() == pytest.approx(np.abs(power).max() / (2.0 * np.pi * 12.0), rel=2e-4)
 
 
-def test_the_motor_covers_weight_and_inertia(case) -> None:
+def driven(case, *load_cases):
+    """What the motor is asked for under some load cases."""
+    few = case.model_copy(update={"load_cases": {name: case.load_cases[name] for name in load_cases}})
+    return motor_outcomes(few, "motor", case.checks["motor"])
+
+
+@pytest.fixture(scope="module")
+def outcomes(case):
+    """What it is asked for under all."""
+    return driven(case, *case.load_cases)
+
+
+def test_the_motor_covers_weight_and_inertia(case, outcomes) -> None:
     """6 V and 170 mA (Hernández 2022), half of it at the crank."""
-    check = case.checks["motor"]
-    assert check.output_power * 1e3 == pytest.approx(0.5 * 1020.0)
-    outcomes = motor_outcomes(case, "motor", check)
+    assert case.checks["motor"].output_power * 1e3 == pytest.approx(0.5 * 1020.0)
     assert set(outcomes) == set(case.load_cases)
     assert all(outcome.verdict is Verdict.PASS for found in outcomes.values() for outcome in found)
     for load_case in ("wings-10", "wings-12"):
@@ -204,21 +215,20 @@ def test_the_motor_covers_weight_and_inertia(case) -> None:
     assert "carried mass" not in in_words(outcomes["fast"][0].reason)
 
 
-def test_the_heaviest_wings_that_the_motor_drives(case) -> None:
+def test_the_heaviest_wings_that_the_motor_drives(outcomes) -> None:
     """At the mass that the check tells, the upper end is the motor's power, with play; 12 Hz asks for more than 10."""
     heaviest = {}
-    outcomes = motor_outcomes(case, "motor", case.checks["motor"])
     for load_case in ("wings-10", "wings-12"):
         reason = outcomes[load_case][0].reason
         heaviest[load_case] = float(in_words(reason).partition("it can drive ")[2].partition(" g")[0])
     assert heaviest["wings-12"] < heaviest["wings-10"]
     each = heaviest["wings-12"] / 2.0
     laden = edited("ornithopter", [f'carried.{i}.mass="{each} g"' for i in (0, 1)])
-    outcome = motor_outcomes(laden, "motor", laden.checks["motor"])["wings-12"][0]
+    outcome = driven(laden, "wings-12")["wings-12"][0]
     assert outcome.value.high == pytest.approx(outcome.limit, rel=3e-3)  # told to three digits
     heavy = edited("ornithopter", [f'carried.{i}.mass="{20 * each} g"' for i in (0, 1)], fits=False)
     # Weight and inertia give back over a turn all that they took: with a flywheel the motor would do.
-    found = motor_outcomes(heavy, "motor", heavy.checks["motor"])["wings-12"][0]
+    found = driven(heavy, "wings-12")["wings-12"][0]
     assert (found.verdict, found.value.low) == (Verdict.UNDECIDED, pytest.approx(0.0, abs=1e-3 * found.value.high))
 
 
@@ -227,7 +237,7 @@ def test_closed_form_agrees_on_the_heaviest_wings() -> None:
     case = edited("ornithopter", [PLANAR, 'load_cases.wings-12.gravity="0 m/s^2"'], fits=False)
     power = closed_form_power(mass=1e-7, frequency=12.0)
     grams = 0.1 * 1e3 * case.checks["motor"].output_power / power.max()
-    reason = motor_outcomes(case, "motor", case.checks["motor"])["wings-12"][0].reason
+    reason = driven(case, "wings-12")["wings-12"][0].reason
     told = float(in_words(reason).partition("it can drive ")[2].partition(" g")[0])
     assert told == pytest.approx(2.0 * grams, rel=0.005)  # the levers take their share
 

@@ -132,6 +132,7 @@ def layer_gap(friction: float, stated: tuple[float, float]):
             *(*rubs, "joints.guide.friction=0", 'drive.link="slider"', 'drive.joint="guide"', 'pose.angle="12 deg"'),
             *('load_cases.push.direction="forward"', 'large_displacement="off"'),
             'load_cases.push.forces=[{link="crank",at="A",force=["0 N","-100 N"]}]',
+            'checks={room={type="clearance",minimum="0.5 mm"}}',
         ],
     )
     checks = check_case(case, fidelity="beam").load_cases["push"].checks

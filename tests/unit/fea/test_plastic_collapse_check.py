@@ -89,8 +89,9 @@ def collapses(result):
 
 
 def test_what_stays_elastic_is_told_by_hand():
-    case = edited("slider-crank", ['checks.collapse={ type = "plastic-collapse", minimum = 2.4, links = ["crank"] }'])
-    result = check_case(case, fidelity="beam")
+    collapse = 'collapse={ type = "plastic-collapse", minimum = 2.4, links = ["crank"] }'
+    checks = f'checks={{ strength={{ type = "safety-factor", links = ["crank"] }}, {collapse} }}'
+    result = check_case(edited("slider-crank", [checks]), fidelity="beam")
     own = collapses(result)
     assert {one.load_case for one in own} == {"push forward", "push backward"}
     for one in own:

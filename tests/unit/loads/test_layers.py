@@ -67,13 +67,14 @@ def test_a_spacing_of_zero_leaves_tight_pins_without_meaning() -> None:
         edited([*(f"links.{link}.layer=0" for link in LINKS), 'layer_spacing="7 mm"', 'joints.A.tight_in="AE"'])
 
 
-BUILT_IN = {name: case for name in built_in_cases() if (case := read_case(name)).layered}
+BUILT_IN = [name for name in built_in_cases() if re.search(r"^layer = ", read_text(name)[0], re.M)]
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_layers_of_built_in_cases_leave_room(name: str) -> None:
     """Nothing touches over the motion, and each layer is marked as assumed."""
-    case = BUILT_IN[name]
+    case = read_case(name)
+    assert case.layered
     found = clearance(case)
     assert found is not None
     assert all(gap.low > 0.0 for gap in found.gaps)
@@ -83,7 +84,7 @@ def test_layers_of_built_in_cases_leave_room(name: str) -> None:
     assert any(line.startswith("Layers ") for line in case.assumptions)
 
 
-NO_ROOM = [name for name, case in BUILT_IN.items() if all(c.type != "clearance" for c in case.checks.values())]
+NO_ROOM = [name for name in BUILT_IN if 'type = "clearance"' not in read_text(name)[0]]
 """Cases without a check that needs layers."""
 
 

@@ -36,7 +36,7 @@ SPEED = 60.0
 
 @pytest.fixture(scope="module")
 def moved():
-    return solve_case_motion(read_case("slider-crank", [f'load_cases.push.speed="{SPEED:g} rpm"']))
+    return solve_case_motion(read_case("slider-crank", ["motion.poses=73", f'load_cases.push.speed="{SPEED:g} rpm"']))
 
 
 @pytest.fixture(scope="module")

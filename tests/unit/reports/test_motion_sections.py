@@ -19,10 +19,10 @@ from alula.reports.sections.section import Text, parts_of
 from alula.reports.sections.table import Table
 
 CASES = (
-    ("flapping-wing-chosen", [PLANAR, "motion.poses=7"]),
-    ("owl-wing-static", ["motion.poses=7", 'joints.C.clearance="0.1 mm"', "joints.A.friction=0.2"]),
+    ("flapping-wing-chosen", [PLANAR, "motion.poses=4"]),
+    ("owl-wing-static", ["motion.poses=3", 'joints.C.clearance="0.1 mm"', "joints.A.friction=0.2"]),
     ("spring-pedal", ["motion.poses=8"]),
-    ("slider-crank", ["motion.poses=7"]),
+    ("slider-crank", ["motion.poses=4"]),
 )
 
 

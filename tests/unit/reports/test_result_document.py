@@ -20,11 +20,11 @@ def moved(name, *overrides):
 
 
 def test_a_motion():
-    wing = moved("flapping-wing-chosen", PLANAR, "motion.poses=5", "load_cases.held.own_weight=false")
+    wing = moved("flapping-wing-chosen", PLANAR, "motion.poses=3", "load_cases.held.own_weight=false")
     piston = motion_record(solve_case_motion(validate(piston_entries())), "piston")
-    rubbed = moved("owl-wing-static", "motion.poses=5", "joints.A.friction=0.2", "motion.instant_centre=CF")
+    rubbed = moved("owl-wing-static", "motion.poses=3", "joints.A.friction=0.2", "motion.instant_centre=CF")
     bars = motion_record(solve_case_motion(parallel_bars()), "bars")
-    loose = moved("owl-wing-static", "motion.poses=5", 'joints.C.clearance="0.1 mm"')
+    loose = moved("owl-wing-static", "motion.poses=3", 'joints.C.clearance="0.1 mm"')
     entries = piston_entries()
     entries["joints"]["P"]["clearance"] = "0.1 mm"
     pushed = motion_record(solve_case_motion(validate(entries)), "piston")

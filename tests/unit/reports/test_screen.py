@@ -11,9 +11,9 @@ from told import print_result, print_screen
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, deciding, worst_of_each
 from alula.reports.check.screen import MATTER, SCREEN
-from alula.reports.sentences.verdicts import BRIEF, brief, checks_of, decision
+from alula.reports.sentences.verdicts import brief, checks_of, decision
 
-CASES = ("owl-wing-static", "owl-wing-flight", "ornithopter", "slider-crank", "four-bar", "spring-pedal", "six-bar")
+CASES = ("owl-wing-static", "ornithopter", "slider-crank", "four-bar", "spring-pedal")
 
 
 def printed(show, result, *, terminal=True, width=80):
@@ -35,7 +35,7 @@ def test_it_has_one_screen_whatever_the_case(name, terminal):
         "Stays elastic",
         "Does not break",
     ]
-    if name in ("slider-crank", "spring-pedal", "six-bar"):  # starters of ductile links ask for both
+    if name in ("slider-crank", "spring-pedal"):  # starters of ductile links ask for both
         assert "plastic-collapse factor" in next(line for line in lines if line.startswith("Does not break"))
     first = deciding(checks_of(result))[0]
     rule = next(i for i, line in enumerate(lines) if line.startswith("──"))
@@ -94,12 +94,13 @@ def test_under_the_worst_load_case_least_is_known_of_a_number():
             assert deciding(order)[0].load_case == "second"
 
 
-def test_many_names_are_counted_alone():
+def test_many_names_are_counted_alone(monkeypatch):
     result = by_hand("ornithopter")
-    text = brief(result.verdict, checks_of(result), several=True)
-    assert text.startswith("Undecided: 30 of 77 checks are open. ")
-    assert len(decision(result.verdict, checks_of(result), several=True)) > BRIEF
-    assert printed(print_screen, result)[-1] == "72 more checks and all numbers: --verbose"
+    named = decision(result.verdict, checks_of(result), several=True)
+    for most, text in ((len(named), named), (len(named) - 1, "Undecided: 15 of 44 checks are open. ")):
+        monkeypatch.setattr("alula.reports.sentences.verdicts.BRIEF", most)
+        assert brief(result.verdict, checks_of(result), several=True).startswith(text)
+    assert printed(print_screen, result)[-1] == "39 more checks and all numbers: --verbose"
 
 
 def test_long_texts_lose_their_ends_and_never_the_verdict():
