@@ -80,27 +80,33 @@ class SharedCouples:
         Returns
         -------
         bool
+            A quick search that says no is enough for it; one that says yes is followed by a whole one.
         """
-        known, every, left = self.told[link], self.by_hand.get(link, Scatter()), self.left(link, joints)
+        return all(self._decides(link, self.left(link, joints, whole=whole)) for whole in (False, True))
+
+    def _decides(self, link: str, left: Scatter) -> bool:
+        known, every = self.told[link], self.by_hand.get(link, Scatter())
         # The band may hold what solids make of all states; of those that are left, hand calculation tells their part.
         low = 1.0 - (1.0 - known.low) * _part(1.0 - left.low, 1.0 - every.low)
         high = 1.0 + (known.high - 1.0) * _part(left.high - 1.0, every.high - 1.0)
         lower = low / known.low if known.low > 0.0 else 1.0
         return all(_decided(one, lower, high / known.high) for one in self.open_checks(link))
 
-    def left(self, link: str, joints: tuple[str, ...]) -> Scatter:
+    def left(self, link: str, joints: tuple[str, ...], *, whole: bool = False) -> Scatter:
         """Return what pins leave of a link's stress by hand with running fits stated.
 
         Parameters
         ----------
         link, joints
             As of ``decided_by``.
+        whole : bool, optional
+            Search anew, in place of from the ends that all fits leave.
 
         Returns
         -------
         Scatter
         """
-        return self._left(link, self._stated(joints))
+        return self._left(link, self._stated(joints, whole))
 
     def _left(self, link: str, forces: JointForces) -> Scatter:
         answers = sharing_answers(self.case, self.load_case, link, forces, self.loads, grown=self.grown)
@@ -108,14 +114,14 @@ class SharedCouples:
         return Scatter(low=min(low) / least, high=max(high) / most) if least > 0.0 else Scatter()
 
     @cached_property
-    def _stated(self) -> Callable[[tuple[str, ...]], JointForces]:
+    def _stated(self) -> Callable[[tuple[str, ...], bool], JointForces]:
         """The joint forces as they stand, and the states that running fits of joints leave; the same for all links."""
         pins = self.forces.pins
         assert pins is not None
 
         @cache
-        def stated(joints: tuple[str, ...]) -> JointForces:
-            return replace(self.forces, pins=running(self.case, pins, joints))
+        def stated(joints: tuple[str, ...], whole: bool) -> JointForces:
+            return replace(self.forces, pins=running(self.case, pins, joints, like=None if whole else pins))
 
         return stated
 

@@ -71,7 +71,8 @@ def test_the_page_ends_with_it_and_each_sheet_has_it_at_its_foot():
     html, record = render(result), result_record(result)["provenance"]
     assert record["date"] == result.date.isoformat(timespec="seconds")
     [foot] = re.findall(r'@bottom-left { content: "([^"]*)"; }', html)
-    assert foot == f"owl-wing-static · SHA-256 {record['case'][:16]}… · {result.date:%Y-%m-%d %H:%M} UTC · alula {alula.__version__}"
+    digest, date = f"SHA-256 {record['case'][:16]}…", f"{result.date:%Y-%m-%d %H:%M} UTC"
+    assert foot == f"owl-wing-static · {digest} · {date} · alula {alula.__version__}"
     assert html.index(record["case"]) > html.index("What the verdict does not cover")
     assert record["sources"] in html
 
