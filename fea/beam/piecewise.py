@@ -253,9 +253,13 @@ class Piecewise:
         most = [np.minimum(_beside(one, 1), _beside(one, 0)) for one in caps]
         tops = np.stack([one.max(axis=1) for one in caps], axis=1)
         best = np.stack([one.argmax(axis=1) for one in most], axis=1) + np.append(0, ends[:-1])
-        there = rows[np.arange(len(rows))[:, None], best]
-        least = measure(there.reshape(-1, rows.shape[-1])).reshape(best.shape) * (1.0 - 2.0 * TIE)
-        counts = tops >= least.max(axis=1, keepdims=True)
+        # First where the cap is highest, then in those intervals alone whose caps reach what was found there.
+        least, counts = np.full(tops.shape, -np.inf), np.zeros(tops.shape, dtype=bool)
+        counts[np.arange(len(rows)), tops.argmax(axis=1)] = True
+        for _ in range(2):
+            state, interval = np.nonzero(counts)
+            least[state, interval] = measure(rows[state, best[state, interval]]) * (1.0 - 2.0 * TIE)
+            counts = tops >= least.max(axis=1, keepdims=True)
         wanted = [
             one >= np.where(own, low, np.inf)[:, None] for one, own, low in zip(most, counts.T, least.T, strict=True)
         ]

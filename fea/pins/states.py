@@ -340,7 +340,7 @@ def running(case: Case, pins: PinStates, joints: Collection[str], *, like: PinSt
     pins : PinStates
     joints : collection of str
     like : PinStates, optional
-        Where the search starts; it then takes a third of the time, and may miss a part of the ends.
+        Where the search starts; it is then quicker, and may miss a part of the ends.
 
     Returns
     -------
