@@ -259,7 +259,7 @@ class Piecewise:
         for _ in range(2):
             state, interval = np.nonzero(counts)
             least[state, interval] = measure(rows[state, best[state, interval]]) * (1.0 - 2.0 * TIE)
-            counts = tops >= least.max(axis=1, keepdims=True)
+            counts = np.asarray(tops >= least.max(axis=1, keepdims=True))
         wanted = [
             one >= np.where(own, low, np.inf)[:, None] for one, own, low in zip(most, counts.T, least.T, strict=True)
         ]
