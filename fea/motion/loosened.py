@@ -169,11 +169,11 @@ def _size(moved: CaseMotion, load_case: str, link: str) -> NDArray[np.float64]:
 
 
 def _hand(moved: CaseMotion, load_case: str, link: str, pose: int) -> float:
-    """Stress of a link by hand at a pose."""
+    """Upper end of the peak of a link by hand at a pose."""
     case, loads = moved.case, [chosen(load, pose) for load in moved.loads[load_case]]
     forces = forces_at(moved, load_case, pose)
     found = link_loads(load_case, link, case.body(link), forces.reactions, loads)
-    return float(HandStates(case, link, [on_plates(case, link, found)]).stress[0])
+    return float(HandStates(case, link, [on_plates(case, link, found)]).peaks[1, 0])
 
 
 def joint_growth(
