@@ -89,7 +89,7 @@ class Deciding:
 
         def ranges(link: str, solid: RefinedSolid | None = None) -> dict[str, OpenRanges]:
             solved = [None if solid is None else self._answers_of(one, link, solid) for one in firm]
-            each = [one.open_ranges(link, known) for one, known in zip(firm, solved, strict=True)]
+            each = [one.open_ranges(link, known, of_solid=True) for one, known in zip(firm, solved, strict=True)]
             return {name: found for every in each for name, found in every.items()}
 
         tasks = {link: replace(task, open_ranges=ranges(link)) for link, task in tasks.items()}

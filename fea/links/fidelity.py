@@ -225,9 +225,13 @@ def _open_for_doubts(task: LinkTask, hands: Sequence[HandBands], ranges: Mapping
     """Return which limit lies in the band of a stress or displacement once doubts widen it, where a solid may tell."""
     for loads, hand in zip(task.loads, hands, strict=True):
         if loads.name in ranges:
-            for band, limit, what, unit in _limited(task, ranges[loads.name], hand):
+            open_by_hand = ranges[loads.name]
+            of_solid = _limited(task, task.open_ranges.get(loads.name, open_by_hand), hand)
+            for (band, limit, what, unit), (_, left, *_) in zip(
+                _limited(task, open_by_hand, hand), of_solid, strict=True
+            ):
                 ends = [(band.low, band.high)]
-                if is_open(ends, limit) and mesh_may_decide(ends, limit):
+                if is_open(ends, limit) and mesh_may_decide(ends, left):
                     return reason("limit_within", what=what, low=band.low, high=band.high, limit=limit, unit=unit)
     return None
 

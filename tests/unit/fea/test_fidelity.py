@@ -91,6 +91,8 @@ def test_what_doubts_leave_open_by_hand_is_left_to_a_solid_that_may_decide(ends,
     bare = replace(task, open_ranges={})  # as where solids may hold the linkage
     assert decided_by_hand(bare, [hand])[0] is not None
     assert (decided_by_hand(bare, [hand], task.open_ranges)[0] is not None) is by_hand
+    less = replace(task, open_ranges={"mixed": OpenRanges(limits={"von_mises": ((39.0, 40.0),)})})  # so of its solid
+    assert (decided_by_hand(less, [hand], task.open_ranges)[0] is not None) is (ends[0] > 15.0)
 
 
 def test_where_solids_may_hold_the_linkage_a_solid_settles_doubts_too(monkeypatch):

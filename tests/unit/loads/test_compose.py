@@ -182,14 +182,14 @@ def test_a_file_is_written_whole_and_over_another_on_request_alone(lever, tmp_pa
 
 def test_studies_and_sizes_take_a_composed_case(lever, tmp_path):
     """Its files of parts would be named from the present folder, and its title is the name of the study."""
-    values = {"parts.bar.thickness": ["4 mm", "8 mm"]}
-    found = alula.study(lever, values, tmp_path, fidelity="beam", threads=1)
-    margins = found.frame()["margin"]
-    assert margins[1] == pytest.approx(2.0 * margins[0], rel=1e-4)
-    same = alula.study(lever.with_values({"parts.bar.width": "9 mm"}), values, tmp_path, fidelity="beam", threads=1)
-    assert same.frame()["margin"][0] > margins[0]  # and not what stood in the folder
+    thick = {"parts.bar.thickness": ["4 mm", "8 mm"]}
+    found = alula.study(lever, thick, tmp_path, fidelity="beam", threads=1)
+    values = found.frame()["value"]
+    assert values[1] == pytest.approx(2.0 * values[0], rel=1e-4)
+    same = alula.study(lever.with_values({"parts.bar.width": "9 mm"}), thick, tmp_path, fidelity="beam", threads=1)
+    assert same.frame()["value"][0] > values[0]  # and not what stood in the folder
     with pytest.raises(CaseError, match=r"another study \(of the case 'Lever'\)"):
-        alula.study(lever.with_entries(title="Other"), values, tmp_path, fidelity="beam", threads=1)
+        alula.study(lever.with_entries(title="Other"), thick, tmp_path, fidelity="beam", threads=1)
     sized = alula.size(lever, {"parts.bar.thickness": "4 mm..8 mm"}, step="2 mm", fidelity="beam", threads=1)
     assert [row["parts.bar.thickness"] for row in sized.table()] == ["4 mm", "6 mm", "8 mm"]
 
