@@ -374,7 +374,7 @@ def only(functions: Piecewise, stretches: Sequence[tuple[float, float]]) -> Piec
     parts = divided(functions, [x for stretch in stretches for x in stretch])
     first, last = parts.breaks[:-1, None], parts.breaks[1:, None]
     low, high = np.reshape(stretches, (-1, 2)).T
-    within = ((first >= low) & (last <= high)).any(axis=1)
+    within = np.asarray(((first >= low) & (last <= high)).any(axis=1))
     return Piecewise(breaks=parts.breaks, coefficients=np.where(within[:, None, None], parts.coefficients, 0.0))
 
 
