@@ -22,9 +22,11 @@ class Row:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
-    """Markdown table; floats with three digits."""
+    """Markdown table; floats with three digits, NaN where the program refuses."""
 
     def text(value: Any) -> str:
+        if value != value:
+            return "refused"
         return f"{value:.3g}" if isinstance(value, float) else str(value)
 
     lines = [head, ["---"] * len(head), *([text(value) for value in row] for row in rows)]

@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -233,13 +234,15 @@ def slenderness() -> Row:
         length, inner = 2.0 * ratio, 1.0 - wall
         beam, frame, closed = cantilever(length, inner, nu)
         along = int(np.clip(2 * ratio, 12, 40))
-        quadratic, share = slender(length, inner, nu, along)
         _, locked = slender(length, inner, nu, along, order=1)
+        share, told = np.nan, (np.nan,) * 4
+        with suppress(CannotRunError):  # at the limit rounding decides, which differs from processor to processor
+            found, share = slender(length, inner, nu, along)
+            told = (found.estimate.relative, found.algebraic, found.space.unknowns, found.seconds)
         rows.append(
             (
                 ratio, f"{wall:g}", abs(beam / closed - 1.0), abs(frame / closed - 1.0), share - 1.0, locked - 1.0,
-                length / along / wall, quadratic.estimate.relative, quadratic.algebraic,
-                quadratic.space.unknowns, quadratic.seconds,
+                length / along / wall, *told,
             )
         )  # fmt: skip
     made, (left, right) = figure(2)
@@ -253,7 +256,7 @@ def slenderness() -> Row:
             (2, "hand calculation"),
             (3, "frame"),
         ):
-            axes.loglog(x, [max(abs(row[column]), 1e-17) for row in own], "o-", label=name)
+            axes.loglog(x, [np.maximum(abs(row[column]), 1e-17) for row in own], "o-", label=name)
         axes.set(xlabel=label, ylabel="difference from Timoshenko's beam")
     right.invert_xaxis()
     left.legend(fontsize=7)
@@ -336,10 +339,12 @@ def mesh_quality() -> Row:
 def stress_error(found: Solved, exact: Stress, nu: float) -> float:
     """True error in the energy norm [√(N mm)]: of the elements' own stress, against the exact one."""
     from alula.fea.elements.elasticity import reference_basis
-    from alula.fea.refine.error_estimate import DEGREE, _own_stress
+    from alula.fea.refine.error_estimate import DEGREE
+    from alula.fea.solid.stress import element_stress
 
-    space = found.space
-    _, W, phi, gradient = reference_basis(space, DEGREE)
-    own, weights = _own_stress(space, space.cells, found.displacement, W, gradient, YOUNG, nu)
-    points = np.einsum("qb,kbi->kqi", phi, space.nodes[space.cells])
-    return float(np.sqrt((weights * energy_density(exact(points) - own, YOUNG, nu)).sum()))
+    space, total = found.space, 0.0
+    phi, every = reference_basis(space, DEGREE)[2], np.arange(len(space.cells))
+    for members, own, weights in element_stress(space, found.displacement, DEGREE, every, E=YOUNG, nu=nu):
+        points = np.einsum("qb,kbi->kqi", phi, space.nodes[space.cells[members]])
+        total += float((weights * energy_density(exact(points) - own, YOUNG, nu)).sum())
+    return float(np.sqrt(total))
