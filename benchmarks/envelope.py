@@ -27,11 +27,12 @@ from record import save
 
 from alula.fea.common.threads import bounded
 from alula.fea.elements.space import displacement_space
-from alula.fea.motion.link_envelope import link_motion
+from alula.fea.motion.link_envelope import LinkMotion
 from alula.fea.motion.link_history import link_histories
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field
 from alula.fea.solvers.solve import Method, available_methods
+from alula.geometry.materials.material import Material
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case
@@ -41,7 +42,7 @@ from alula.loads.states.case_motion import solve_case_motion
 POSES = 360
 REPEATS = 3
 SIZES = {"AE": (2.0, 1.0), "crank": (2.0, 1.0, 0.6)}
-OWL_WING = ("owl-wing-static", ["drive.link=GF", "drive.joint=G", f"motion.poses={POSES}"])
+OWL_WING = ("owl-wing-static", ['layer_spacing="0 mm"', "drive.link=GF", "drive.joint=G", f"motion.poses={POSES}"])
 CRANK_ROCKER = f"""
 schema_version = 1
 title = "Crank and rocker"
@@ -113,27 +114,26 @@ def _runs(case: Case, link: str, sizes: Sequence[float], threads: int) -> list[d
             field = stress_field(solution.space, solution.cases[0].displacement, E=solution.E, nu=solution.nu)
             return field.peak.value, solution.space.unknowns
 
-        def envelope(fatigue: bool) -> tuple[float, int]:
-            result = link_motion(
+        def envelope(own: Material) -> tuple[float, int]:
+            result = LinkMotion(
                 displacement_space(mesh),  # noqa: B023
                 link=link,
                 body=case.body(link),
-                material=material,
+                material=own,
                 histories=[history],
                 evaluated=np.ones(history.poses, dtype=np.bool_),
                 stated="eye-faces",
                 returns=moved.motion.returns,
-                threads=threads,
-            ).envelope(fatigue=fatigue)
+            ).envelope()
             return next(v.stress[0] for v in result.worst.variants if v.span == 180), result.modes
 
         factorised, chosen, whole, fatigued = Best(), Best(), Best(), Best()
         for _ in range(REPEATS):
             factorised(lambda: direct(available_methods()[0]))
             peak, unknowns = chosen(lambda: direct(None))
-            same, modes = whole(lambda: envelope(False))
+            same, modes = whole(lambda: envelope(material.model_copy(update={"fatigue": None})))
             if material.fatigue:
-                fatigued(lambda: envelope(True))
+                fatigued(lambda: envelope(material))
         found.append(
             {
                 "link": link,

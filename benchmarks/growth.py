@@ -25,7 +25,7 @@ from alula.fea.common.threads import bounded  # noqa: E402
 from alula.fea.elements.elasticity import assemble_stiffness  # noqa: E402
 from alula.fea.elements.space import displacement_space  # noqa: E402
 from alula.fea.elements.supports import isostatic_supports  # noqa: E402
-from alula.fea.motion.link_envelope import link_motion  # noqa: E402
+from alula.fea.motion.link_envelope import LinkMotion  # noqa: E402
 from alula.fea.motion.link_history import link_histories  # noqa: E402
 from alula.fea.solid.solution import solve_solid  # noqa: E402
 from alula.fea.solid.stress import stress_field  # noqa: E402
@@ -52,8 +52,9 @@ def least(task: Callable[[], Any], repeats: int) -> dict[str, float]:
 
 
 def moved(poses: int) -> Any:
-    """The owl wing driven at its first link, with the forces at every pose."""
-    return solve_case_motion(read_case("owl-wing-static", ["drive.link=GF", "drive.joint=G", f"motion.poses={poses}"]))
+    """The owl wing in one plane, driven at its first link, with the forces at every pose."""
+    driven = ['layer_spacing="0 mm"', "drive.link=GF", "drive.joint=G", f"motion.poses={poses}"]
+    return solve_case_motion(read_case("owl-wing-static", driven))
 
 
 def motion() -> list[dict[str, Any]]:
@@ -83,7 +84,7 @@ def envelope(scale: float) -> dict[str, Any]:
         stress_field(solution.space, solution.cases[0].displacement, E=solution.E, nu=solution.nu)
 
     def whole(history: Any, returns: bool) -> None:
-        link_motion(
+        LinkMotion(
             displacement_space(mesh),
             link=LINK,
             body=body,
@@ -92,8 +93,7 @@ def envelope(scale: float) -> dict[str, Any]:
             evaluated=np.ones(history.poses, dtype=np.bool_),
             stated="eye-faces",
             returns=returns,
-            threads=1,
-        ).envelope(fatigue=False)
+        ).envelope()
 
     rows = []
     for poses in ENVELOPE:

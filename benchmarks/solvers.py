@@ -83,6 +83,7 @@ def measured(path: Path, solver: str, threads: int) -> dict[str, Any]:
     from alula.fea.solvers.solve import factorise
     from alula.fea.solvers.two_level import LinearLevel
     from alula.geometry.meshing.tagged_mesh import TaggedMesh
+    from alula.reports.sentences import told
 
     def read() -> TaggedMesh:
         with np.load(path) as file:
@@ -118,7 +119,7 @@ def measured(path: Path, solver: str, threads: int) -> dict[str, Any]:
         "unknowns": space.unknowns,
         "elements": len(space.cells),
         "name": factor.name,
-        "reason": factor.reason,
+        "reason": told(factor.reason),
         "iterations": solved.iterations,
         "error": solved.error,
         "stages": stages,

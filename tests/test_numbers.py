@@ -1,7 +1,10 @@
 """Numbers that are printed are those of the results beside them, and at a release those of its own version."""
 
+import ast
+import importlib.util
 import re
 import tomllib
+from pathlib import Path
 
 import pytest
 from pages import renewed_numbers
@@ -54,3 +57,18 @@ def test_a_result_is_older_than_the_code(record: dict[str, dict[str, str]], why:
 )
 def test_numbers_of_a_block_are_renewed_where_its_words_stay(block: str, said: str, renewed: str | None) -> None:
     assert renewed_numbers(block, said) == renewed
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "benchmarks").glob("*.py")), ids=lambda file: file.stem)
+def test_what_a_benchmark_imports_of_alula_is_there(file: Path) -> None:
+    """They run at a release alone, and a name that has gone would be missed then."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    taken = [one for one in ast.walk(tree) if isinstance(one, ast.ImportFrom) and str(one.module).startswith("alula.")]
+    gone = []
+    for one in taken:
+        module = importlib.import_module(str(one.module))
+        for name in one.names:
+            inside = hasattr(module, "__path__") and importlib.util.find_spec(f"{one.module}.{name.name}")
+            if not hasattr(module, name.name) and not inside:
+                gone.append(f"{one.module}.{name.name}")
+    assert not gone
