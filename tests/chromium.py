@@ -31,7 +31,7 @@ NO_WEBGL = ("--disable-3d-apis",)
 LOCAL = ("--proxy-bypass-list=127.0.0.1",)
 """Pages of this machine's own servers are reached; all else is as before."""
 FLAT = ("--disable-gpu-compositing", "--disable-gpu-rasterization")
-"""Pages without models: where a GPU is only imitated, drawing them without one takes a third less."""
+"""Pages without models: where a GPU is only imitated, drawing them without one is quicker."""
 
 
 def programs() -> tuple[str, str] | None:

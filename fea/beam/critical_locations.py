@@ -243,8 +243,8 @@ def _eye(body: Body, pin: Pin, states: Sequence[LinkLoads], forces: Piecewise, p
     part, (first, last) = body.part, extent(body)
     reach = eye_reach(body, pin)
     loads = [next(p for p in one.pins if p.name == pin.name) for one in states]
-    torques = [sum(float(c.torque) for c in one.couples if c.pin == pin.name) for one in states]
-    torque = np.array([sum_ + float(load.wrench[5]) for sum_, load in zip(torques, loads, strict=True)])
+    couples = [sum(float(c.torque) for c in one.couples if c.pin == pin.name) for one in states]
+    torque = np.array(couples) + [float(load.wrench[5]) for load in loads]
     nothing = np.zeros((len(states), 6))
     before = forces_at(forces, pin.x, "before") if pin.x > forces.breaks[0] else nothing
     after = forces_at(forces, pin.x, "after") if pin.x < forces.breaks[-1] else nothing

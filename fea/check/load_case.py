@@ -39,7 +39,8 @@ from alula.loads.case.connection_rules import turned_by_drive
 SolvedAnswers = Mapping[str, Shares]
 """Cause -> what it makes of the numbers of a link on its solid."""
 LESS_BY_SOLID = 3.0
-"""By what the sharing of couples may change the stress of a solid less than by hand: up to 2.71 of 26 drawn ends."""
+"""How much less the sharing of couples may change the stress of a solid than by hand: by 2.71 at most of 26 ends of
+links drawn at random."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

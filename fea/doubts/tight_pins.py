@@ -106,9 +106,7 @@ class SharedCouples:
         -------
         Scatter
         """
-        return self._left(link, self._stated(joints, whole))
-
-    def _left(self, link: str, forces: JointForces) -> Scatter:
+        forces = self._stated(joints, whole)
         answers = sharing_answers(self.case, self.load_case, link, forces, self.loads, grown=self.grown)
         (least, *low), (most, *high) = HandStates(self.case, link, answers.every).peaks.tolist()
         return Scatter(low=min(low) / least, high=max(high) / most) if least > 0.0 else Scatter()

@@ -97,7 +97,9 @@ def larger(case: Case, name: str, checks: Sequence[CheckOutcome]) -> Sizes:
     grown = [(a * b, a * a * b, (a, b)) for a in _FACTORS for b in _FACTORS if a * b > 1.0 and (a == b or not both)]
     tried = 0
     for _, modulus, factors in sorted(grown):
-        if modulus < needed or tried == _TRIES:
+        if tried == _TRIES:
+            break
+        if modulus < needed:
             continue
         found = {
             f"parts.{part}.{entry}": _text(factor * size, digits=2)

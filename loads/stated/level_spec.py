@@ -18,7 +18,7 @@ from alula.loads.text.number_table import read_number_table
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Stated = Annotated[Text, Field(min_length=1)]
 Number = Annotated[float, Strict(), Field(gt=0)]
-"""True is no number of cycles, and no is no false: what a test asks for is taken as it stands."""
+"""Taken as it stands: neither true nor a text is a number, and no text is true or false."""
 Asked = Annotated[bool, Strict()]
 
 

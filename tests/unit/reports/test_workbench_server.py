@@ -16,6 +16,7 @@ from alula.geometry.keeping.kept import kept as marked
 from alula.loads.case.case_file import read_case, read_tables, read_text
 from alula.reports.workbench import session
 from alula.reports.workbench.app import LARGEST_REQUEST, serve
+from alula.reports.workbench.live import solids
 from alula.reports.workbench.live.answers import pose_answer
 
 TITLE = {"op": "set", "path": ["title"]}
@@ -200,6 +201,11 @@ def test_no_part_leads_out_of_the_folder(bench, case, file):
         assert status == 422
         assert "is not in the folder" in json.loads(found)["sentence"]
     assert "is not in the folder" in pose_answer(text, str(case))["problem"]
+    said = []
+    solids.STAGES[solids.ROLE](text, str(case), lambda event, data: said.append((event, data)), threads=1, memory=None)
+    [(event, data)] = said
+    assert event == "failed"
+    assert "is not in the folder" in data["sentence"]
     operation = {"op": "set", "path": ["parts", "far", "file"], "value": "lever.step"}  # one that may be
     assert bench.post("edit", revision=bench.document()["revision"], operations=[operation])[0] == 200
     assert bench.document()["tables"]["parts"]["far"]["file"] == "lever.step"
