@@ -75,7 +75,8 @@ async def drag(case: str, what: str, rate: float) -> dict[str, Any]:
         asked[revision] = time.perf_counter()
         workers.ask(revision, changed, case)
         await asyncio.sleep(max(0.0, 1.0 / rate - (time.perf_counter() - asked[revision])))
-    await page.until("linear verdict", CHANGES)
+    for name in ANSWERS:
+        await page.until(name, CHANGES)
     row: dict[str, Any] = {"case": case, "drag": what, "changes": CHANGES, "rate": rate}
     for name in ANSWERS:
         times = sorted(page.after(name, asked))
