@@ -176,11 +176,10 @@ def commits(record: Record) -> str:
     for row in record["rows"]:
         ratios = [f"{row[key]['ratio']:.2f}" for key in ("wall_s", "cpu_s")]
         times = [seconds(row[key][name]) for key in ("wall_s", "cpu_s") for name in ("before", "now")]
-        aim = f"{row['aim']:g}" if row["aim"] else ""
-        rows.append([f"`{row['command']}`", *ratios, aim, *times, f"{row['others']:.0%}"])
+        rows.append([f"`{row['command']}`", *ratios, *times, f"{row['others']:.0%}"])
     before, now = record["commits"]["before"], record["commits"]["now"]
     header = (
-        "command|ratio of wall times|of processor times|aim|wall time before|now|processor time before|now|"
+        "command|ratio of wall times|of processor times|wall time before|now|processor time before|now|"
         "others' share of the processors"
     )
     changed = " with changes that are not committed" if record["changed"] else ""
