@@ -28,7 +28,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "growth": (False, [], ["--mesh", "3", "--counts", "30", "5", "5"]),
     "accuracy": (False, ["--largest", "150000"], ["--largest", "20000"]),
     "stages": (False, [], []),
-    "studies": (False, [], ["--points", "16", "--solids", "0", "--rows", "1000"]),
+    "studies": (False, ["--points", "40", "--solids", "2"], ["--points", "16", "--solids", "0", "--rows", "1000"]),
     "commits": (False, [], ["--repeats", "1"]),
     "iterations": (False, [], []),
     "trade": (False, [], ["--accuracies", "0.2", "0.05"]),
