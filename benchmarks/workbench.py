@@ -30,11 +30,11 @@ DRAGS = {
     },
     "ornithopter": {"pin": (r'(throw = ")3( mm)', 3.0, 0.01), "pose": (r'(angle = ")90( deg)', 90.0, 1.0)},
     "knee": {
-        "pin": (r'(points\.D = \[")95.25( mm)', 95.25, 0.02),
+        "pin": (r'(points\.D = \[")95.25( mm)', 95.25, -0.02),
         "pose": (r'(angle = ")-25( deg)', -25.0, 0.2),
     },
 }
-"""Case -> what is dragged: the entry, its value, and by how much each change moves it."""
+"""Case -> what is dragged: the entry, its value, and by how much each change moves it (the knee's, from its stop)."""
 ANSWERS = {"pose and joint forces": ("drawn", None), "linear verdict": ("verdict", "linear")}
 
 
