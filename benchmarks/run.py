@@ -34,7 +34,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "trade": (False, [], ["--accuracies", "0.2", "0.05"]),
     "page": (False, [], ["--repeats", "2"]),
     "workbench": (False, [], ["--case", "owl-wing-static"]),
-    "peers": (False, [], ["--sizes", "20k", "160k", "--repeats", "1"]),
+    "peers": (False, ["--repeats", "1", "--time-limit", "150"], ["--sizes", "20k", "160k", "--repeats", "1"]),
 }
 
 
