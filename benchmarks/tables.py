@@ -76,7 +76,7 @@ def unknowns(record: Record) -> str:
     for run in record["runs"]:
         name = f"{run['solver']}, {run['mesh']}"
         if "stages" not in run:
-            rows.append([name, run["failed"], "", "", "", ""])
+            rows.append([name, run["failed"].rpartition("Error: ")[2], "", "", "", ""])
             continue
         held = max(s["peak_gb"] for s in run["stages"])
         rows.append(
