@@ -35,7 +35,10 @@ Floats = NDArray[np.float64]
 ON_RIMS = Source(kind=SourceKind.COUPLES, detail=reason("tight_or_on_rims"))
 
 COARSE_SUBDIVISIONS, NEAR_BUCKLING = 2, 30.0
-"""Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``."""
+"""Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``.
+
+By two elements the worst of Euler's columns (clamped and pinned) buckles 2.6 % late, the others up to 0.8 %.
+"""
 LARGE = 0.05
 """Share of the span above which a displacement is large."""
 SNAP = 3.0 * math.sqrt(3.0)
