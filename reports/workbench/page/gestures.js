@@ -353,7 +353,7 @@ function keys(event) {
   const way = ARROWS[event.key];
   if (way) nudge(handle, way.map((part) => part * (event.shiftKey ? 10 : 1)), event.altKey);
   else if ((event.key === "Enter" || event.key === " ") && handle) enter(handle, event.target);
-  else if (event.key === "+" || event.key === "-") zoom(event.key === "+" ? 1.25 : 0.8, [svg.clientWidth / 2, svg.clientHeight / 2]);
+  else if ((event.key === "+" || event.key === "-") && !entry.isOpen()) zoom(event.key === "+" ? 1.25 : 0.8, [svg.clientWidth / 2, svg.clientHeight / 2]);
   else return;
   event.preventDefault();
 }
@@ -407,8 +407,8 @@ function escape(event) {
   if (event.target.closest?.("#panels, .entry")) return;
   if (entry.isOpen()) return entry.close();
   if (grab?.drag && grab.moved) {
+    change("undo", {}, grab.gesture).catch(() => {}); // what this pull has changed, if anything
     grab = null;
-    change("undo").catch(() => {});
     store.put("held", null);
   } else if (store.state.ends) store.put("ends", null);
   else if (store.state.tool !== "select") store.put("tool", "select");
