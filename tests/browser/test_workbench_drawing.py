@@ -241,6 +241,19 @@ def the_motion_slides(browser):
     browser.run(PRESS, "Back to the case's pose")
 
 
+def test_an_instant_of_a_motion_of_another_link_becomes_the_pose(bench):
+    """The motion prescribes the rocker, the pose the crank: it is turned to where it stands at that instant."""
+    stated = {"coordinate": "rocker", "range": ["55 deg", "70 deg"]}
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    bench.run(edit, [{"op": "set", "path": ["motion"], "value": stated}])
+    settle(bench, "now.motion?.pose")
+    bench.element(".track input").send_keys("\ue010")  # End
+    crank = state(bench, "now.motion.angles.crank.at(-1)")
+    bench.run(PRESS, "Use this pose")
+    settle(bench, f"now.instant === null && Math.abs(now.drawn.coordinate.value - {crank}) < 1e-3")
+    assert bench.element("#motion output").text.startswith("70°")
+
+
 def test_a_load_line_is_dashed_and_its_levers_are_dotted(bench):
     line = {"from": ["150 mm", "200 mm", "10 mm"], "to": ["90 mm", "120 mm", "0 mm"], "force": "10 N"}
     stated = [
