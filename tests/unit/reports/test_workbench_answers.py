@@ -279,6 +279,13 @@ def test_a_section_that_passes_is_offered_with_all_that_has_to_follow_it():
     assert tables["parts"]["bar"] == tomllib.loads(DRAWN)["parts"]["bar"]
 
 
+def test_a_link_that_is_no_bar_decides_and_no_section_is_offered():
+    """Its part is a file: what is reported of it is told alone."""
+    answer = whole_answer(read_text("step")[0], "step")
+    assert answer["changes"]
+    assert not any(one["operations"] for one in answer["changes"])
+
+
 def test_all_that_hand_calculation_is_not_calibrated_for_is_told_at_once_and_mended_by_one_press():
     text = DRAWN.replace('width = "6 mm"', 'width = "8 mm"').replace('"5 mm"', '"3 mm"').replace('"1.5 mm"', '"0.5 mm"')
     answer = whole_answer(text, "drawn")
