@@ -90,7 +90,7 @@ def larger(case: Case, name: str, checks: Sequence[CheckOutcome]) -> Sizes:
     subject, needed = _lacking(checks)
     part = case.links[subject.name].part if subject.kind == "link" else None
     entries = _SECTION.get(case.parts[part].shape, ()) if part else ()
-    if part is None or any(entry not in case.parts[part].model_fields_set for entry in entries):
+    if part is None or not entries or any(entry not in case.parts[part].model_fields_set for entry in entries):
         return {}
     sizes = {entry: getattr(case.parts[part], entry) for entry in entries}
     both = case.parts[part].shape == "tube"

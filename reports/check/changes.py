@@ -177,7 +177,8 @@ def size_command(change: VerdictChange, result: CheckResult) -> str:
     if change.size is None or not result.name:
         return ""
     size = change.size
-    words = ["alula", "size", shlex.quote(result.name), "--vary", f'{size.entry}="{size.first}..{size.last}"']
+    vary = f'{shlex.quote(size.entry)}="{size.first}..{size.last}"'
+    words = ["alula", "size", shlex.quote(result.name), "--vary", vary]
     every = [link for one in result.load_cases.values() for link in one.links.values()]
     if any(isinstance(link, HandResult) and not link.decided_by for link in every):
         words += ["--fidelity", "beam"]

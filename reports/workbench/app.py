@@ -50,7 +50,7 @@ _ON: Entries = {"revision": (int, ...), "gesture": (str, "")}
 ACTIONS: Mapping[str, tuple[Callable[..., Awaitable[None]], Entries]] = {
     "edit": (Session.edit, {"operations": (list, ...), **_ON}),
     "text": (Session.write, {"text": (str, ...), **_ON}),
-    "undo": (Session.undo, {"revision": (int, None)}),
+    "undo": (Session.undo, {"revision": (int, None), "gesture": (str, "")}),
     "redo": (partial(Session.undo, redo=True), {"revision": (int, None)}),
     "save": (Session.save, {"always": (bool, None)}),
     "reload": (Session.reload, {}),

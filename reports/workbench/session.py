@@ -16,15 +16,7 @@ from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.editing.edits import EMPTY
 from alula.reports.workbench.editing.toml_text import value_at
-from alula.reports.workbench.keeping import (
-    Drafts,
-    Stamp,
-    case_text,
-    digest,
-    plain_name,
-    stamp_of,
-    write_file,
-)
+from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_file
 from alula.reports.workbench.live.answers import case_of
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
@@ -221,9 +213,10 @@ class Session:
         self._open(revision).replace(text, gesture)
         self._changed()
 
-    async def undo(self, revision: int | None, *, redo: bool = False) -> None:
-        """Take back the last change, or make the one anew that was taken back last."""
-        (Document.redo if redo else Document.undo)(self._open(revision))
+    async def undo(self, revision: int | None, gesture: str = "", *, redo: bool = False) -> None:
+        """Take back the last change, if it is of this gesture, or make the one anew that was taken back last."""
+        document = self._open(revision)
+        document.redo() if redo else document.undo(gesture)
         self._changed()
 
     async def take_draft(self, take: bool) -> None:
@@ -341,8 +334,7 @@ class Session:
         """Take the text of the file over; what was here comes back by undo."""
         async with self._files:
             document, stamp, text = self._open(), stamp_of(self.path), case_text(self.path)
-            if text != document.text:
-                document.replace(text)
+            document.replace(text)
             self._stand(text, stamp)
             self._changed()
 

@@ -1,5 +1,6 @@
 """The drawing of the workbench, as hands use it: mouse, finger and keyboard; the text and the numbers follow."""
 
+import json
 import re
 import subprocess
 import sys
@@ -135,6 +136,29 @@ def test_a_length_is_typed(bench):
     assert bench.elements(".entry") == []
 
 
+def test_a_number_is_typed_right_after_a_pull(bench):
+    """Its sign and its first nought are no keys of the view, whose scale stays."""
+    scale = state(bench, "now.view.scale")
+    for typed in ("-10", "0"):
+        pull(bench, "Joint A", (10, -10))
+        press(bench, *typed, "\ue007")
+        settle(bench, f"Math.abs(now.drawn.joints.find((joint) => joint.name === 'A').at[0] - ({typed})) < 1e-6")
+    assert state(bench, "now.view.scale") == scale
+
+
+def test_escape_takes_back_what_a_pull_has_changed(bench):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    pull(bench, "Joint A", (30, -20))
+    before = state(bench, "now.document.text")
+    ActionChains(bench.driver, duration=20).click_and_hold(handle(bench, "Joint A")).move_by_offset(40, 0).perform()
+    pulled = f"now.document.text !== {json.dumps(before)}"
+    bench.wait(f"import(document.baseURI + 'page/store.js').then(({{ store: {{ state: now }} }}) => {pulled})")
+    press(bench, "\ue00c")
+    ActionChains(bench.driver).release().perform()
+    settle(bench, f"now.document.text === {json.dumps(before)}")
+
+
 def test_the_width_of_a_link_is_typed_where_it_is_drawn(bench):
     """The part of the link has it, and the form says that other links have that part; the bar above stays as it is."""
     from selenium.webdriver.common.action_chains import ActionChains
@@ -210,7 +234,24 @@ def the_motion_slides(browser):
     assert state(browser, "now.instant") == last == int(slider.get_property("value"))
     slider.send_keys("\ue012")  # arrow left
     assert state(browser, "now.instant") == last - 1
+    for letter in "zy":  # undo and redo, with the slider in focus as well
+        before = state(browser, "now.document.revision")
+        ActionChains(browser.driver).key_down("\ue009").send_keys(letter).key_up("\ue009").perform()
+        settle(browser, f"now.document.revision > {before}")
     browser.run(PRESS, "Back to the case's pose")
+
+
+def test_an_instant_of_a_motion_of_another_link_becomes_the_pose(bench):
+    """The motion prescribes the rocker, the pose the crank: it is turned to where it stands at that instant."""
+    stated = {"coordinate": "rocker", "range": ["55 deg", "70 deg"]}
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    bench.run(edit, [{"op": "set", "path": ["motion"], "value": stated}])
+    settle(bench, "now.motion?.pose")
+    bench.element(".track input").send_keys("\ue010")  # End
+    crank = state(bench, "now.motion.angles.crank.at(-1)")
+    bench.run(PRESS, "Use this pose")
+    settle(bench, f"now.instant === null && Math.abs(now.drawn.coordinate.value - {crank}) < 1e-3")
+    assert bench.element("#motion output").text.startswith("70°")
 
 
 def test_a_load_line_is_dashed_and_its_levers_are_dotted(bench):
@@ -262,7 +303,13 @@ def joint_of(document, *links):
 
 
 def test_the_keyboard_alone_moves_a_joint_and_adds_a_load(bench):
-    bench.run("document.querySelector('#plane svg').focus(); document.activeElement.blur()")
+    left = state(bench, "now.view.left")
+    for _ in range(60):
+        press(bench, "\ue004")  # Tab
+        if bench.driver.switch_to.active_element.get_attribute("id") == "sheet":
+            break
+    press(bench, "\ue014")  # arrow right, with no thing in focus: the view
+    assert state(bench, "now.view.left") == left - 40
     for _ in range(60):
         press(bench, "\ue004")  # Tab
         label = bench.driver.switch_to.active_element.get_attribute("aria-label") or ""

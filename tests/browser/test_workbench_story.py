@@ -278,6 +278,23 @@ def beside_another_editor(page, file):
     page.until("now.document.saved")
 
 
+def test_line_ends_and_mark_stay_where_the_text_is_written(own_browser, tmp_path):
+    """As editors of Windows have them; what is typed is sent before Control and S save it."""
+    file = tmp_path / "linkages" / "mine.toml"
+    file.parent.mkdir()
+    before = b"\xef\xbb\xbf" + read_text("four-bar")[0].replace("\n", "\r\n").encode()
+    file.write_bytes(before)
+    with opened(own_browser, file.parent, "mine.toml") as page:
+        page.browser.element("#tab-text").click()
+        area = "const area = document.querySelector('#panel-text textarea'); area.focus();"
+        at = "const at = area.value.indexOf('\"Four-bar') + 1; area.setSelectionRange(at, at + 8);"
+        page.browser.run(area + at)
+        page.keys("Mine")
+        page.control("s")
+        page.until("now.document.undo && now.document.saved")
+    assert file.read_bytes() == before.replace(b'"Four-bar', b'"Mine')
+
+
 def test_the_keyboard_alone_draws_and_reaches_everything(own_browser, tmp_path):
     folder = tmp_path / "linkages"
     folder.mkdir()

@@ -117,9 +117,16 @@ class Document:
         self.text, self._gesture = text, gesture
         self.revision += 1
 
-    def undo(self) -> None:
-        """Take the last change back, if there is one."""
-        self._step(self._done, self._undone)
+    def undo(self, gesture: str = "") -> None:
+        """Take the last change back, if there is one.
+
+        Parameters
+        ----------
+        gesture : str
+            One that has a name is taken back where it made the last change.
+        """
+        if gesture in ("", self._gesture):
+            self._step(self._done, self._undone)
 
     def redo(self) -> None:
         """Make the change that was taken back last once more, if there is one."""

@@ -108,11 +108,12 @@ def motion_answer(text: str, name: str) -> Plain:
     Returns
     -------
     dict
-        ``values`` of the coordinate in ``unit``; ``points``: ``link.point`` -> places [mm]; ``angles``: link -> angles
-        [deg]; ``dead``, values at which the drive is at a dead point, or the coordinate goes no further; ``range``, the
-        ends that it reaches; ``turns``, true for a full turn. ``problem``: why it does not move, or not as far as the
-        case says, else None; without any motion it stands alone, but for ``offer`` where none is stated: the
-        motion that there could be, a full turn or as far as the pose's coordinate gets; None of a travel.
+        ``values`` of the coordinate in ``unit``; ``pose``: those of the pose's own coordinate [deg or mm], None where
+        it is the same; ``points``: ``link.point`` -> places [mm]; ``angles``: link -> angles [deg]; ``dead``, values at
+        which the drive is at a dead point, or the coordinate goes no further; ``range``, the ends that it reaches;
+        ``turns``, true for a full turn. ``problem``: why it does not move, or not as far as the case says, else None;
+        without any motion it stands alone, but for ``offer`` where none is stated: the motion that there could be, a
+        full turn or as far as the pose's coordinate gets; None of a travel.
     """
     try:
         case = case_of(text, name)
@@ -123,9 +124,12 @@ def motion_answer(text: str, name: str) -> Plain:
         ends = [] if case.pinned_drive is None else dead_points(motion, case.pinned_drive)
     except AlulaError as error:
         return {"problem": str(error)}
+    held = case.pose_coordinate or motion.coordinate
+    pose = None if held == motion.coordinate else held.measure.told(motion.q[:, held.column(motion.closure)]).tolist()
     dead = np.unique([*ends, *(one.angle for one in stopped)])
     return {
         "values": motion.told(motion.angles).tolist(),
+        "pose": pose,
         "unit": motion.unit,
         "points": {
             f"{link}.{point}": motion.position(link, point).round(4).tolist()

@@ -9,7 +9,7 @@ What the page does:
 * ``POST /solids {"do": "start"}`` starts it, ``{"do": "stop"}`` stops it.
 * The event ``solids`` has ``links``: name -> ``state`` (``waiting``, ``solving``, ``done``, or ``kept`` where all was
   found), ``seconds`` since its state began or that it took, and ``model``, a number that grows with each model of the
-  link; 0 without one. Where it has grown, ``GET /model/{link}`` has the model.
+  link, from check to check as well; 0 without one. Where it has grown, ``GET /model/{link}`` has the model.
 * A model is shown by the viewer that reports have: the page loads ``viewer.js`` as a classic script with ``defer``, and
   ``turnable.css``; then ``window.alulaViewer.show(parent, "link", text)`` takes an element and the answer's text, puts
   the model first into it, and returns an object whose ``remove()`` takes it away again, or null without WebGL. Remove a
@@ -204,7 +204,7 @@ class _Run:
             self._since[name], link["state"] = now, state
             if "model" in told:
                 self.models[name] = told["model"]
-                link["model"] += 1
+                link["model"] = now
         elif event == "verdict":
             if not self._silent:
                 self._told("verdict", {"revision": self._revision, **told})

@@ -3,7 +3,7 @@
 import { free, make, number, unused } from "./elements.js";
 import { ask, edit } from "./server.js";
 
-const LARGEST = 64; // MiB, as the server takes them
+const LARGEST = 200; // MB, as the server takes them
 
 export function mountDrop(holder, store) {
   const said = make("p", { role: "status", "aria-live": "polite" });
@@ -18,7 +18,7 @@ export function mountDrop(holder, store) {
   async function take(file) {
     store.put("panel", "out");
     found.replaceChildren();
-    if (file.size > LARGEST * 2 ** 20) return (said.textContent = `'${file.name}' is larger than ${LARGEST} MiB; export the part alone.`);
+    if (file.size > LARGEST * 1e6) return (said.textContent = `'${file.name}' is larger than ${LARGEST} MB; export the part alone.`);
     said.textContent = `Looking into '${file.name}' ...`;
     const post = { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file };
     const told = await ask(`drop/${encodeURIComponent(file.name)}`, post).then((answer) => answer.json(), ({ message }) => void (said.textContent = message));

@@ -23,7 +23,6 @@ export async function mount(holder, store) {
 class Forms {
   constructor(holder, store, root) {
     Object.assign(this, { holder, store, root, table: "links", name: null, open: new Set(), refused: new Map(), unsent: new Map(), drawn: "" });
-    this.tables = null;
     this.choice = make("select", { id: unused(), onchange: () => this.show(this.choice.value, null) });
     this.names = make("div", { class: "names", role: "group", "aria-label": "Entries of this table" });
     this.form = make("form", { onsubmit: (event) => event.preventDefault() });

@@ -4,6 +4,7 @@ import { store, same } from "./store.js";
 import { change, edit, newGesture, tell } from "./server.js";
 import { fromLocal, key, poseHandle, scene, toLocal } from "./scene.js";
 import { arrowLength } from "./plane.js";
+import { ofPose } from "./motion.js";
 import * as entry from "./entry.js";
 import { removeOf } from "./tools.js";
 import { angle, leastOf, minus, number, pan, plus, round125, rounded, size, snap, snapStep, toPlane, toScreen, zoom } from "./view.js";
@@ -222,18 +223,19 @@ function following(handle, now, start) {
   const link = now.links.find((one) => one.name === handle.name);
   const held = toLocal(link, start);
   const [first] = link.points;
-  const path = motion.values.map((_, k) => {
+  const values = ofPose(motion);
+  const path = values.map((_, k) => {
     const direction = motion.angles[link.name][k];
     const at = motion.points[key(link.name, first.name)][k];
     return fromLocal({ origin: minus(at, fromLocal({ origin: [0, 0], direction }, first.local)), direction }, held);
   });
   const { value } = drawn.coordinate;
-  let here = leastOf(path.map((_, k) => Math.abs(motion.values[k] - value)));
+  let here = leastOf(path.map((_, k) => Math.abs(values[k] - value)));
   return (place, free) => {
     const reach = Math.max(2, Math.round(path.length / 8)); // where paths cross, the hand stays on its own branch
     const away = path.map((at, k) => (Math.abs(k - here) <= reach || (motion.turns && Math.abs(k - here) >= path.length - reach) ? size(minus(at, place)) : Infinity));
     here = leastOf(away);
-    return turn(motion.values[here] + between(path, motion.values, here, place), poseStep(free), place);
+    return turn(values[here] + between(path, values, here, place), poseStep(free), place);
   };
 }
 
@@ -353,7 +355,7 @@ function keys(event) {
   const way = ARROWS[event.key];
   if (way) nudge(handle, way.map((part) => part * (event.shiftKey ? 10 : 1)), event.altKey);
   else if ((event.key === "Enter" || event.key === " ") && handle) enter(handle, event.target);
-  else if (event.key === "+" || event.key === "-") zoom(event.key === "+" ? 1.25 : 0.8, [svg.clientWidth / 2, svg.clientHeight / 2]);
+  else if ((event.key === "+" || event.key === "-") && !entry.isOpen()) zoom(event.key === "+" ? 1.25 : 0.8, [svg.clientWidth / 2, svg.clientHeight / 2]);
   else return;
   event.preventDefault();
 }
@@ -407,8 +409,8 @@ function escape(event) {
   if (event.target.closest?.("#panels, .entry")) return;
   if (entry.isOpen()) return entry.close();
   if (grab?.drag && grab.moved) {
+    change("undo", {}, grab.gesture).catch(() => {}); // what this pull has changed, if anything
     grab = null;
-    change("undo").catch(() => {});
     store.put("held", null);
   } else if (store.state.ends) store.put("ends", null);
   else if (store.state.tool !== "select") store.put("tool", "select");

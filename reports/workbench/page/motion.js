@@ -45,7 +45,7 @@ function leave() {
 
 function take() {
   const { motion, instant } = store.state;
-  const value = motion.values[instant];
+  const value = ofPose(motion)[instant];
   stop();
   edit([{ op: "turn", to: Number(value.toFixed(6)) }]).then(() => store.put("instant", null), () => {});
 }
@@ -70,12 +70,15 @@ function stop() {
   show();
 }
 
+/** The coordinate of the pose at each instant; the motion may prescribe another one. */
+export const ofPose = (motion) => motion.pose ?? motion.values;
+
 /** The instant nearest to the case's own pose. */
 function nearest() {
   const { motion, drawn } = store.state;
-  const value = drawn?.coordinate?.value ?? motion.values[0];
+  const value = drawn?.coordinate?.value ?? ofPose(motion)[0];
   const far = (one) => (motion.turns ? Math.abs(((((one - value) % 360) + 540) % 360) - 180) : Math.abs(one - value));
-  return leastOf(motion.values.map(far));
+  return leastOf(ofPose(motion).map(far));
 }
 
 function show() {
@@ -104,7 +107,7 @@ function show() {
   parts.slider.value = k;
   const range = motion.turns ? "turns fully" : `reaches ${(motion.range ?? []).map((one) => number(one) + signs).join(" to ")}`;
   const dead = motion.dead?.length ? `; dead at ${motion.dead.map((one) => number(one) + signs).join(", ")}` : "";
-  const text = `${number(instant === null ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
+  const text = `${number(instant === null && !motion.pose ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
   parts.slider.setAttribute("aria-valuetext", text);
   parts.said.textContent = parts.said.title = `${text} (${range}${dead})`;
   const share = (value) => `${(100 * (value - values[0])) / (values.at(-1) - values[0] || 1)}%`;

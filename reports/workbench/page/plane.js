@@ -18,7 +18,7 @@ let svg, groups, perNewton = 0, waiting = false, hovered = null;
 export function mount(element) {
   const hatch = make("pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
     make("rect", { width: 6, height: 6, fill: USES.at(-1)[2] }), make("line", { x1: 0, y1: 0, x2: 0, y2: 6, stroke: "#b3261e", "stroke-width": 2 }));
-  svg = add(element, "svg", { role: "application", "aria-label": "The linkage, to scale", id: "sheet" }, make("defs", {}, hatch));
+  svg = add(element, "svg", { role: "application", "aria-label": "The linkage, to scale", id: "sheet", tabindex: 0 }, make("defs", {}, hatch));
   const names = ["grid", "paths", "links", "springs", "joints", "forces", "texts", "bodies", "handles", "hand"];
   groups = Object.fromEntries(names.map((name) => [name, new Group(svg, { class: name })]));
   for (const name of ["document", "drawn", "verdict", "motion", "instant", "selected", "loadCase", "view", "held", "tool", "ends", "cursor", "paths"]) {

@@ -6,7 +6,7 @@ import { change, newGesture } from "./server.js";
 const PAUSE = 300; // ms after the last key until the text is sent
 export function mount(holder, store) {
   const numbers = make("pre", { class: "numbers", "aria-hidden": "true" });
-  const area = make("textarea", { "aria-label": "Text of the case", spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off" });
+  const area = make("textarea", { "aria-label": "Text of the case", spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off", "aria-describedby": "text-wrong" });
   const wrong = make("p", { class: "at-line", id: "text-wrong", hidden: true });
   const editor = make("div", { class: "editor" }, numbers, area, wrong);
   holder.append(editor);
@@ -54,13 +54,12 @@ export function mount(holder, store) {
 
   function show(now) {
     if (!now) return;
-    if (typed === null) take(now.text);
+    if (typed === null) take(now.text.replaceAll("\r\n", "\n"));
     number();
     const { sentence, line } = now.problem ?? {};
     wrong.textContent = sentence ?? "";
     wrong.hidden = !line;
     area.setAttribute("aria-invalid", String(Boolean(sentence)));
-    area.setAttribute("aria-describedby", "text-wrong");
     follow();
   }
 
@@ -74,7 +73,8 @@ export function mount(holder, store) {
     clearTimeout(typed);
     if (typed === null) return;
     typed = null;
-    change("text", { text: area.value }, gesture).catch(() => {}); // the sentence stands above the page
+    const end = store.state.document.text.includes("\r\n") ? "\r\n" : "\n"; // a text area has lost it
+    change("text", { text: area.value.replaceAll("\n", end) }, gesture).catch(() => {}); // the sentence stands above the page
   }
 
   area.addEventListener("input", () => {
@@ -86,6 +86,7 @@ export function mount(holder, store) {
     sendTyped();
     gesture = newGesture(); // what is typed when one comes back is another step
   });
+  area.addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && sendTyped()); // before it is saved
   area.addEventListener("scroll", follow);
   store.on("document", show);
   store.on("panel", (name) => name === "text" && requestAnimationFrame(opened));

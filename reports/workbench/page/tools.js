@@ -114,7 +114,7 @@ function shortcut(event) {
   const letter = event.key.toLowerCase();
   if (event.ctrlKey || event.metaKey) {
     const route = { s: "save", z: event.shiftKey ? "redo" : "undo", y: "redo" }[letter];
-    const writing = event.target.closest?.("input, textarea, select");
+    const writing = event.target.closest?.("input:not([type=checkbox], [type=range]), textarea");
     if (!route || (writing && route !== "save")) return;
     event.preventDefault();
     change(route);
@@ -123,5 +123,5 @@ function shortcut(event) {
   if (event.altKey || event.target.closest?.("input, textarea, select, [contenteditable]")) return;
   const tool = TOOLS.find(([, , key]) => key.toLowerCase() === letter || (key === "Delete" && event.key === "Backspace"));
   if (tool) choose(tool[0]);
-  else if (letter === "0" && !event.target.closest?.("#plane .entry")) fitAll();
+  else if (letter === "0" && !document.querySelector("#plane .entry")) fitAll();
 }

@@ -1,6 +1,7 @@
 """What would change a verdict, in sentences, on the page, in the console and in result.json."""
 
 import io
+import shlex
 from dataclasses import replace
 
 import pytest
@@ -92,6 +93,8 @@ def test_the_command_names_case_entry_range_and_what_was_set(result, check):
     assert size_command(change, named) == ("alula size 'my case.toml' --vary parts.tube.outer_diameter=\"5 mm..9 mm\"")
     case = result.case.read_from(Origin(changes=(("parts.tube.outer_diameter", "5 mm"), ("links.AE.part", "rod"))))
     assert size_command(change, replace(named, case=case)).endswith(" --set links.AE.part=rod")
+    spaced = replace(change, size=replace(change.size, entry="parts.arm tube.outer_diameter"))
+    assert shlex.split(size_command(spaced, named))[4] == "parts.arm tube.outer_diameter=5 mm..9 mm"
     assert size_command(VerdictChange(check=check), result) == ""
 
 

@@ -187,6 +187,17 @@ def test_motion_has_the_places_of_its_poses():
     assert len(motion["angles"]["coupler"]) == len(motion["values"]) == 361
 
 
+def test_the_pose_of_an_instant_is_told_where_the_motion_prescribes_another_link():
+    text = read_text("four-bar")[0]
+    other = 'coordinate = "rocker"\nrange = ["55 deg", "70 deg"]'
+    motion = motion_answer(text.replace("turn = true", other), "four-bar")
+    for k in (0, 200):
+        pose = read_case("four-bar").with_values({"pose.angle": f"{motion['pose'][k]} deg"}).stated_pose
+        assert math.degrees(pose.angles["rocker"]) == pytest.approx(motion["values"][k], abs=1e-9)
+        assert motion["points"]["rocker.P"][k] == pytest.approx(pose.position("rocker", "P").tolist(), abs=1e-3)
+    assert motion_answer(text, "four-bar")["pose"] is None, "it is the motion's own"
+
+
 def test_motion_goes_as_far_as_the_linkage_does():
     text = read_text("four-bar")[0]
     for old, new in (
@@ -266,6 +277,13 @@ def test_a_section_that_passes_is_offered_with_all_that_has_to_follow_it():
     tables = tomllib.loads(text)
     assert [tables["links"][link]["part"] for link in ("crank", "coupler", "rocker")] == ["bar", "bar-2", "bar"]
     assert tables["parts"]["bar"] == tomllib.loads(DRAWN)["parts"]["bar"]
+
+
+def test_a_link_that_is_no_bar_decides_and_no_section_is_offered():
+    """Its part is a file: what is reported of it is told alone."""
+    answer = whole_answer(read_text("step")[0], "step")
+    assert answer["changes"]
+    assert not any(one["operations"] for one in answer["changes"])
 
 
 def test_all_that_hand_calculation_is_not_calibrated_for_is_told_at_once_and_mended_by_one_press():

@@ -82,6 +82,11 @@ def test_a_file_that_is_too_large_is_not_even_written(tmp_path: Path, monkeypatc
     assert parts.LARGEST_FILE < read.LARGEST_FILE
 
 
+def test_the_page_refuses_no_file_that_is_taken() -> None:
+    page = Path(parts.__file__).parent / "page" / "drop.js"
+    assert f"const LARGEST = {parts.LARGEST_FILE / 1e6:.0f}; // MB" in page.read_text(encoding="utf-8")
+
+
 def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     with pytest.raises(CannotRunError, match="cannot be written"):
         parts.dropped("arm.step", BELL_CRANK, tmp_path / "gone")

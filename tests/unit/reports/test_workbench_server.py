@@ -302,6 +302,7 @@ def test_an_edit_is_seen_by_every_page(bench):
         assert "meanwhile" in found["sentence"]
         assert bench.post("text", revision=1, text="no TOML", gesture="") == (200, {"revision": 2})
         assert second.next("document", revision=2)["tables"] is None
+        assert bench.post("undo", revision=2, gesture="of a pull that changed nothing") == (200, {"revision": 2})
         assert bench.post("undo", revision=2) == (200, {"revision": 3})
         assert bench.post("undo", revision=2)[0] == 409
 
