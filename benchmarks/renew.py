@@ -4,7 +4,8 @@
 
 Without a name it lists every result with the version and the sources of alula that it stands on, and measures nothing.
 A name is that of a file in results/, or ``pages``: what commands print in the tutorial and the recipes. Only where the
-words stay are these written anew; other differences are told. README is held by tests alone. Times want a quiet machine.
+words stay are these written anew; other differences are told. README is held by tests alone. Times want a quiet
+machine.
 """
 
 import json
