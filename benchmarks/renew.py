@@ -3,8 +3,9 @@
     python -m benchmarks.renew [all | stale | NAME ...]
 
 Without a name it lists every result with the version and the sources of alula that it stands on, and measures nothing.
-A name is that of a file in results/, or ``pages``: what commands print in README, the tutorial and the recipes. Only
-where the words stay are these written anew; other differences are told. Times want a quiet machine.
+A name is that of a file in results/, or ``pages``: what commands print in the tutorial and the recipes. Only where the
+words stay are these written anew; other differences are told. README is held by tests alone. Times want a quiet
+machine.
 """
 
 import json

@@ -243,6 +243,7 @@ def check_case(
         )
     return CheckResult(
         name=name,
+        fidelity=fidelity,
         case=case,
         pose=statics.pose,
         clearance=whole.clearance,

@@ -357,6 +357,8 @@ class CheckResult:
     ----------
     name : str
         What the case was called on the command line.
+    fidelity : str
+        The model that was asked for.
     case : Case
     pose : Pose
     clearance : Clearance or None
@@ -397,6 +399,7 @@ class CheckResult:
     """
 
     name: str
+    fidelity: str
     case: Case
     pose: Pose
     clearance: Clearance | None

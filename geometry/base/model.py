@@ -102,6 +102,12 @@ def _text(text: str) -> str:
     return text
 
 
+def _stated(text: str) -> str:
+    if not text.strip():
+        raise refusal("it must not be empty; write what it is, in a few words")
+    return text
+
+
 def _direction(value: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(value):
         raise PydanticCustomError("no_direction", "a direction has three numbers, not all zero; write [0, 0, 1]")
@@ -115,6 +121,8 @@ Direction = Annotated[tuple[float, float, float], AfterValidator(_direction)]
 """A vector of any length, without unit; kept with unit length."""
 Name = Annotated[str, AfterValidator(_name), WithJsonSchema({"type": "string", "format": "name"})]
 Text = Annotated[str, AfterValidator(_text)]
+Stated = Annotated[Text, AfterValidator(_stated), WithJsonSchema({"type": "string", "pattern": r"\S"})]
+"""Text that is not empty."""
 
 
 def check_file_names(entry: str, names: Iterable[str]) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any
 
-from pydantic import ValidationInfo
+from pydantic import Field, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 from alula.geometry.base.model import refusal
@@ -73,6 +73,8 @@ LEAST, LARGEST = 1e-20, 1e20
 """Sizes in alula's units beyond which a quantity is taken for a mistake. Nothing that is built comes near, and what is
 computed from sizes between them stays finite (measured: statics, motion and hand calculation with one to three
 quantities at either end)."""
+LARGEST_ANGLE = 1e6
+"""Up to it [rad] a double tells a direction within 1e-9 rad, to which poses and stops are held."""
 BODY_WEIGHT = "body_weight"
 """The unit of force that is the weight of the body whose mass a case states, and its key in a validation's context."""
 STANDARD_GRAVITY = 9806.65
@@ -138,8 +140,9 @@ def parse(text: object, dimension: str, body_weight: float | None = None) -> flo
         number *= body_weight
     factor, offset = conversion
     value = number * factor + offset
-    if value != 0.0 and not LEAST <= abs(value) <= LARGEST:
-        limit, zero = (f"at most {LARGEST:g}", "") if abs(value) > LARGEST else (f"at least {LEAST:g}", ", or write 0")
+    largest = LARGEST_ANGLE if dimension == "angle" else LARGEST
+    if value != 0.0 and not LEAST <= abs(value) <= largest:
+        limit, zero = (f"at most {largest:g}", "") if abs(value) > largest else (f"at least {LEAST:g}", ", or write 0")
         size = f"{limit} {INTERNAL_UNITS[dimension]} in size"
         raise refusal(f"the {dimension} must be {size}; check the number and its unit{zero}")
     return value
@@ -303,8 +306,18 @@ def _not_negative(value: float) -> float:
     return value
 
 
+def _sized(value: float) -> float:
+    if not LEAST <= abs(value) <= LARGEST:
+        raise refusal(f"it must be {LEAST:g} to {LARGEST:g}; check the number")
+    return value
+
+
 POSITIVE = Rule(_positive, "greater than zero")
 NOT_NEGATIVE = Rule(_not_negative, "not negative")
+SIZED = Rule(_sized, f"{LEAST:g} to {LARGEST:g}")
+
+Number = Annotated[float, Field(gt=0), SIZED]
+"""A pure number above zero, of a size that quantities may have: a limit, a factor, how often loads come and go."""
 
 Length = Annotated[float, Dimensioned("length")]
 Area = Annotated[float, Dimensioned("area")]

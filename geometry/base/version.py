@@ -7,7 +7,7 @@ RESULT_SCHEMA_VERSION = 2
 
 
 def alula_version() -> str:
-    """Return the installed version, such as ``"0.1.0"``; ``pyproject.toml`` states it."""
+    """Return the installed version, such as ``"0.2.0"``; ``pyproject.toml`` states it."""
     import sys
     from importlib.metadata import PackageNotFoundError, version
 

@@ -11,8 +11,8 @@ from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.model import CaseModel, Text, refusal
-from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Toughness, Volume
+from alula.geometry.base.model import CaseModel, Stated, Text, refusal
+from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Number, Stress, Toughness, Volume
 from alula.geometry.materials.brittle_notch import check_brittle
 from alula.geometry.materials.directional import directional
 from alula.geometry.materials.temperature import TemperatureFactors, check_factors
@@ -52,11 +52,11 @@ class Fatigue(CaseModel):
 
     stress: Annotated[Stress, POSITIVE]
     """Peak stress that the material bears for ``cycles``."""
-    cycles: Annotated[float, Field(gt=0)]
+    cycles: Number
     """Cycles that it bears at that stress."""
     exponent: float | None = None
     """Exponent of the power law, from 1 to 100; none where a single point is known."""
-    endurance_cycles: Annotated[float, Field(gt=0)] | None = None
+    endurance_cycles: Number | None = None
     """Cycles from which on strength falls no further (endurance limit); left out, the line has no end."""
     strength_range: Range | None = None
     """Scatter of the stress at ``cycles``: least and greatest value."""
@@ -87,7 +87,7 @@ class Fatigue(CaseModel):
 class Material(CaseModel):
     """An isotropic linear elastic material: density, stiffness, strength and where they come from."""
 
-    title: Text
+    title: Stated
     """Name of the material, for the report."""
     density: Annotated[Density, POSITIVE]
     """Mass per volume."""
@@ -151,9 +151,9 @@ class Material(CaseModel):
     """Fatigue data; without them nothing is known of the fatigue of links."""
     fatigue_across_layers: Fatigue | None = None
     """Of a printed material: of specimens built upright, so that its stress is tension normal to the layers."""
-    minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None
+    minimum_safety_factor: Number | None = None
     """Default limit for a static check of an untested part."""
-    minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
+    minimum_safety_factor_tested: Number | None = None
     """Default limit where parts of the same make were tested."""
     sources: dict[str, Text]
     """Entry -> where its value comes from. A warning lists density, elastic constants and strengths left out."""

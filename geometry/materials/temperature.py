@@ -1,15 +1,13 @@
 """Properties over temperature: tables of factors on what a material has at room temperature."""
 
 import itertools
-from typing import Annotated
 
-from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.model import refusal
-from alula.geometry.base.units import Temperature
+from alula.geometry.base.units import Number, Temperature
 
-TemperatureFactors = tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...]
+TemperatureFactors = tuple[tuple[Temperature, Number], ...]
 """(temperature [°C], factor), rising in temperature."""
 ROOM = (20.0, 23.0)
 """Temperatures at which a card's own values hold [°C]: the reference temperatures of ISO 1 and of ISO 291."""

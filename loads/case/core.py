@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.model import Name, Text
+from alula.geometry.base.model import Name, Stated, Text
 from alula.geometry.base.units import NOT_NEGATIVE, POSITIVE, STANDARD_GRAVITY, Length, Mass
 from alula.geometry.bodies.body import PartKind
 from alula.geometry.bodies.features import FlatFace
@@ -54,7 +54,7 @@ class CoreCase(Revisable):
 
     schema_version: Literal[1]
     """Version of the case file's format."""
-    title: Text
+    title: Stated
     """What the case is, in a line; every report has it."""
     description: Text = ""
     """What it is about, in a few sentences."""

@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.units import BODY_WEIGHT, TYPOGRAPHY
@@ -61,6 +61,20 @@ class Axis:
             return self.values[int(share * len(self.values))]
         first, last = self.ends
         return self.stated(first + share * (last - first))
+
+    def divided(self, steps: int) -> "Axis":
+        """Return a range with the values at the ends of so many equal steps.
+
+        Parameters
+        ----------
+        steps : int
+
+        Returns
+        -------
+        Axis
+        """
+        first, last = self.ends
+        return replace(self, values=tuple(self.stated(first + (last - first) * i / steps) for i in range(steps + 1)))
 
     def stated(self, number: float) -> object:
         """Return a number of the range's unit as a case file states it.
@@ -135,8 +149,7 @@ def _range(path: str, text: str) -> Axis:
         steps = _steps((last - first) / (size * _factor(of, unit, named)) if size > 0.0 else 0.0, named)
     else:
         return found
-    values = tuple(found.stated(first + (last - first) * i / steps) for i in range(steps + 1))
-    return Axis(path=path, values=values, ends=found.ends, unit=unit)
+    return found.divided(steps)
 
 
 def _quantity(text: str, named: str) -> tuple[float, str]:

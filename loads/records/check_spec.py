@@ -13,6 +13,7 @@ from alula.geometry.base.units import (
     Length,
     Mass,
     Moment,
+    Number,
     Stress,
     Voltage,
 )
@@ -23,7 +24,7 @@ class SafetyFactorCheck(CaseModel):
     """The safety factor of each link must be at least the minimum."""
 
     type: Literal["safety-factor"]
-    minimum: Annotated[float, Field(gt=0)] | None = None
+    minimum: Number | None = None
     """The limit; the material's own when left out."""
     links: tuple[Name, ...] = ()
     """The links to check; all that have a part when left out."""
@@ -60,7 +61,7 @@ class PinCheck(CaseModel):
     """The safety factor of each pin, in shear and bending under its joint force, must be at least the minimum."""
 
     type: Literal["pins"]
-    minimum: Annotated[float, Field(gt=0)] | None = None
+    minimum: Number | None = None
     """The limit; that of the pin's material when left out."""
     joints: tuple[Name, ...] = ()
     """The joints to check; all whose pin joins a link with a part when left out."""
@@ -70,7 +71,7 @@ class BearingCheck(CaseModel):
     """Bearing of each pin on its eyes, F/(d t), against the ultimate strength of the softer one."""
 
     type: Literal["bearing"]
-    minimum: Annotated[float, Field(gt=0)] | None = None
+    minimum: Number | None = None
     """The least safety factor; 3.33 when left out, 6.67 where flight depends on the joint."""
     flight_depends: bool = False
     """True for hinges that flight depends on."""
@@ -94,7 +95,7 @@ class EyeCheck(CaseModel):
     """
 
     type: Literal["eye"]
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least factor. ASME BTH-1 asks for 1.20 times its design factor of 2 or 3; partial factors of EN 1993-1-8 are
     not in the number."""
     standard: Literal["ASME BTH-1", "EN 1993-1-8"] = "ASME BTH-1"
@@ -111,7 +112,7 @@ class WallCheck(CaseModel):
     """
 
     type: Literal["wall"]
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least factor. Imperfections are in its band: for strips as for columns, where 1 is the limit."""
     links: tuple[Name, ...] = ()
     """The links to check; all that have a part when left out."""
@@ -124,7 +125,7 @@ class LineContactCheck(CaseModel):
     """
 
     type: Literal["line-contact"]
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least safety factor: yield strength over the largest von Mises stress below the line, or ``pressure`` over
     the largest pressure."""
     pressure: Annotated[Stress, POSITIVE] | None = None
@@ -144,7 +145,7 @@ class ConnectionCheck(CaseModel):
     type: Literal["connection"]
     joint: Name
     """The drive's joint, or a bonded or clamped one."""
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least safety factor: what the connection bears over what goes through it, in the mode that bears least."""
     link: Name | None = None
     """The link that is fixed; the driven link when left out, at another joint its second link."""
@@ -242,7 +243,7 @@ class PlasticCollapseCheck(CaseModel):
     """
 
     type: Literal["plastic-collapse"]
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least plastic-collapse factor of each link."""
     links: tuple[Name, ...] = ()
     """The links to check; all that are ductile and not printed when left out. One whose safety factor is not at or
@@ -271,7 +272,7 @@ class NotchCheck(CaseModel):
     """
 
     type: Literal["notch"]
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least factor."""
     links: tuple[Name, ...] = ()
     """The links to check; all that are brittle when left out. Each is solved as a solid."""
@@ -285,7 +286,7 @@ class FatigueCheck(CaseModel):
     """
 
     type: Literal["fatigue"]
-    minimum: Annotated[float, Field(gt=0)] = 2.0
+    minimum: Number = 2.0
     """The least factor. Lives scatter much more than stress, so that it is the stress that is judged."""
     links: tuple[Name, ...] = ()
     """The links to check; all that have a part when left out."""
@@ -339,7 +340,7 @@ class FrequencyCheck(CaseModel):
     """
 
     type: Literal["frequency"]
-    minimum: Annotated[float, Field(gt=0)]
+    minimum: Number
     """The least lowest natural frequency of the linkage over the driving frequency."""
     links: tuple[Name, ...] = ()
     """The links that are checked by themselves as well; all that have a part when left out."""

@@ -2,11 +2,11 @@
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, refusal
-from alula.geometry.base.units import POSITIVE, Temperature, Time
+from alula.geometry.base.units import POSITIVE, Number, Temperature, Time
 from alula.geometry.materials.material import Fatigue, Material
 from alula.geometry.materials.temperature import covered, factor_at
 
@@ -23,7 +23,7 @@ class Conditions(CaseModel):
     duration: Annotated[Time, POSITIVE] | None = None
     """How long the loads stay; where stated, links creep (``sustained_modulus``) and their stress is set
     against ``sustained_stress``."""
-    cycles: Annotated[float, Field(gt=0)] | None = None
+    cycles: Number | None = None
     """How often each load case comes and goes: in a pose from nothing to its load and back, over a motion once with
     each repetition. Where stated, links are checked for fatigue."""
     reverses: bool = False

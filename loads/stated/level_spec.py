@@ -8,16 +8,15 @@ from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, Strict, ValidationInfo, model_validator
 
 from alula.geometry.base.errors import CaseError
-from alula.geometry.base.model import CaseModel, Name, Text, refusal
-from alula.geometry.base.units import LARGEST, LEAST, NOT_NEGATIVE, POSITIVE, Force, Length, Time, weight_in
+from alula.geometry.base.model import CaseModel, Name, Stated, Text, refusal
+from alula.geometry.base.units import LARGEST, LEAST, NOT_NEGATIVE, POSITIVE, SIZED, Force, Length, Time, weight_in
 from alula.loads.records.attachment import Attachment
 from alula.loads.records.load_case import Block
 from alula.loads.text.explain import printable
 from alula.loads.text.number_table import read_number_table
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
-Stated = Annotated[Text, Field(min_length=1)]
-Number = Annotated[float, Strict(), Field(gt=0)]
+Number = Annotated[float, Strict(), Field(gt=0), SIZED]
 """Taken as it stands: neither true nor a text is a number, and no text is true or false."""
 Asked = Annotated[bool, Strict()]
 

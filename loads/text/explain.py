@@ -30,6 +30,7 @@ _RULES = {
     "less_than_equal": "it must be at most {le:g}; make it smaller",
     "literal_error": "it must be one of {expected}; choose one of them",
     "too_short": "it has {actual_length}, but at least {min_length} must be there; add what is missing",
+    "string_too_long": "it must have at most {max_length} characters; write less",
     "too_long": "it must hold at most {max_length}, but holds more; remove some",
     "not_positive": "it must be greater than zero; make it larger",
     "negative": "it must not be negative; write zero or more",
@@ -85,7 +86,7 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
     """
     if name not in known:
         choice = f"choose one of {', '.join(known) or 'none'}"
-        raise CaseError(f"{entry}: '{name}' {rule}; {choice}{' ' if remedy else ''}{remedy}")
+        raise CaseError(f"{entry}: '{printable(str(name))}' {rule}; {choice}{' ' if remedy else ''}{remedy}")
 
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:

@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Sequence
 from typing import Any
 
+from alula.fea.check.deciding import BY_HAND
 from alula.fea.common.change import MaterialChange, VerdictChange, rounded
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
@@ -179,8 +180,7 @@ def size_command(change: VerdictChange, result: CheckResult) -> str:
     size = change.size
     vary = f'{shlex.quote(size.entry)}="{size.first}..{size.last}"'
     words = ["alula", "size", shlex.quote(result.name), "--vary", vary]
-    every = [link for one in result.load_cases.values() for link in one.links.values()]
-    if any(isinstance(link, HandResult) and not link.decided_by for link in every):
+    if result.fidelity in BY_HAND:
         words += ["--fidelity", "beam"]
     for path, value in result.case.changes:
         if path != size.entry:

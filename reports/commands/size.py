@@ -205,7 +205,10 @@ def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None
         stepped = "/" in text or " by " in text
         if step and stepped:
             raise CaseError(f"vary {printable(path)}: '{printable(text)}' has steps of its own; leave --step out")
-        axes.append(axis(path, text if stepped else f"{text} by {step}" if step else f"{text}/{STEPS + 1}"))
+        found = axis(path, text)
+        if not found.values:
+            found = axis(path, f"{text} by {step}") if step else found.divided(STEPS)
+        axes.append(found)
     for path, text in chosen.items():
         if ".." in text:
             raise CaseError(f"choose {printable(path)}: '{printable(text)}' is a range; state it with --vary")

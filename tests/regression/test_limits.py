@@ -3,6 +3,7 @@
 import json
 import time
 import tomllib
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -42,6 +43,10 @@ def refused(*overrides: str) -> str:
         ("links.rocker.points.P.0", "1e300 mm", "the length must be at most 1e+20 mm"),
         ("links.rocker.points.P.1", "1e-300 mm", "the length must be at least 1e-20 mm"),
         ("pose.angle", "1e-300 deg", "the angle must be at least 1e-20 rad"),
+        ("pose.angle", "1e20 deg", "the angle must be at most 1e+06 rad"),
+        ("title", "", "it must not be empty; write what it is"),
+        ("title", " \n", "it must not be empty; write what it is"),
+        ("materials.plate.title", "", "it must not be empty; write what it is"),
         ("materials.plate.density", "1e300 kg/m^3", "the density must be at most 1e+20 tonne/mm^3"),
         ("materials.plate.youngs_modulus", "1e-300 GPa", "the stress must be at least 1e-20 MPa"),
         ("materials.plate.youngs_modulus", "1e300 GPa", "the stress must be at most 1e+20 MPa"),
@@ -53,9 +58,25 @@ def test_sizes_that_nothing_has(entry: str, text: str, words: str) -> None:
     with pytest.raises(CaseError) as error:
         validate(_starter({entry: text}))
     sentence = str(error.value)
-    assert sentence.startswith(f"{entry} (it is '{text}'): ")
+    assert sentence.startswith(f"{entry} (it is {text!r}): ")
     assert words in sentence
-    assert "check the number" in sentence or "write for example" in sentence
+    assert "check the number" in sentence or "write " in sentence
+
+
+@pytest.mark.parametrize(
+    ("entry", "number"),
+    [
+        ("checks.strength.minimum", 1e308),
+        ("checks.strength.minimum", 1e-308),
+        ("conditions.cycles", 1e300),
+        ("materials.plate.minimum_safety_factor", 1e21),
+    ],
+)
+def test_pure_numbers_that_nothing_has(entry: str, number: float) -> None:
+    with pytest.raises(CaseError) as error:
+        validate(_starter({entry: number}))
+    told = "it must be 1e-20 to 1e+20; check the number"
+    assert str(error.value) == f"{entry} (it is {number!r}): {told}"
 
 
 @pytest.mark.parametrize(
@@ -92,7 +113,7 @@ def test_the_ends_of_what_is_read_are_borne_by_all_that_solves(changes: dict[str
     assert np.isfinite(moved.torque["lift"]).all()
 
 
-def _starter(changes: dict[str, str]) -> dict[str, Any]:
+def _starter(changes: Mapping[str, object]) -> dict[str, Any]:
     """Tables of the starter with a material of its own and a motion under inertia; the changes by their paths."""
     tables = tomllib.loads(files("alula.loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
     card = tomllib.loads(files("alula.geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))[
@@ -109,7 +130,7 @@ def _starter(changes: dict[str, str]) -> dict[str, Any]:
         *above, last = (int(key) if key.isdigit() else key for key in path.split("."))
         here: Any = tables
         for key in above:
-            here = here[key]
+            here = here[key] if isinstance(here, list) else here.setdefault(key, {})
         here[last] = value
     return tables
 

@@ -139,6 +139,10 @@ BAD = [
     ("parts.tube.outer_diameter=1e308 km", ["parts.tube.outer_diameter", "1e308 km", "at most 1e+20 mm"]),
     ("published_statics.reactions=[nan]", ["published_statics.reactions.0", "nan", "finite"]),
     # wrong kinds of values
+    (
+        f"claims=[{{name='a',source='s',published='1',quantity='{501 * chr(49)}'}}]",
+        ["claims.0.quantity", "at most 500", "less"],
+    ),
     ("title=5", ["title", "(it is 5)", "text", "quotes"]),
     ("links.GF=1", ["links.GF", "(it is 1)", "table", "[links.GF]"]),
     ("links=[]", ["links", "(it is [])", "table"]),

@@ -90,7 +90,9 @@ def test_what_narrows_a_band_is_told_only_where_it_does(result, check):
 def test_the_command_names_case_entry_range_and_what_was_set(result, check):
     change = VerdictChange(check=check, size=SizeRange(entry="parts.tube.outer_diameter", first="5 mm", last="9 mm"))
     named = replace(result, name="my case.toml")
-    assert size_command(change, named) == ("alula size 'my case.toml' --vary parts.tube.outer_diameter=\"5 mm..9 mm\"")
+    plain = "alula size 'my case.toml' --vary parts.tube.outer_diameter=\"5 mm..9 mm\""
+    for fidelity, asked in {"auto": "", "solid": "", "beam": " --fidelity beam", "frame": " --fidelity beam"}.items():
+        assert size_command(change, replace(named, fidelity=fidelity)) == plain + asked
     case = result.case.read_from(Origin(changes=(("parts.tube.outer_diameter", "5 mm"), ("links.AE.part", "rod"))))
     assert size_command(change, replace(named, case=case)).endswith(" --set links.AE.part=rod")
     spaced = replace(change, size=replace(change.size, entry="parts.arm tube.outer_diameter"))

@@ -62,6 +62,7 @@ def test_cards_as_json() -> None:
     ("words", "said"),
     [
         (["pvc"], "'pvc' is not in the library; choose one of pvc-paredes-2018, pvc-u"),
+        (["\x1b[2J"], "'?[2J' is not in the library; choose one of"),
         (
             ["carbon-plate"],
             "'carbon-plate' is a laminate of fibres: its stiffness and strength depend on the direction",

@@ -1,12 +1,15 @@
 """``docs/result.md`` and what the commands write name the same keys, of the same types."""
 
+import re
+
 import pytest
 from bars_in_layers import parallel_bars
 from edited_cases import PLANAR
-from result_paths import compare, documented
+from result_paths import DOCUMENT, compare, documented
 from slotted_cases import piston_entries
 from told_motion import record as motion_record
 
+from alula.fea.common.source import SourceKind
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.states.case_motion import solve_case_motion
@@ -37,6 +40,11 @@ def synthesised():
 
 def test_a_synthesis():
     compare("synth", synthesised())
+
+
+def test_every_kind_of_source_is_named():
+    told = DOCUMENT.read_text(encoding="utf-8").partition("sources of error: ")[2].partition(". The ends")[0]
+    assert re.findall(r"`(\w+)`", told) == [kind.name.lower() for kind in SourceKind]
 
 
 def test_the_comparison_can_fail():

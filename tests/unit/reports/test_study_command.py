@@ -93,6 +93,9 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
     """A tie under weight by hand calculation: status, JSON and text agree; a wrong range is one sentence."""
     wrong = programs.inside("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=4 mm", folder=tmp_path)
     assert (wrong.returncode, "is no range" in wrong.stderr) == (2, True)
+    for step in ((), ("--step", "1 mm")):
+        turned = ("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=8 mm..1 mm", *step)
+        assert "'8 mm..1 mm': its last value must be larger" in programs.inside(*turned, folder=tmp_path).stderr
     arguments = (
         "size",
         "owl-wing-closed",
