@@ -24,7 +24,7 @@ cheek, or plate, takes F/2.
 * least: F/2 or more crosses one of the two gaps, where M changes by F g/2, so that |M| is F g/4 or more.
 
 Between layers the couple of each eye is known (``alula.fea.beam.pin_between``), and which eye takes it is open only as
-far as ``alula.fea.frame.sharing`` says.
+far as where pins stand in their holes is (``alula.fea.pins``).
 
 Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
 may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear

@@ -18,6 +18,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_over_modulus, load_scatter
+from alula.fea.common.sought import LEFT, sought
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.frame.displacement_band import OneModulus, point_bounds
@@ -200,7 +201,7 @@ class PointDisplacement(LoadedLinkage):
         node, grown = self._grown
         if len(rests) > 1:  # between layers they rest as the load says
             tight = [end * along for end in (found.low, found.value, found.high) if math.isfinite(end)]
-            low = min(float(np.linalg.norm(one + rest)) for one in tight[:2] for rest in rests)
+            low = self._least(np.array(tight[:2]))
             low = low if grown is None else min(low, grown.least(node, tight))
         groups = ((name, group) for name in self.case.joints for group in loose_holes(self.case, name))
         radii = {(name, link): play / 2.0 for name, group in groups for link, play in group}
@@ -237,6 +238,20 @@ class PointDisplacement(LoadedLinkage):
             return np.array([(one.displacements - tight)[node, :3] for one in forces.pins.answers])
         shift = 0j if self.play is None else complex(self.play.shift(self.link, self.point))
         return np.array([[shift.real, shift.imag, 0.0]])
+
+    def _least(self, tight: Real) -> float:
+        """How far the point moves at least where pins rest between layers, by what it may with tight pins (n, 3).
+
+        What the search may leave is a share of what lies between its ends or, if that is less, of the least.
+        """
+        forces = self.shares.framed or self.forces
+        assert forces is not None
+        assert forces.frame is not None
+        assert forces.pins is not None
+        node, pins = forces.frame.points[self.link, self.point], forces.pins
+        rests = np.vstack([self._rests, pins.nearest(node, tight) @ pins.moves(node).T])
+        each = [np.linalg.norm(one + rests, axis=1).tolist() for one in tight]
+        return min(max(sought(sizes)[0], (1.0 - LEFT) * min(sizes)) for sizes in each)
 
     def _loose(self, plane: complex, across: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and largest displacement in the plane and across it, where pins take up their play beside one."""

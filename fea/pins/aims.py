@@ -121,6 +121,58 @@ class Aims:
         return np.asarray(top[..., 0] * powers.sum(axis=2) ** (1.0 / POWER))
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Nearest:
+    """How far a point moves, less than nothing: functions of where pins stand, each to be made as large as it gets.
+
+    Attributes
+    ----------
+    tight : ndarray, shape (n, 3)
+        What it may move with tight pins [mm].
+    by_rims : ndarray, shape (3, v)
+        What the variables of the rims add.
+    """
+
+    tight: Real
+    by_rims: Real
+
+    @property
+    def count(self) -> int:
+        """Of all functions."""
+        return len(self.tight)
+
+    def values(self, v: Real) -> Real:
+        """Return all functions.
+
+        Parameters
+        ----------
+        v : ndarray, shape (m, v)
+
+        Returns
+        -------
+        ndarray, shape (m, n)
+            [mm]
+        """
+        return np.asarray(-np.linalg.norm(self.tight + (v @ self.by_rims.T)[:, None], axis=2))
+
+    def slopes(self, v: Real, which: Index) -> Real:
+        """Return how functions change with where pins stand.
+
+        Parameters
+        ----------
+        v : ndarray, shape (m, v)
+        which : ndarray of int, shape (m,)
+            Of all functions.
+
+        Returns
+        -------
+        ndarray, shape (m, v)
+        """
+        moved = self.tight[which] + v @ self.by_rims.T
+        size = np.linalg.norm(moved, axis=1, keepdims=True)
+        return np.asarray(-np.divide(moved, size, out=np.zeros_like(moved), where=size > 0.0) @ self.by_rims)
+
+
 def aims_of(couples: Real, ends: BeamEnds, noise: float) -> Aims:
     """Return what is sought.
 

@@ -7,7 +7,7 @@ the difference of the pin's places at both rims of the hole, with the radius t g
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.pins.holes import Hole, known_hole, rims_of, shortest
 from alula.fea.pins.programme import NO_TIES
+from alula.geometry.joints.holes import HolePlay
 from alula.loads.case.case import Case
 from alula.loads.case.forks import eye_of
 from alula.loads.case.layers import on_one_axis
@@ -38,12 +39,18 @@ class HoleClearance:
         Joint and link of each; two share one clearance in a way that nothing states.
     low, value, high : float
         Of the hole, or of both together [mm].
+    stated : bool
+        Whether the joint says something of it.
     """
 
     holes: tuple[HoleName, ...]
     low: float
     value: float
     high: float
+    stated: bool = True
+
+
+TIGHT = HoleClearance(holes=(), low=0.0, value=0.0, high=0.0)
 
 
 def clearances_of(case: Case, frame: LinkageFrame) -> tuple[HoleClearance, ...]:
@@ -80,7 +87,7 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[HoleClearance, ...]:
             else:
                 value = hole.nominal if known_hole(case, name, hole.link) else 0.0
                 most = max(LOOSE * pin_size(case, name), hole.high if math.isfinite(hole.high) else 0.0)
-                found.append(HoleClearance(holes=own, low=0.0, value=value, high=most))
+                found.append(HoleClearance(holes=own, low=0.0, value=value, high=most, stated=False))
     return tuple(one for one in found if one.high > 0.0)
 
 
@@ -113,16 +120,27 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     tuple of tuple of (str, float)
         Links with the largest play in their hole [mm]. Of those in one tuple any may have all of it, where nothing
         states in which link the pin is tight; holes in different ones have theirs beside each other. Where nothing is
-        stated of a hole between layers, its pin runs.
+        stated of a hole between layers, by no joint of its pin, the pin runs.
     """
     sits = case.linkage.pin_holes(joint)
     if sits.shared is not None:
         found = [tuple((hole.link, sits.shared[1]) for hole in sits.holes)]
     else:
         layered = case.linkage.rise(joint) != 0.0
-        told = [hole for hole in sits.holes if hole.stated or (layered and known_hole(case, joint, hole.link))]
+        holes = [_as_stated(case, joint, hole) for hole in sits.holes] if layered else sits.holes
+        told = [hole for hole in holes if hole.stated or (layered and known_hole(case, joint, hole.link))]
         found = [((hole.link, hole.high),) for hole in told if math.isfinite(hole.high)]
     return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
+
+
+def _as_stated(case: Case, joint: str, hole: HolePlay) -> HolePlay:
+    """Return a joint's hole as the joint states it or, where it says nothing, another joint of its pin."""
+    linkage, point = case.linkage, case.linkage.point_of(joint, hole.link)
+    same = (
+        x for x in linkage.joints_of(hole.link) if linkage.joints[x].pivots and linkage.point_of(x, hole.link) == point
+    )
+    every = [hole, *(linkage.pin_holes(name)[hole.link] for name in same)]
+    return next((one for one in every if one.stated), hole)
 
 
 def gap_over_diameter(case: Case, joint: str, link: str) -> tuple[float, float] | None:
@@ -319,17 +337,34 @@ def radii_of(
     Returns
     -------
     Radii
-        A hole of several names has the clearance that comes first.
+        A hole of several names has the clearance that is stated of it alone, else what two holes share, else what is
+        open where nothing is stated. Of a shared clearance, what a hole that is known leaves is that of the other.
     """
     number = {name: k for k, names in enumerate(order) for name in names}
-    known, numbers, kept = set[int](), [], []
-    for one in clearances:
-        own = tuple(number[hole] for hole in one.holes if hole in number)
-        if own and not known.intersection(own):
-            known.update(own)
-            numbers.append(own)
-            kept.append(one)
-    return Radii(numbers=tuple(numbers), count=len(order), clearances=tuple(kept), heads=heads)
+    known, kept = dict[int, HoleClearance](), dict[int, tuple[HoleClearance, tuple[int, ...]]]()
+    for k in sorted(range(len(clearances)), key=lambda k: (not clearances[k].stated, len(clearances[k].holes))):
+        one = clearances[k]
+        left = tuple(hole for hole in one.holes if hole in number and number[hole] not in known)
+        if len(left) == 1 and len(one.holes) == 2:
+            [other] = set(one.holes) - set(left)
+            one = _beside(one, left, known[number[other]] if other in number else TIGHT)
+        if left:
+            own = tuple(number[hole] for hole in left)
+            known |= dict.fromkeys(own, one if len(own) == 1 else replace(one, low=0.0, value=one.value / 2.0))
+            kept[k] = one, own
+    found = [kept[k] for k in sorted(kept)]
+    return Radii(
+        numbers=tuple(own for _, own in found),
+        count=len(order),
+        clearances=tuple(one for one, _ in found),
+        heads=heads,
+    )
+
+
+def _beside(one: HoleClearance, left: tuple[HoleName, ...], other: HoleClearance) -> HoleClearance:
+    """Return what a clearance that two holes share leaves of it for one of them."""
+    low, high = max(one.low - other.high, 0.0), max(one.high - other.low, 0.0)
+    return replace(one, holes=left, low=low, value=min(max(one.value - other.value, low), high), high=high)
 
 
 def furthest(forces: Real, apart: Real) -> Real:

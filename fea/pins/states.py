@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
-from alula.fea.pins.aims import Aims, aims_of
+from alula.fea.pins.aims import Aims, Nearest, aims_of
 from alula.fea.pins.ascent import ascend
 from alula.fea.pins.clearances import Radii, clearances_of, furthest, head_gaps, pin_size, radii_of
 from alula.fea.pins.holes import RimFrame, rims_of
@@ -238,7 +238,42 @@ class PinStates:
         reached = aims.values(self._stands(starts, ROUGH)[1].v)
         return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])
 
-    def _followed(self, starts: Real, aims: Aims, close: float, paths: int, near: float) -> Real:
+    def moves(self, node: int) -> Real:
+        """Return how a node moves by where pins stand.
+
+        Parameters
+        ----------
+        node : int
+
+        Returns
+        -------
+        ndarray, shape (3, 4 h)
+        """
+        return np.asarray(self.rims.solved.displacements(self.rims.opened)[node, :3])
+
+    def nearest(self, node: int, tight: Real) -> Real:
+        """Return states of the pins in which a node moves least, sought from those that tell of all else.
+
+        Parameters
+        ----------
+        node : int
+        tight : ndarray, shape (n, 3)
+            What it may move with tight pins [mm].
+
+        Returns
+        -------
+        ndarray, shape (m, 4 h)
+        """
+        value = self.radii.value
+        if not len(value):
+            return self.value[None]
+        starts = np.vstack([self.extremes, np.outer(LEVELS, np.ones(len(value)))])
+        aims = Nearest(tight=tight, by_rims=self.moves(node))
+        for close, paths, near in STAGES:
+            starts = self._followed(starts, aims, close, paths, near)
+        return np.asarray(self.solved(starts).v)
+
+    def _followed(self, starts: Real, aims: Aims | Nearest, close: float, paths: int, near: float) -> Real:
         """Shares where functions of where pins stand are largest, of all that are met, then where ways end."""
         met, reached = [starts], [aims.values(self._stands(starts, close)[1].v)]
         spread = np.ptp(reached[0], axis=0)

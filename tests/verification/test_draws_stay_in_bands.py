@@ -8,13 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tilting_pins import checked, four_bar
 
+from alula.fea.check.run import check_case
 from alula.fea.pins import programme
 from alula.fea.standing.joint_forces import joint_forces
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.joints.heads import Heads
 from alula.loads.case.case import Case
 from benchmarks import draws
+
+LIMIT = {"type": "displacement", "at": "P", "maximum": "2 mm"}
 
 
 def headed(case: Case) -> Case:
@@ -30,9 +34,32 @@ def test_no_state_that_is_drawn_lies_outside_the_bands(seed, heads):
     assert draws.outside(headed(case) if heads else case, 200, seed) == []
 
 
+@pytest.mark.parametrize("seed", [5, 8, 10])
+def test_no_state_that_is_drawn_moves_a_point_less_than_its_band_says(seed):
+    """Of ranges of every hole; the states in which links bear most and least move it by 9 % more than some drawn."""
+    draw, data = np.random.default_rng(seed), four_bar(tight={}, checks={"d": LIMIT})
+    for joint in data["joints"].values():
+        ends = np.sort(3.0 * 10.0 ** draw.uniform(-3.0, -1.0, (2, 2)), axis=1).round(4)
+        joint["clearance"] = {
+            link: [f"{x} mm" for x in own] for link, own in zip(joint["links"], ends.tolist(), strict=True)
+        }
+    case = checked(data)
+    forces = draws.solve_case_statics(case).forces["l"]
+    pins, frame = forces.pins, forces.frame
+    assert pins is not None
+    assert frame is not None
+    node, v = frame.points["rocker", "P"], pins.solved(draws.shares(pins, 400, seed)).v
+    tight = pins.answer(np.zeros(v.shape[1])).displacements[node, :3]
+    moved = np.linalg.norm(tight + v @ pins.moves(node).T, axis=1)
+    [found] = [one for one in check_case(case, fidelity="beam").load_cases["l"].checks if one.name == "d"]
+    assert found.value.low <= moved.min()
+    assert moved.max() <= found.value.high
+
+
 def test_a_band_that_is_too_narrow_is_told(monkeypatch):
     """Where the search ends at once, draws leave the bands."""
     monkeypatch.setattr("alula.fea.pins.states.PinStates.extremes", property(lambda pins: pins.radii.value[None]))
+    monkeypatch.setattr("alula.fea.pins.states.PinStates.nearest", lambda pins, node, tight: pins.value[None])
     found = draws.outside(draws.linkage(1), 100)
     assert max(one.excess for one in found) > 0.2
     assert {one.of.split()[0] for one in found} == {"thrust", "pin", "stress", "displacement"}

@@ -20,11 +20,14 @@ import pytest
 from tilting_pins import checked
 
 from alula.fea.check.run import check_case
+from alula.fea.common.sought import sought
 from alula.fea.common.verdict import Quantity
+from alula.fea.pins.clearances import loose_holes
 from alula.fea.pins.states import PinStates
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import JointForces
 from alula.loads.case.case import Case
+from alula.loads.statics.statics import Reactions
 
 HIGH, SOFT = 10.0, 1000.0
 BENDING = SOFT * math.pi * 3.0**4 / 64.0
@@ -250,8 +253,13 @@ def three(
     lower: float = 20.0,
     upper: float = 20.0,
     heads: dict[str, dict[str, str]] | None = None,
+    silent: str = "",
+    plain: str | None = None,
 ):
-    """A crank between two couplers on one pin, each with a rocker of its own; forces along both couplers [N]."""
+    """A crank between two couplers on one pin, each with a rocker of its own; forces along both couplers [N].
+
+    One joint may say nothing of the crank's hole, and both may state a clearance alone.
+    """
     data = lap({})
     points = data["links"]["coupler"]["points"]
     del data["links"]["coupler"], data["joints"]["A"], data["joints"]["B"]
@@ -264,8 +272,8 @@ def three(
         data["joints"][name] = stiff | {"links": pair, "points": ["B", "B"]}
         data["joints"][name]["clearance"] = dict.fromkeys(pair, "0 mm")
     for name, pair in joints.items():
-        own = {link: clearances.get(link, "0 mm") for link in pair}
-        data["joints"][name] = {"links": pair, "points": ["A", "A"], "pin_diameter": "3 mm", "clearance": own}
+        own = {link: clearances.get(link, "0 mm") for link in pair if (name, link) != (silent, "crank")}
+        data["joints"][name] = {"links": pair, "points": ["A", "A"], "pin_diameter": "3 mm", "clearance": plain or own}
         data["joints"][name] |= {"pin_material": "soft", **({"heads": heads[name]} if heads else {})}
     data["pose"]["near"] = {"lower": "0 deg", "upper": "0 deg", "rocker": "90 deg", "other": "90 deg"}
     data["parts"]["crank"]["thickness"], data["parts"]["coupler"]["thickness"] = "6 mm", "12 mm"
@@ -282,10 +290,10 @@ ONE_PIN = [
 ]
 
 
-def borne_by(case: Case) -> dict[str, float]:
+def borne_by(case: Case, state: Reactions | None = None) -> dict[str, float]:
     """Couple about y that the pin puts on each of the three links, by what its joints put on them."""
     found = dict.fromkeys(("lower", "crank", "upper"), 0.0)
-    reactions = forces_of(case).reactions.joints
+    reactions = (state or forces_of(case).reactions).joints
     for name in ("A", "A2"):
         first, second = case.joints[name].links
         wrench = reactions[name].wrench
@@ -327,6 +335,32 @@ def test_pulled_against_each_other_the_middle_link_bears_what_its_tilt_leaves(jo
     for link in ("lower", "upper"):
         assert abs(found[link]) == pytest.approx((20.0 * HIGH + less) / 2.0, rel=5e-3)
     assert sum(found.values()) == pytest.approx(math.copysign(2.0 * 20.0 * HIGH, sum(found.values())), rel=5e-3)
+
+
+@pytest.mark.parametrize("silent", ["A", "A2"])
+def test_a_hole_that_one_joint_of_a_pin_states_is_so_for_the_other(silent):
+    """The crank's hole is one: where the other joint of the pin says nothing of it, it is no running fit."""
+    both, one = (three(ONE_PIN[1], {"crank": "0.2 mm"}, lower=-20.0, silent=name) for name in ("", silent))
+    assert borne_by(one) == pytest.approx(borne_by(both), rel=1e-6)
+    assert loose_holes(one, silent) == loose_holes(both, silent)
+    pins = forces_of(one).pins
+    assert pins is not None
+    assert not len(pins.radii.value)  # nothing is open
+
+
+def test_clearances_of_two_joints_on_one_pin_leave_open_which_holes_have_them():
+    """0.2 mm of each joint: all in the crank's hole, which both have, or in those of both other links."""
+    joints = {name: [*pair] for name, pair in ONE_PIN[1].items()}
+    pins = forces_of(three(joints, {}, lower=-20.0, plain="0.2 mm")).pins
+    assert pins is not None
+    assert {hole.link: 2.0 * float(pins.radii.largest[0, 2 * k]) for k, hole in enumerate(pins.rims.holes)} == {
+        "lower": 0.2, "crank": 0.2, "upper": 0.2,
+    }  # fmt: skip
+    found = [borne_by(three(joints, {}, lower=-20.0, plain="0.2 mm"), one) for one in pins.ends]
+    for holes in (["crank"], ["lower", "upper"]):
+        for link, borne in borne_by(three(joints, dict.fromkeys(holes, "0.2 mm"), lower=-20.0)).items():
+            low, high = sought([one[link] for one in found])
+            assert low <= borne <= high
 
 
 @pytest.mark.parametrize("clearance", ["0 mm", "0.1 mm"])
