@@ -4,7 +4,7 @@ Links of different layers keep a gap along the pins. Under load they bend and tw
 their pins tilt in their holes. Where two outlines lie over each other in the pose, the gap at every corner of what they
 share is reduced by how far the lower link rises there against the upper one: by the linear frame of beams, in the band
 of its flexibility, of the load, the moduli, air and friction, and by the play at all rims at its worst
-(``alula.fea.outcomes.free_motion``), for links that do not bend by it.
+(``alula.fea.outcomes.free_motion``), for links that do not bend by it. Pins of which nothing is stated run.
 """
 
 import itertools
@@ -27,6 +27,7 @@ from alula.fea.frame.linear import FrameSolution
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import NodeLoad
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
+from alula.fea.nonlinear.stability import ON_RIMS
 from alula.fea.outcomes.free_motion import rim_forces
 from alula.fea.pins.clearances import apart_at_rims, furthest, loose_holes
 from alula.geometry.clearance.shape import TOUCHING
@@ -199,7 +200,8 @@ class LayerGaps:
     def least(self) -> LayerGap | None:
         """The gap of which least is left, by the low end of its band; None where no link passes over another."""
         loose, causes = clearances(self.case), self.moved.of_loads
-        told = (*(cause.source for cause in causes), *((play_source(loose),) if loose else ()))
+        pins = (play_source(loose),) if loose else (ON_RIMS,) if self._run else ()
+        told = (*(cause.source for cause in causes), *pins)
         sources = distinct(self._soft.sources, told)
         found = []
         for over, closed, freed in zip(self._overlaps, self._closed, self._freed, strict=True):
@@ -224,11 +226,13 @@ class LayerGaps:
         """
         frame, joints = self.moved.frame, tuple(self.case.joints)
         loose = clearances(self.case)
-        if frame is None or not loose or any(cause.endless for cause in self.moved.of_loads):
+        if frame is None or not self._run or any(cause.endless for cause in self.moved.of_loads):
             return None
         free = self._freed
         if min(float(left.min()) for left, _ in self._beside(free)) < 0.0:
             return reason("deflection_closes_gap")
+        if not loose:
+            return reason("state_fits")
         alone = {
             name: self._share([np.delete(each, i, axis=0) for each in free], [each[i] for each in free])
             for i, name in enumerate(joints)
@@ -269,12 +273,14 @@ class LayerGaps:
     @cached_property
     def _freed(self) -> list[Real]:
         """By what the play of each joint closes every overlap's gap at its places: (joints, n)."""
-        frame, none = self.moved.frame, not clearances(self.case)
+        frame = self.moved.frame
         assert frame is not None
-        return [
-            np.zeros((len(self.case.joints), len(over.places))) if none else self._free(frame, over)
-            for over in self._overlaps
-        ]
+        return [self._free(frame, over) for over in self._overlaps]
+
+    @property
+    def _run(self) -> bool:
+        """Whether pins let links come nearer at all."""
+        return any(bool(free.any()) for free in self._freed)
 
     @cached_property
     def _soft(self) -> Scatter:

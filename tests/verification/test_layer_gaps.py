@@ -18,12 +18,16 @@ CHECKS = {"c": {"type": "clearance"}, "far": {"type": "clearance", "minimum": "1
 
 
 @cache
-def gap(spacing: str, play: str | None = None, force: str = "-20 N", at_b: str | None = None) -> CheckOutcome:
+def gap(
+    spacing: str, play: str | None = None, force: str = "-20 N", at_b: str | None = None, *, stated: bool = True
+) -> CheckOutcome:
+    """The gap of pins with a play, else tight in both links; or of which nothing is stated."""
     loads = {
         "l": {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", force]}]},
         "light": {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", "-0.2 N"]}]},
     }
-    data = four_bar(play=play, layer_spacing=spacing, load_cases=loads, checks=CHECKS)
+    tight = TIGHT if play else {name: (link, LOOSE[name]) for name, link in TIGHT.items()}
+    data = four_bar(tight=tight if stated else {}, play=play, layer_spacing=spacing, load_cases=loads, checks=CHECKS)
     if at_b is not None:
         data["joints"]["B"]["clearance"] = at_b
     found = check_case(checked(data), fidelity="beam").load_cases["l"].checks
@@ -78,6 +82,22 @@ def test_play_closes_the_gap_by_no_less_than_that_of_rigid_links():
     small = gap("4.2 mm", play="0.1 mm")
     assert small.verdict is Verdict.UNDECIDED
     assert "links rocker and coupler, 0.2 mm apart along the pins without load" in told(small.reason)
+
+
+def test_pins_of_which_nothing_is_stated_run_and_may_close_the_gap():
+    """H8/f7 in every hole: 10 to 30 um of play in holes for pins of 3 mm, as where that is stated."""
+    data = four_bar(tight={}, layer_spacing="4.08 mm", checks=CHECKS)
+    for joint in data["joints"].values():
+        joint["fit"] = "running"
+    every = check_case(checked(data), fidelity="beam").load_cases["l"].checks
+    low = min(one.value.low for one in every if one.quantity is Quantity.LAYER_GAP)
+    open_, tight = gap("4.08 mm", stated=False), gap("4.08 mm")
+    assert tight.verdict is Verdict.PASS
+    assert open_.value.low <= low < 0.0
+    assert open_.value.value == tight.value.value
+    assert open_.verdict is Verdict.UNDECIDED
+    assert "state how they sit" in told(open_.reason)
+    assert gap("4.5 mm", stated=False).verdict is Verdict.PASS
 
 
 def test_what_would_keep_a_gap_open_does_so_where_it_is_done():
