@@ -255,7 +255,7 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     browser.wait(f"{TEXT}.includes('own_weight = false')")
     open_panel(browser, "solids")
     browser.element("#solids-auto").click()  # by itself, once nothing has changed for three seconds
-    browser.wait("document.querySelector('#panel-solids [role=status]').innerText.includes('links are done')")
+    browser.wait("document.querySelector('#panel-solids [role=status]').innerText.includes('links are solved')")
     browser.wait("document.querySelector('#panel-solids .model canvas')")
     assert browser.element("#panel-solids th").text == "crank"
     open_panel(browser, "verdict")

@@ -152,7 +152,7 @@ class _Run:
             seconds = now - self._since[name] if link["state"] == "solving" else link["seconds"]
             links[name] = {**link, "seconds": round(seconds, 2)}
         ended = sum(link["state"] in ("done", "kept") for link in links.values())
-        so_far = f"{ended} of {len(links)} links are done. " if links and self._state == "running" else ""
+        so_far = f"Stresses of {ended} of {len(links)} links are solved. " if links and self._state == "running" else ""
         told = {"revision": self._revision, "state": self._state, "sentence": so_far + self._sentence, "links": links}
         self._told("solids", told)
 
@@ -205,6 +205,8 @@ class _Run:
             if "model" in told:
                 self.models[name] = told["model"]
                 link["model"] += 1
+            if all(one["state"] in ("done", "kept") for one in self._links.values()):
+                self._sentence = "The linkage as a whole is being judged ..."
         elif event == "verdict":
             if not self._silent:
                 self._told("verdict", {"revision": self._revision, **told})

@@ -27,7 +27,7 @@ export function mount(element) {
   svg.addEventListener("pointerover", (event) => hover(event.target.handle ?? null));
   svg.addEventListener("pointerleave", () => hover(null));
   new ResizeObserver(() => (store.state.fitted ? later() : fitAll())).observe(element);
-  store.on("drawn", (drawn) => drawn && (store.state.fitted || fitAll()));
+  store.on("drawn", (drawn) => drawn && fitNew());
   return svg;
 }
 
@@ -63,6 +63,18 @@ export function fitAll() {
   fit([...places, ...room, ...tips, ...rings, ...paths], width, height);
 }
 
+let outlined = new Map(); // link that was drawn before -> whether it had an outline
+
+/** Show all at first, and where a link that is new, or has an outline now, lies beyond the sheet. */
+function fitNew() {
+  const { links } = scene();
+  const { width, height } = svg.getBoundingClientRect();
+  const fresh = links.filter((link) => !outlined.has(link.name) || (link.rings && !outlined.get(link.name)));
+  outlined = new Map(links.map((link) => [link.name, Boolean(link.rings || outlined.get(link.name))]));
+  const outside = (place) => toScreen(place).some((one, k) => one < 0 || one > [width, height][k]);
+  if (!store.state.fitted || fresh.some((link) => [...link.pieces.flat(), ...(link.rings?.[0] ?? [])].some(outside))) fitAll();
+}
+
 /** mm of arrow for a newton; it stays as long as the largest arrow is neither tiny nor huge, so that tips stay where they are. */
 function arrowScale(now) {
   const largest = Math.max(0, ...now.loads.map((load) => size(load.vector)), ...forcesOf(now).map((one) => size(one.force)));
@@ -86,8 +98,10 @@ export function useOf(link) {
   if (use === null || link.ground || store.state.instant !== null || store.state.drawn.problem) return { text: "", colour: "#9fb1c1", over: false };
   const [least, most] = use.map((share) => number(100 * share, 2));
   const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
+  const over = use[0] > 1 && verdict !== "undecided";
+  if (use[1] === null) return { text: `${least} % (no band)${sign}`, colour: USES.at(over ? -1 : -2)[2], over };
   const text = use[1] <= 1 || least === most ? most : use[0] > 0 ? `${least} to ${most}` : `up to ${most}`;
-  return { text: `${text} %${sign}`, colour: (use[0] > 1 ? USES.at(-1) : USES.find(([end]) => use[1] <= end))[2], over: use[0] > 1 };
+  return { text: `${text} %${sign}`, colour: (over ? USES.at(-1) : USES.find(([end]) => use[1] <= end))[2], over };
 }
 
 function drawAll() {
