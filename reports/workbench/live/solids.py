@@ -255,7 +255,7 @@ def _check(text: str, name: str, tell: Tell, threads: int, memory: str | None) -
             state = "kept" if one.kept else "done"
             told("link", {"name": one.link, "state": state, **model(one.link, one.results)})
 
-    def progress(sentence: str) -> None:
+    def say(sentence: str) -> None:
         told("sentence", {"sentence": sentence})
 
     try:
@@ -263,13 +263,7 @@ def _check(text: str, name: str, tell: Tell, threads: int, memory: str | None) -
         told("links", {"names": list(case.checked_links)})
         with limited(threads, memory), keeping():
             result = check_case(
-                case,
-                name=name,
-                fidelity="solid",
-                threads=threads,
-                effort=effort_of(case),
-                watch=watch,
-                progress=progress,
+                case, name=name, fidelity="solid", threads=threads, effort=effort_of(case), watch=watch, progress=say
             )
         for link in shown.copy():  # other causes may make another load case govern
             later = model(link, {x: one.links[link] for x, one in result.load_cases.items()})

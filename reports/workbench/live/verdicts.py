@@ -112,10 +112,9 @@ def verdict_of(result: CheckResult, stage: str, start: float) -> Plain:
     if stage == "linear":
         sentences = (*opening(result.case, result.verdict, checks, several=several), _SO_FAR)
     if stage != "solids" and result.verdict is Verdict.UNDECIDED:
-        sentences = (*_uncalibrated(result.case), *sentences)
-    of_links = {
-        link: [one for one in checks if one.subject == Subject.link(link)] for link in result.case.checked_links
-    }
+        outside = {part: sizes for part in result.case.parts if (sizes := following(result.case, part))}
+        wanted = "Hand calculation is not calibrated for links of part {}: it would be with {}."
+        sentences = (*(wanted.format(part, _sizes(result.case, outside[part])) for part in outside), *sentences)
     first = deciding(checks)[0] if checks else None
     why = f" {sentence(f'{named(first)}: {told(first.reason)}')}" if first else ""  # the page has it beside the checks
     return {
@@ -124,8 +123,8 @@ def verdict_of(result: CheckResult, stage: str, start: float) -> Plain:
         "sentences": [_here(one.removesuffix(why)) for one in sentences],
         "checks": [_check(check) for check in by_nearness(checks)],
         "links": {
-            link: {"use": _use(own), "verdict": overall(one.verdict for one in own).value}
-            for link, own in of_links.items()
+            link: _of_link([one for one in checks if one.subject == Subject.link(link)])
+            for link in result.case.checked_links
         },
         "changes": [] if stage == "solids" else None,
         "warnings": [_here(sentence(told(warning))) for warning in result.warnings],
@@ -165,25 +164,15 @@ def _known(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _use(checks: Sequence[CheckOutcome]) -> list[float] | None:
-    """Return the band of the largest share of strength that a link takes: the limit over either end of a margin."""
+def _of_link(checks: Sequence[CheckOutcome]) -> Plain:
+    """Return the verdict of a link, and the band of the largest share of strength that it takes: one over a margin."""
     uses = []
     for one in (check for check in checks if check.applies and check.quantity.tier is not Tier.NEITHER):
-        band = one.value.told
-        value, least, most = one.quantity.margins(band.value, band.low, band.high, one.limit)
-        if math.isnan(band.low) and value > 0.0:
-            uses.append((1.0 / value, math.inf))
-        elif least > 0.0:
-            uses.append((1.0 / most, 1.0 / least))
-    return [_known(max(ends)) for ends in zip(*uses, strict=True)] or None
-
-
-def _uncalibrated(case: Case) -> Iterator[str]:
-    """Yield for each part with sizes that hand calculation is not calibrated for the nearest ones that it is for."""
-    for part in case.parts:
-        if sizes := following(case, part):
-            told_of = _sizes(case, sizes)
-            yield f"Hand calculation is not calibrated for links of part {part}: it would be with {told_of}."
+        _, least, most = one.quantity.margins(one.value.value, one.value.low, one.value.high, one.limit)
+        if least > 0.0:
+            uses.append((1.0 / most, math.inf if one.value.without else 1.0 / least))
+    use = [_known(max(ends)) for ends in zip(*uses, strict=True)] or None
+    return {"use": use, "verdict": overall(one.verdict for one in checks).value}
 
 
 def _changes(result: CheckResult, text: str) -> list[Plain]:

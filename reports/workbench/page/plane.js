@@ -3,8 +3,8 @@
 import { same, store } from "./store.js";
 import { shownVerdict } from "./verdict.js";
 import { beyond, freePoints, poseHandle, scene } from "./scene.js";
-import { add, Group, make } from "./elements.js";
-import { ahead, along, place } from "./labels.js";
+import { add, Group, make, perFrame } from "./elements.js";
+import { along, place } from "./labels.js";
 import { angle, fit, gridStep, leastOf, minus, number, plus, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
@@ -13,7 +13,7 @@ const ARROW = 0.2;
 export const USES = [
   [0.5, "up to 50 %", "#c3d8cc"], [0.8, "80 %", "#e6d993"], [1, "100 %", "#ebaf63"], [Infinity, "may be more", "#d9b8d0"], [NaN, "is more", "#e08a80"],
 ];
-let svg, groups, perNewton = 0, waiting = false, hovered = null;
+let svg, groups, perNewton = 0, hovered = null;
 
 export function mount(element) {
   const hatch = make("pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
@@ -37,15 +37,7 @@ function hover(handle) {
   later();
 }
 
-/** Draw before the browser shows its next frame, once. */
-function later() {
-  if (waiting) return;
-  waiting = true;
-  requestAnimationFrame(() => {
-    waiting = false;
-    drawAll();
-  });
-}
+const later = perFrame(drawAll);
 
 /** Show all of the linkage, with the tips of its arrows. */
 export function fitAll() {
@@ -288,7 +280,7 @@ function forces({ now, texts, taken }) {
     if (size(minus(to, from)) < 4 && !one.needed) continue;
     arrow(groups.forces, one.key, from, to, `${one.kind} ${one.path ? state({ kind: "load", path: one.path }) : ""}`);
     taken.push(...along(from, to));
-    texts.push({ ...one, anchors: [to], way: ahead(from, to), gap: 6 });
+    texts.push({ ...one, anchors: [to], way: angle(minus(to, from)), gap: 6 });
   }
 }
 
@@ -311,7 +303,7 @@ function moments({ now, texts, taken }) {
   if (joint && drive.force && joint.way) {
     const [from, to] = [toScreen(joint.at), toScreen(plus(joint.at, joint.way, Math.sign(drive.force) * 0.12 * now.drawn.size))];
     arrow(groups.forces, "drive", from, to, "torque");
-    texts.push({ key: "drive", text: `drive ${number(Math.abs(drive.force))} N`, anchors: [to], way: ahead(from, to), kind: "torque", rank: 1, needed: true });
+    texts.push({ key: "drive", text: `drive ${number(Math.abs(drive.force))} N`, anchors: [to], way: angle(minus(to, from)), kind: "torque", rank: 1, needed: true });
   }
   for (const load of now.loads) if (load.moment) found.push({ name: `moment ${load.path.join(".")}`, at: load.at, moment: load.moment, about: direction(load.link), kind: "load", radius: 26 });
   for (const one of found) {

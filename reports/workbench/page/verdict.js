@@ -105,14 +105,16 @@ export function mount(holder, store) {
     };
     const all = found.checks ?? []; // the server has them with the worst first
     if (!all.length) return null;
-    /** The reason of a check, and of those right above it that have the same one. */
-    const why = ({ verdict, text }, place) => {
-      if (verdict === "pass" || !text || all[place + 1]?.text === text) return null;
-      const names = new Set(all.slice(all.slice(0, place).findLastIndex((one) => one.text !== text) + 1, place + 1).map((one) => one.subject));
-      return make("tr", { class: "why" }, make("td", { colspan: 4 }, names.size > 1 ? `${[...names].join(", ")}: ${text}` : text));
+    const alike = Map.groupBy(all, (check) => check.text);
+    /** A reason stands once, below the last of the checks that have it. */
+    const why = (check) => {
+      const same = alike.get(check.text);
+      if (check.verdict === "pass" || !check.text || check !== same.at(-1)) return null;
+      const names = same.length > 1 ? `${[...new Set(same.map((one) => one.subject))].join(", ")}: ` : "";
+      return make("tr", { class: "why" }, make("td", { colspan: 4 }, names + check.text));
     };
     const head = make("tr", {}, ...["verdict", "of", "value, band", "limit"].map((title, place) => make("th", { scope: "col", class: place > 1 ? "num" : null }, title)));
-    return [make("h2", {}, "Checks, the worst first"), make("div", { class: "wide" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...all.flatMap((check, place) => [row(check), why(check, place)]))))];
+    return [make("h2", {}, "Checks, the worst first"), make("div", { class: "wide" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...all.flatMap((check) => [row(check), why(check)]))))];
   }
 
   /** Bands by hand and of the solid on one scale, for each link that both have. */
@@ -124,9 +126,7 @@ export function mount(holder, store) {
     const by = new Map(hand.checks.map((check) => [keyOf(check), check]));
     const pairs = solids.checks.map((solid) => [by.get(keyOf(solid)), solid]).filter(([one, other]) => one && other.value > 0 && one.value > 0);
     if (!pairs.length) return null;
-    const links = new Map();
-    for (const pair of pairs) if (!links.has(pair[1].subject)) links.set(pair[1].subject, pair);
-    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other)));
+    const figures = [...Map.groupBy(pairs, ([, solid]) => solid.subject)].map(([name, [[one, other]]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other)));
     return [
       make("h2", {}, "By hand and as a solid"),
       make("p", { class: "soft" }, `All links took ${time(hand.ms / 1000)} by hand and ${time(solids.ms / 1000)} as solids. A bar is the band of a value; the upright line is the limit.`,
