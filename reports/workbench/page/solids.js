@@ -42,7 +42,7 @@ export function mount(holder, store) {
   function draw() {
     const now = store.state.solids;
     const found = store.state.verdict.solids;
-    verdict.replaceChildren(...(found ? [stamp(found, found.revision < store.state.document?.revision), found.sentences[0]] : []));
+    verdict.replaceChildren(...(found ? [stamp(found, found.revision < store.state.document?.revision), ` ${found.sentences[0]}`] : []));
     const running = now?.state === "running";
     start.disabled = running || Boolean(store.state.document?.problem);
     stop.disabled = !running;
