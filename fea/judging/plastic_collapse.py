@@ -128,9 +128,7 @@ def find_collapses(
             each: list[Collapse] = []
             for loads in links.get(link, ()):
                 nth = f"{1 + every.index(link)} of {len(every)}"
-                progress(
-                    f"Loading {link} ({nth}) until it flows as a whole, its plastic collapse, under {load_case} ..."
-                )
+                progress(f"Loading {link} ({nth}) until it flows as a whole (plastic collapse), under {load_case} ...")
                 try:
                     (one,) = _collapse(
                         ElasticLink.of(body, material),

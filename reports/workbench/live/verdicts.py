@@ -179,7 +179,7 @@ def _changes(result: CheckResult, text: str) -> list[Plain]:
     """Return what would change the verdict: sizes that can be set at once first, then what reports tell besides."""
     found = [*_offers(result, text)]
     if not found and result.verdict is not Verdict.PASS:
-        found = [_change("No section was found with which it passes by hand.")]
+        found = [_change("No section that was tried passes by hand.")]
     for one, change in zip(change_records(result), result.changes, strict=True):
         if one["sentences"] != [sentence(told(change.check.reason))]:  # which stands beside the check
             title = sentence(one["title"])[:-1]

@@ -5,7 +5,7 @@ import { send, tell } from "./server.js";
 import { stamp } from "./verdict.js";
 
 const PAUSE = 3000; // ms without a change until solids are solved by themselves
-const STATES = { waiting: "waits", solving: "is being solved ...", done: "done", kept: "kept from before" };
+const STATES = { waiting: "waits", solving: "is being solved ...", done: "solved", kept: "kept from before" };
 
 export function mount(holder, store) {
   const verdict = make("p");

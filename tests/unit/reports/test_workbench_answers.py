@@ -318,7 +318,7 @@ def test_where_no_section_passes_that_is_said():
     answer = whole_answer(DRAWN.replace("-300 N", "-3000 N"), "drawn")
     assert answer["verdict"] == "fail"
     assert answer["changes"][0] == {
-        "text": "No section was found with which it passes by hand.",
+        "text": "No section that was tried passes by hand.",
         "command": None,
         "operations": None,
     }
