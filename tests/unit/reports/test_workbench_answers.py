@@ -163,6 +163,7 @@ def test_the_whole_verdict_is_that_of_alula_check(name):
     assert all(one.startswith("Hand calculation is not calibrated") for one in uncalibrated)
     why = next(one["text"] for one in answer["checks"])
     assert first.startswith(shown)
+    assert (first == shown) == (answer["verdict"] != "undecided")
     assert first == shown or first.lower().endswith(why.lower()), "its reason stands beside the check that decides"
     assert "--fidelity" not in "".join([*answer["sentences"], *(one["text"] for one in answer["checks"])])
     checks = {(one["check"], one["subject"], one["load_case"], one["quantity"]): one for one in answer["checks"]}
@@ -309,6 +310,9 @@ def test_what_hand_calculation_is_not_calibrated_for_is_said_first_and_its_use_o
     )
     assert answer["sentences"][0] == first
     assert [one["use"][1] for one in answer["links"].values()] == [None, None, None]
+    reasons = [one["text"] for one in answer["checks"] if one["verdict"] == "undecided"]
+    told = [*answer["sentences"], *(one["text"] for one in answer["changes"])]
+    assert not any(reason.lower() in one.lower() for reason in reasons for one in told), "they stand beside the checks"
     mended = whole_answer(pressed(THIN, answer["changes"][0]), "drawn")
     assert "not calibrated" not in mended["sentences"][0]
     assert all(low <= high for low, high in (one["use"] for one in mended["links"].values()))
