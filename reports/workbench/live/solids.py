@@ -202,11 +202,11 @@ class _Run:
             if state != "solving" and link["state"] == "solving":
                 link["seconds"] = now - self._since[name]
             self._since[name], link["state"] = now, state
+            if all(one["state"] in ("done", "kept") for one in self._links.values()):
+                self._sentence = "The linkage as a whole is being judged ..."
             if "model" in told:
                 self.models[name] = told["model"]
                 link["model"] += 1
-            if all(one["state"] in ("done", "kept") for one in self._links.values()):
-                self._sentence = "The linkage as a whole is being judged ..."
         elif event == "verdict":
             if not self._silent:
                 self._told("verdict", {"revision": self._revision, **told})

@@ -24,12 +24,12 @@ class Forms {
   constructor(holder, store, root) {
     Object.assign(this, { holder, store, root, table: "links", name: null, open: new Set(), refused: new Map(), unsent: new Map(), drawn: "" });
     this.tables = null;
-    this.later = perFrame(() => keepingFocus(this.holder, () => this.draw()));
     this.choice = make("select", { id: unused(), onchange: () => this.show(this.choice.value, null) });
     this.names = make("div", { class: "names", role: "group", "aria-label": "Entries of this table" });
     this.form = make("form", { onsubmit: (event) => event.preventDefault() });
     this.said = make("p", { class: "wrong", role: "status" });
     holder.append(make("p", {}, make("label", { for: this.choice.id }, "Show "), this.choice), this.names, this.said, this.form);
+    this.later = perFrame(() => keepingFocus(this.holder, () => this.draw()));
     this.form.addEventListener("focusin", ({ target }) => this.entered(target));
     store.on("document", (now) => {
       this.tables = now?.tables ?? this.tables;
