@@ -114,7 +114,8 @@ def find_collapses(
     """
     until = time.perf_counter() + time_limit
     found: dict[str, dict[str, Collapse]] = {load_case: {} for load_case in loaded}
-    for link in dict.fromkeys(link for links in loaded.values() for link in links):
+    every = list(dict.fromkeys(link for links in loaded.values() for link in links))
+    for link in every:
         body, material = case.body(link), case.material_of(link)
 
         @cache
@@ -126,7 +127,8 @@ def find_collapses(
         for load_case, links in loaded.items():
             each: list[Collapse] = []
             for loads in links.get(link, ()):
-                progress(f"Loading {link} up to its plastic collapse, load case {load_case} ...")
+                nth = f"{1 + every.index(link)} of {len(every)}"
+                progress(f"Loading {link} ({nth}) until it flows as a whole (plastic collapse), under {load_case} ...")
                 try:
                     (one,) = _collapse(
                         ElasticLink.of(body, material),

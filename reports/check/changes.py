@@ -210,7 +210,7 @@ def _of_load(change: VerdictChange, result: CheckResult) -> list[str]:
     if check.quantity in (Quantity.LOAD_SHARE, Quantity.LIMIT_LOAD):
         factor = f"about {factor}"  # the path to it is followed in steps
     if check.verdict is not Verdict.PASS:
-        return [f"It passes with {factor} times {every}{' at the latest' if change.faster else ''}."]
+        return [f"It passes with {factor} times {every}{', maybe with more' if change.faster else ''}."]
     if rounded(load, up=False) <= 1.0:
         return []
     less = "less than " if change.faster else ""

@@ -200,6 +200,33 @@ def test_the_whole_arrow_of_a_load_takes_a_press(bench):
     assert longer / size == pytest.approx(1.0 + 30.0 / (2.0 * middle), rel=0.1)
 
 
+def test_a_link_that_is_drawn_beyond_the_sheet_is_brought_into_view_and_no_other_is(bench):
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    x, y = state(bench, "now.drawn.joints.find((one) => one.name === 'A').at")
+    bench.run("import(document.baseURI + 'page/view.js').then(({ pan }) => pan(-900, 0))")
+    bench.wait("import(document.baseURI + 'page/store.js').then(({ store }) => store.state.view.left < 0)")
+    away = state(bench, "now.view")
+    bench.run(edit, [{"op": "move", "joint": "A", "to": [x + 1.0, y]}])
+    settle(bench, f"now.drawn.joints.find((one) => one.name === 'A').at[0] > {x + 0.5}")
+    assert state(bench, "now.view") == away, "what is moved does not move the view"
+    bench.run(
+        edit, [{"op": "link", "name": "far", "from": {"joint": "A"}, "to": {"at": [-200.0, 150.0]}, "part": "bar"}]
+    )
+    bench.wait(
+        "import(document.baseURI + 'page/store.js').then(({ store: { state: now } }) => "
+        "now.drawn.links.some((one) => one.name === 'far'))"
+    )
+    assert state(bench, "now.view") != away
+    bench.run("return new Promise(requestAnimationFrame)")
+    box = bench.run("return document.querySelector('#sheet').getBoundingClientRect().toJSON()")
+    for one in bench.elements("#plane .links path"):
+        rect = one.rect
+        assert rect["x"] >= box["x"]
+        assert rect["y"] >= box["y"]
+        assert rect["x"] + rect["width"] <= box["x"] + box["width"]
+        assert rect["y"] + rect["height"] <= box["y"] + box["height"]
+
+
 def test_an_arrow_and_the_pose_are_pulled(bench):
     pull(bench, "Load on rocker", (30, 10))
     vector = state(bench, "now.drawn.loads.find((load) => load.kind === 'force').vector")

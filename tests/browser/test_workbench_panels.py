@@ -32,6 +32,18 @@ const made = URL.createObjectURL;
 URL.createObjectURL = (blob) => (window.handed.push(blob), made.call(URL, blob));
 """
 READ = "const [kind, done] = arguments; window.handed.findLast(({ type }) => type.startsWith(kind)).text().then(done);"
+LABELS = "[...document.querySelectorAll('#plane .texts text.link')].map((one) => one.textContent)"
+COLOURS = (
+    "return [...new Set([...document.querySelectorAll('#plane .links .part')].map((one) => one.getAttribute('fill')))]"
+)
+PUT = """
+const [verdict, done] = arguments;
+import(document.baseURI + "page/store.js").then(({ store }) => {
+  const none = { linear: null, whole: null, solids: null };
+  store.put("verdict", { ...none, [verdict.stage]: { revision: store.state.document.revision, ...verdict } });
+  done();
+});
+"""
 PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 
 
@@ -102,10 +114,15 @@ def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, ben
     apply = "[...document.querySelectorAll('#panel-verdict .changes button')].some((one) => one.innerText === 'Apply')"
     browser.wait(apply)
     assert "is calibrated for links of part bar with" in browser.element("#panel-verdict .changes").text
+    first = browser.element("#panel-verdict div p").text
+    assert first.startswith("Hand calculation is not calibrated for links of part bar: it would be with ")
+    browser.wait(f"{LABELS}.some((one) => one.startsWith('crank') && one.endsWith('% (no band) ?'))")
+    assert browser.run(COLOURS) == ["#d9b8d0"], "a number without band is no colour of what is known"
     browser.run(PRESS, "Apply")
     browser.wait(f"!{TEXT}.includes('width = \"16 mm\"')")
     browser.wait("!document.querySelector('#panel-verdict.old')")
     assert "not calibrated" not in browser.element("#panel-verdict").text
+    browser.wait(f"!{LABELS}.some((one) => one.includes('no band'))")
     browser.run("document.activeElement.blur()")
     undo = "[...document.querySelectorAll('button')].find((one) => one.textContent.startsWith('Undo')).click()"
     browser.run(undo)
@@ -243,6 +260,53 @@ def copied_commands_run(browser: chromium.Browser, case: Path) -> None:
     assert (case.parent / "mine-study" / "study.sqlite").is_file()
 
 
+def open_check(link: str, text: str, verdict: str = "undecided") -> dict[str, object]:
+    told = {"check": "collapse", "quantity": "plastic-collapse factor", "load_case": "lift", "unit": ""}
+    return told | {
+        "subject": link,
+        "value": 2.0,
+        "low": 1.0,
+        "high": 3.0,
+        "limit": 2.4,
+        "verdict": verdict,
+        "text": text,
+    }
+
+
+@pytest.mark.parametrize("verdict", ["pass", "fail", "undecided"])
+def test_the_panel_says_what_the_verdict_is_by_what_is_sought_and_each_reason_once(
+    browser: chromium.Browser, bench: tuple[str, Path], verdict: str
+) -> None:
+    visit(browser, bench[0])
+    browser.wait("document.querySelector('#panel-verdict .changes')")
+    two = [open_check("crank", "It needs a solid."), open_check("rocker", "It needs a solid.")]
+    checks = [*two, open_check("crank", "Its band is wide."), open_check("coupler", "It passes.", "pass")]
+    shown = {"stage": "whole", "verdict": verdict, "sentences": ["So it is."], "checks": checks, "links": {}}
+    shown |= {"warnings": [], "ms": 1.0, "changes": None}
+    browser.driver.execute_async_script(PUT, shown)
+    panel = browser.element("#panel-verdict")
+    assert browser.element("#brief").text.lower() == f"{verdict}\nby hand"
+    assert [one.text for one in browser.elements("#panel-verdict .why")] == [
+        "crank, rocker: It needs a solid.",
+        "Its band is wide.",
+    ]
+    assert ("A section that passes is sought" in panel.text) == (verdict != "pass")
+    assert "Check with solids" in panel.text
+    command = "alula size mine.toml --vary x"
+    change = {"text": "It passes with less.", "command": command, "operations": None}
+    browser.driver.execute_async_script(PUT, shown | {"changes": [change]})
+    assert "It passes with less." in panel.text
+    assert "is sought" not in panel.text
+    assert command not in panel.text, "commands stand in Out"
+    browser.driver.execute_async_script(PUT, shown | {"changes": [], "stage": "solids"})
+    assert browser.element("#brief").text.lower() == f"{verdict}\nwith solids"
+    assert "Check with solids" not in panel.text
+    open_panel(browser, "solids")
+    assert browser.element("#panel-solids p").text.lower() == f"{verdict} so it is."
+    browser.driver.execute_async_script(PUT, shown | {"stage": "solids", "revision": -1})
+    assert browser.element("#panel-solids .stamp.late").text.lower() == verdict
+
+
 def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
     """The crank alone has a part, so that one link is solved, not finely: its model turns, and both bands are told."""
     address, case = bench
@@ -255,7 +319,7 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     browser.wait(f"{TEXT}.includes('own_weight = false')")
     open_panel(browser, "solids")
     browser.element("#solids-auto").click()  # by itself, once nothing has changed for three seconds
-    browser.wait("document.querySelector('#panel-solids [role=status]').innerText.includes('links are done')")
+    browser.wait("document.querySelector('#panel-solids [role=status]').innerText.includes('links are solved')")
     browser.wait("document.querySelector('#panel-solids .model canvas')")
     assert browser.element("#panel-solids th").text == "crank"
     open_panel(browser, "verdict")

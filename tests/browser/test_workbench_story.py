@@ -211,11 +211,13 @@ def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tm
         page.control("yy")
         page.height_of_a(19)
 
-        page.browser.element("#tab-solids").click()
+        assert page.browser.element("#brief").text == "PASS\nby hand"
         page.press("Check with solids")
         page.until("now.solids?.state === 'done'", 300)
         solid = page.verdict("solids")
         assert solid["verdict"] == "pass"
+        assert page.browser.element("#brief").text == "PASS\nwith solids"
+        assert page.browser.element("#panel-solids p").text.startswith("PASS Pass: all ")
         assert {one["state"] for one in page.state("now.solids.links").values()} == {"done"}
         page.browser.wait("document.querySelector('#panel-solids .model canvas')")
         page.picture("workbench-solids")

@@ -152,30 +152,11 @@ class Document:
             From 1; that of the nearest entry that holds it where it is missing, None where no entry is named.
         """
         try:
-            self.tables()
+            tables = self.tables()
         except CaseError:
             if found := re.search(r"\(at line (\d+), column \d+\)", problem):
                 return int(found[1])
             return self.text.rstrip().count("\n") + 1 if "at end of document" in problem else None
         entry = re.split(r"(?: \(it is .*)?[:,](?:\s|\Z)", problem, maxsplit=1)[0]
-        return self.line([int(key) if key.isdecimal() else key.strip("\"'") for key in entry.split(".")])
-
-    def line(self, path: Sequence[str | int]) -> int | None:
-        """Return the line on which an entry, or the nearest one that holds it, begins.
-
-        Parameters
-        ----------
-        path : sequence of str and int
-            Keys, and numbers in lists.
-
-        Returns
-        -------
-        int or None
-            From 1; None where nothing is found.
-
-        Raises
-        ------
-        CaseError
-            For text that is no TOML.
-        """
-        return TomlText(self.text.removeprefix(_MARK), self.tables()).line(path)
+        path = [int(key) if key.isdecimal() else key.strip("\"'") for key in entry.split(".")]
+        return TomlText(self.text.removeprefix(_MARK), tables).line(path)

@@ -74,11 +74,7 @@ def _axis(plane: Plane, link: str, nodes: set[Point]) -> list[Point]:
 
 
 def _settled(
-    plane: Plane,
-    at: Mapping[Point, complex],
-    axes: Mapping[str, list[Point]],
-    root: Point,
-    to: complex,
+    plane: Plane, at: Mapping[Point, complex], axes: Mapping[str, list[Point]], root: Point, to: complex
 ) -> dict[Point, complex]:
     """Return all nodes after one was moved: near places that keep joints in line, by Newton's steps of least norm."""
     names, held = list(at), {plane.node[key] for key in plane.local if key[0] == plane.ground}

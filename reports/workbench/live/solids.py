@@ -152,7 +152,7 @@ class _Run:
             seconds = now - self._since[name] if link["state"] == "solving" else link["seconds"]
             links[name] = {**link, "seconds": round(seconds, 2)}
         ended = sum(link["state"] in ("done", "kept") for link in links.values())
-        so_far = f"{ended} of {len(links)} links are done. " if links and self._state == "running" else ""
+        so_far = f"Stresses of {ended} of {len(links)} links are solved. " if links and self._state == "running" else ""
         told = {"revision": self._revision, "state": self._state, "sentence": so_far + self._sentence, "links": links}
         self._told("solids", told)
 
@@ -202,6 +202,8 @@ class _Run:
             if state != "solving" and link["state"] == "solving":
                 link["seconds"] = now - self._since[name]
             self._since[name], link["state"] = now, state
+            if all(one["state"] in ("done", "kept") for one in self._links.values()):
+                self._sentence = "The linkage as a whole is being judged ..."
             if "model" in told:
                 self.models[name] = told["model"]
                 link["model"] = now
@@ -253,7 +255,7 @@ def _check(text: str, name: str, tell: Tell, threads: int, memory: str | None) -
             state = "kept" if one.kept else "done"
             told("link", {"name": one.link, "state": state, **model(one.link, one.results)})
 
-    def progress(sentence: str) -> None:
+    def say(sentence: str) -> None:
         told("sentence", {"sentence": sentence})
 
     try:
@@ -261,13 +263,7 @@ def _check(text: str, name: str, tell: Tell, threads: int, memory: str | None) -
         told("links", {"names": list(case.checked_links)})
         with limited(threads, memory), keeping():
             result = check_case(
-                case,
-                name=name,
-                fidelity="solid",
-                threads=threads,
-                effort=effort_of(case),
-                watch=watch,
-                progress=progress,
+                case, name=name, fidelity="solid", threads=threads, effort=effort_of(case), watch=watch, progress=say
             )
         for link in shown.copy():  # other causes may make another load case govern
             later = model(link, {x: one.links[link] for x, one in result.load_cases.items()})

@@ -8,7 +8,7 @@ from functools import partial
 from itertools import count
 
 from alula.fea.check.run import check_case
-from alula.fea.common.verdict import CheckOutcome, Subject, Tier, Verdict, by_nearness, overall
+from alula.fea.common.verdict import CheckOutcome, Subject, Tier, Verdict, by_nearness, deciding, overall
 from alula.fea.findings.of_check import with_findings
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.sizing.section import following, larger, stated
@@ -17,7 +17,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import keys_of
 from alula.reports.check.changes import change_records
 from alula.reports.sentences import told
-from alula.reports.sentences.verdicts import checks_of, first_lines, opening
+from alula.reports.sentences.verdicts import checks_of, first_lines, named, opening
 from alula.reports.words.numbers import joined, sentence
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.live.answers import Plain, Stage, case_of
@@ -48,7 +48,7 @@ def linear_answer(text: str, name: str) -> Plain:
     Returns
     -------
     dict
-        As ``whole_answer``, of stage ``linear``; without changes and warnings.
+        As ``whole_answer``, of stage ``linear``; without warnings, and ``changes`` is None: the whole verdict has them.
     """
     start = time.perf_counter()
     try:
@@ -67,14 +67,15 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
     name : str
         Path or built-in name.
     early : callable, optional
-        Is told the same before what would change it is tried, which takes several checks: ``changes`` is None then.
+        Is told the same before a section that passes is sought, which takes several checks: ``changes`` is None then.
 
     Returns
     -------
     dict
         ``stage`` whole; ``verdict``; ``sentences``, the verdict in words; ``checks``, with value, band and limit in
         their unit, None for what is not known or has no end; ``links``: link -> ``use``, the band of the share
-        of strength that it takes, from 0 where none is known, or None where no check tells, and ``verdict``;
+        of strength that it takes, without an upper end (None) where a number of it has no band, or None where no check
+        tells, and ``verdict``;
         ``changes``, each with ``text``, ``command`` and ``operations``, edits that make it, None where it is no single
         entry; ``warnings``; ``ms``.
     """
@@ -83,7 +84,7 @@ def whole_answer(text: str, name: str, early: Callable[[Plain], None] | None = N
         result = check_case(case_of(text, name), name=name, fidelity="beam", threads=1)
         soon = verdict_of(result, "whole", start)
         if early is not None:
-            early(soon | {"changes": None})
+            early(soon)
         found = with_findings(result)
         return verdict_of(found, "whole", start) | {"changes": _changes(found, text), "ms": soon["ms"]}
     except AlulaError as error:
@@ -110,19 +111,22 @@ def verdict_of(result: CheckResult, stage: str, start: float) -> Plain:
     sentences = first_lines(result)
     if stage == "linear":
         sentences = (*opening(result.case, result.verdict, checks, several=several), _SO_FAR)
-    of_links = {
-        link: [one for one in checks if one.subject == Subject.link(link)] for link in result.case.checked_links
-    }
+    if stage != "solids" and result.verdict is Verdict.UNDECIDED:
+        outside = {part: sizes for part in result.case.parts if (sizes := following(result.case, part))}
+        wanted = "Hand calculation is not calibrated for links of part {}: it would be with {}."
+        sentences = (*(wanted.format(part, _sizes(result.case, outside[part])) for part in outside), *sentences)
+    first = deciding(checks)[0] if checks else None
+    why = f" {sentence(f'{named(first)}: {told(first.reason)}')}" if first else ""  # the page has it beside the checks
     return {
         "stage": stage,
         "verdict": result.verdict.value,
-        "sentences": [_here(one) for one in sentences],
+        "sentences": [_here(one.removesuffix(why)) for one in sentences],
         "checks": [_check(check) for check in by_nearness(checks)],
         "links": {
-            link: {"use": _use(own), "verdict": overall(one.verdict for one in own).value}
-            for link, own in of_links.items()
+            link: _of_link([one for one in checks if one.subject == Subject.link(link)])
+            for link in result.case.checked_links
         },
-        "changes": [],
+        "changes": [] if stage == "solids" else None,
         "warnings": [_here(sentence(told(warning))) for warning in result.warnings],
         "ms": 1e3 * (time.perf_counter() - start),
     }
@@ -160,25 +164,31 @@ def _known(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _use(checks: Sequence[CheckOutcome]) -> list[float] | None:
-    """Return the band of the largest share of strength that a link takes: the limit over either end of a margin."""
-    asked = [one for one in checks if one.applies and one.quantity.tier is not Tier.NEITHER]
-    margins = [one.quantity.margins(one.value.value, one.value.low, one.value.high, one.limit)[1:] for one in asked]
-    uses = [(1.0 / most, 1.0 / least) for least, most in margins if least > 0.0]
-    return [max(ends) for ends in zip(*uses, strict=True)] or None
+def _of_link(checks: Sequence[CheckOutcome]) -> Plain:
+    """Return the verdict of a link, and the band of the largest share of strength that it takes: one over a margin."""
+    uses = []
+    for one in (check for check in checks if check.applies and check.quantity.tier is not Tier.NEITHER):
+        _, least, most = one.quantity.margins(one.value.value, one.value.low, one.value.high, one.limit)
+        if least > 0.0:
+            uses.append((1.0 / most, math.inf if one.value.without else 1.0 / least))
+    use = [_known(max(ends)) for ends in zip(*uses, strict=True)] or None
+    return {"use": use, "verdict": overall(one.verdict for one in checks).value}
 
 
 def _changes(result: CheckResult, text: str) -> list[Plain]:
-    """Return what would change the verdict: sizes that can be set at once first, then what reports tell."""
-    reported = [
-        {
-            "text": _here(f"{sentence(one['title'])[:-1]}: {' '.join(one['sentences'])}"),
-            "command": one["command"],
-            "operations": None,
-        }
-        for one in change_records(result)
-    ]
-    return [*_offers(result, text), *reported]
+    """Return what would change the verdict: sizes that can be set at once first, then what reports tell besides."""
+    found = [*_offers(result, text)]
+    if not found and result.verdict is not Verdict.PASS:
+        found = [_change("No section that was tried passes by hand.")]
+    for one, change in zip(change_records(result), result.changes, strict=True):
+        if one["sentences"] != [sentence(told(change.check.reason))]:  # which stands beside the check
+            title = sentence(one["title"])[:-1]
+            found.append(_change(_here(f"{title}: {' '.join(one['sentences'])}"), command=one["command"]))
+    return found
+
+
+def _change(text: str, *, command: str | None = None, operations: Sequence[Plain] | None = None) -> Plain:
+    return {"text": text, "command": command, "operations": operations}
 
 
 def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
@@ -210,12 +220,17 @@ def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
 
 def _offer(title: str, case: Case, sizes: Mapping[str, str], first: Sequence[Plain] = ()) -> Plain:
     """Return what sets some sizes after other edits."""
+    operations = [*first, *({"op": "set", "path": keys_of(path), "value": size} for path, size in sizes.items())]
+    return _change(f"{title}: {_sizes(case, sizes)}.", operations=operations)
+
+
+def _sizes(case: Case, sizes: Mapping[str, str]) -> str:
+    """Return sizes that are to be changed in words, with what they are now."""
     told_of = []
     for path, was, now in stated(case, sizes):
         _, name, entry = map(str, keys_of(path))
         told_of.append(f"{entry.replace('_', ' ')} of {name} {now} (now {was})")
-    operations = [*first, *({"op": "set", "path": keys_of(path), "value": size} for path, size in sizes.items())]
-    return {"text": f"{title}: {joined(told_of)}.", "command": None, "operations": operations}
+    return joined(told_of)
 
 
 STAGES: Mapping[str, Stage] = {

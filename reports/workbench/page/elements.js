@@ -37,9 +37,7 @@ export function make(tag, attributes = {}, ...children) {
 export const add = (parent, ...what) => parent.appendChild(make(...what));
 
 /** A text whose ``parts`` are set as code. */
-export function worded(text) {
-  return text.split("``").map((part, place) => (place % 2 ? make("code", {}, part) : part));
-}
+export const worded = (text) => text.split("``").map((part, place) => (place % 2 ? make("code", {}, part) : part));
 
 /** A button that copies a text, with the text beside it. */
 export function command(text) {
@@ -65,6 +63,15 @@ export function keepingFocus(box, draw) {
   if (place < 0 || box.contains(document.activeElement)) return;
   const now = stops();
   now[Math.min(place, now.length - 1)]?.focus({ preventScroll: true });
+}
+
+/** What calls a function before the browser shows its next frame, once, however often it is asked to. */
+export function perFrame(draw) {
+  let asked = null;
+  return () => (asked ??= requestAnimationFrame(() => {
+    asked = null;
+    draw();
+  }));
 }
 
 /** A number as a reader takes it in: four significant digits. */

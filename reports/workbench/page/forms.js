@@ -1,6 +1,6 @@
 /** The entries of the case as forms, made from the JSON Schema: one table, and one of its entries, at a time. */
 
-import { free, keepingFocus, make, unused, worded } from "./elements.js";
+import { free, keepingFocus, make, perFrame, unused, worded } from "./elements.js";
 import { beginning, isList, isMap, isPlain, isTable, itemOf, optionOf, options, schema, titleOf } from "./schema.js";
 import { edit } from "./server.js";
 import { same } from "./store.js";
@@ -28,6 +28,7 @@ class Forms {
     this.form = make("form", { onsubmit: (event) => event.preventDefault() });
     this.said = make("p", { class: "wrong", role: "status" });
     holder.append(make("p", {}, make("label", { for: this.choice.id }, "Show "), this.choice), this.names, this.said, this.form);
+    this.later = perFrame(() => keepingFocus(this.holder, () => this.draw()));
     this.form.addEventListener("focusin", ({ target }) => this.entered(target));
     store.on("document", (now) => {
       this.tables = now?.tables ?? this.tables;
@@ -38,14 +39,6 @@ class Forms {
     this.tables = store.state.document?.tables ?? null;
     this.follow(store.state.selected); // it may have been chosen before the schema was there
     this.later();
-  }
-
-  /** Draw once, however often this is called until the next frame. */
-  later() {
-    this.asked ??= requestAnimationFrame(() => {
-      this.asked = null;
-      keepingFocus(this.holder, () => this.draw());
-    });
   }
 
   show(table, name) {
@@ -158,7 +151,8 @@ class Forms {
     const kind = kinds.length > 1 && make("select", { "aria-label": `Kind of the new ${WORDS[this.table]}` }, ...kinds.map((option, place) => make("option", { value: place }, titleOf(option))));
     const add = () => {
       const option = kinds[Number(kind?.value ?? 0)];
-      const name = this.free(isTable(option) && kind ? titleOf(option) : WORDS[this.table]);
+      const wish = (isTable(option) && kind ? titleOf(option) : WORDS[this.table]).replace(/[^\w+ -]/g, " ").replace(/-\d+$/, "");
+      const name = free(wish, Object.keys(this.tables[this.table] ?? {}));
       this.send([{ op: "set", path: [this.table, name], value: this.first(option) }], () => this.show(this.table, name));
     };
     return [make("span", { class: "adder" }, kind || null, make("button", { type: "button", onclick: add }, `Add a ${WORDS[this.table]}`))];
@@ -192,11 +186,6 @@ class Forms {
     const made = {};
     for (const [name, inner] of Object.entries(value)) made[name] = this.fitted(option.properties?.[name] ?? option.additionalProperties ?? {}, inner, [...path, name], made);
     return made;
-  }
-
-  free(wish) {
-    const taken = Object.keys(this.tables[this.table] ?? {});
-    return free(wish.replace(/[^\w+ -]/g, " ").replace(/-\d+$/, ""), taken);
   }
 
   shown() {

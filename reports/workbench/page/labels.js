@@ -1,6 +1,6 @@
 /** Texts that find room beside what they name. */
 
-import { angle, minus, plus, size } from "./view.js";
+import { minus, plus, size } from "./view.js";
 
 const HIGH = 15;
 const pen = document.createElement("canvas").getContext("2d");
@@ -55,6 +55,3 @@ export function place(labels, taken, frame) {
   }
   return found;
 }
-
-/** Direction on the screen from one place to another, for labels that stand ahead of a tip. */
-export const ahead = (from, to) => angle(minus(to, from));

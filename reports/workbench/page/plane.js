@@ -3,8 +3,8 @@
 import { same, store } from "./store.js";
 import { shownVerdict } from "./verdict.js";
 import { beyond, freePoints, poseHandle, scene } from "./scene.js";
-import { add, Group, make } from "./elements.js";
-import { ahead, along, place } from "./labels.js";
+import { add, Group, make, perFrame } from "./elements.js";
+import { along, place } from "./labels.js";
 import { angle, fit, gridStep, leastOf, minus, number, plus, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
@@ -13,7 +13,7 @@ const ARROW = 0.2;
 export const USES = [
   [0.5, "up to 50 %", "#c3d8cc"], [0.8, "80 %", "#e6d993"], [1, "100 %", "#ebaf63"], [Infinity, "may be more", "#d9b8d0"], [NaN, "is more", "#e08a80"],
 ];
-let svg, groups, perNewton = 0, waiting = false, hovered = null;
+let svg, groups, perNewton = 0, hovered = null;
 
 export function mount(element) {
   const hatch = make("pattern", { id: "hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
@@ -27,7 +27,7 @@ export function mount(element) {
   svg.addEventListener("pointerover", (event) => hover(event.target.handle ?? null));
   svg.addEventListener("pointerleave", () => hover(null));
   new ResizeObserver(() => (store.state.fitted ? later() : fitAll())).observe(element);
-  store.on("drawn", (drawn) => drawn && (store.state.fitted || fitAll()));
+  store.on("drawn", (drawn) => drawn && fitNew());
   return svg;
 }
 
@@ -37,15 +37,7 @@ function hover(handle) {
   later();
 }
 
-/** Draw before the browser shows its next frame, once. */
-function later() {
-  if (waiting) return;
-  waiting = true;
-  requestAnimationFrame(() => {
-    waiting = false;
-    drawAll();
-  });
-}
+const later = perFrame(drawAll);
 
 /** Show all of the linkage, with the tips of its arrows. */
 export function fitAll() {
@@ -61,6 +53,18 @@ export function fitAll() {
   const room = now.drawn.problem ? [0.5, -0.3].map((share) => plus(places[0], [0, share * now.drawn.size])) : []; // for what is drawn next
   store.put("fitted", true);
   fit([...places, ...room, ...tips, ...rings, ...paths], width, height);
+}
+
+let outlined = new Map(); // link that was drawn before -> whether it had an outline
+
+/** Show all at first, and where a link that is new, or has an outline now, lies beyond the sheet. */
+function fitNew() {
+  const { links } = scene();
+  const { width, height } = svg.getBoundingClientRect();
+  const fresh = links.filter((link) => !outlined.has(link.name) || (link.rings && !outlined.get(link.name)));
+  outlined = new Map(links.map((link) => [link.name, Boolean(link.rings || outlined.get(link.name))]));
+  const outside = (place) => toScreen(place).some((one, k) => one < 0 || one > [width, height][k]);
+  if (!store.state.fitted || fresh.some((link) => [...link.pieces.flat(), ...(link.rings?.[0] ?? [])].some(outside))) fitAll();
 }
 
 /** mm of arrow for a newton; it stays as long as the largest arrow is neither tiny nor huge, so that tips stay where they are. */
@@ -86,8 +90,10 @@ export function useOf(link) {
   if (use === null || link.ground || store.state.instant !== null || store.state.drawn.problem) return { text: "", colour: "#9fb1c1", over: false };
   const [least, most] = use.map((share) => number(100 * share, 2));
   const sign = verdict === "fail" ? " ✗" : verdict === "undecided" ? " ?" : "";
+  const over = use[0] > 1 && verdict !== "undecided";
+  if (use[1] === null) return { text: `${least} % (no band)${sign}`, colour: USES.at(over ? -1 : -2)[2], over };
   const text = use[1] <= 1 || least === most ? most : use[0] > 0 ? `${least} to ${most}` : `up to ${most}`;
-  return { text: `${text} %${sign}`, colour: (use[0] > 1 ? USES.at(-1) : USES.find(([end]) => use[1] <= end))[2], over: use[0] > 1 };
+  return { text: `${text} %${sign}`, colour: (over ? USES.at(-1) : USES.find(([end]) => use[1] <= end))[2], over };
 }
 
 function drawAll() {
@@ -274,7 +280,7 @@ function forces({ now, texts, taken }) {
     if (size(minus(to, from)) < 4 && !one.needed) continue;
     arrow(groups.forces, one.key, from, to, `${one.kind} ${one.path ? state({ kind: "load", path: one.path }) : ""}`);
     taken.push(...along(from, to));
-    texts.push({ ...one, anchors: [to], way: ahead(from, to), gap: 6 });
+    texts.push({ ...one, anchors: [to], way: angle(minus(to, from)), gap: 6 });
   }
 }
 
@@ -297,7 +303,7 @@ function moments({ now, texts, taken }) {
   if (joint && drive.force && joint.way) {
     const [from, to] = [toScreen(joint.at), toScreen(plus(joint.at, joint.way, Math.sign(drive.force) * 0.12 * now.drawn.size))];
     arrow(groups.forces, "drive", from, to, "torque");
-    texts.push({ key: "drive", text: `drive ${number(Math.abs(drive.force))} N`, anchors: [to], way: ahead(from, to), kind: "torque", rank: 1, needed: true });
+    texts.push({ key: "drive", text: `drive ${number(Math.abs(drive.force))} N`, anchors: [to], way: angle(minus(to, from)), kind: "torque", rank: 1, needed: true });
   }
   for (const load of now.loads) if (load.moment) found.push({ name: `moment ${load.path.join(".")}`, at: load.at, moment: load.moment, about: direction(load.link), kind: "load", radius: 26 });
   for (const one of found) {

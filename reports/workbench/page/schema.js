@@ -5,10 +5,7 @@ import { send } from "./server.js";
 let root = null;
 
 /** Fetch the schema, once. */
-export async function schema() {
-  root ??= await send("schema");
-  return root;
-}
+export const schema = async () => (root ??= await send("schema"));
 
 /** What a node may be: references followed, unions taken apart, without null. */
 export function options(node) {

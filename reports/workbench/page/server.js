@@ -60,9 +60,7 @@ export const edit = (operations, gesture = "") => change("edit", { operations },
 export const newGesture = () => crypto.randomUUID();
 
 /** Show a sentence to the reader. */
-export function tell(sentence) {
-  store.put("notice", { sentence });
-}
+export const tell = (sentence) => store.put("notice", { sentence });
 
 /** Take what the server tells into the store, for as long as the page is open. */
 export function connect() {

@@ -2,11 +2,13 @@
 
 import { keepingFocus, make, number } from "./elements.js";
 import { send, tell } from "./server.js";
+import { stamp } from "./verdict.js";
 
 const PAUSE = 3000; // ms without a change until solids are solved by themselves
-const STATES = { waiting: "waits", solving: "is being solved ...", done: "done", kept: "kept from before" };
+const STATES = { waiting: "waits", solving: "is being solved ...", done: "solved", kept: "kept from before" };
 
 export function mount(holder, store) {
+  const verdict = make("p");
   const said = make("p", { role: "status", "aria-live": "polite" });
   const start = make("button", { type: "button", onclick: () => ask("start") }, "Check with solids");
   const stop = make("button", { type: "button", onclick: () => ask("stop"), disabled: true }, "Stop");
@@ -19,6 +21,7 @@ export function mount(holder, store) {
   let begun = -1; // the revision that solids were last started of by themselves
 
   holder.append(
+    verdict,
     make("p", { class: "row" }, start, stop),
     make("p", { class: "row" }, auto, make("label", { for: auto.id }, "by itself, three seconds after the last change")),
     said, list, figures,
@@ -38,6 +41,8 @@ export function mount(holder, store) {
 
   function draw() {
     const now = store.state.solids;
+    const found = store.state.verdict.solids;
+    verdict.replaceChildren(...(found ? [stamp(found, found.revision < store.state.document?.revision), ` ${found.sentences[0]}`] : []));
     const running = now?.state === "running";
     start.disabled = running || Boolean(store.state.document?.problem);
     stop.disabled = !running;
@@ -69,7 +74,7 @@ export function mount(holder, store) {
     }
   }
 
-  for (const key of ["solids", "document"]) store.on(key, () => keepingFocus(list, draw));
+  for (const key of ["solids", "document", "verdict"]) store.on(key, () => keepingFocus(list, draw));
   store.on("document", later);
   draw();
 }

@@ -38,6 +38,4 @@ export const store = {
 };
 
 /** Whether two selections are the same thing. */
-export function same(a, b) {
-  return JSON.stringify(a) === JSON.stringify(b);
-}
+export const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);

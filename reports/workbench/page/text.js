@@ -33,12 +33,6 @@ export function mount(holder, store) {
     numbers.replaceChildren(...Array.from({ length: count }, (_, k) => (k + 1 === bad ? make("b", {}, `${k + 1}\n`) : `${k + 1}\n`)));
   }
 
-  function scrollTo(line) {
-    const top = (line - 1) * lines();
-    if (top < area.scrollTop || top > area.scrollTop + area.clientHeight - 3 * lines()) area.scrollTop = Math.max(0, top - area.clientHeight / 3);
-    follow();
-  }
-
   /** Take a new text; caret and scroll stay with what they stood at. */
   function take(text) {
     const was = area.value;
@@ -66,7 +60,10 @@ export function mount(holder, store) {
   /** The panel was opened: what is wrong is seen. */
   function opened() {
     const line = store.state.document?.problem?.line;
-    if (line) scrollTo(line);
+    if (!line) return;
+    const top = (line - 1) * lines();
+    if (top < area.scrollTop || top > area.scrollTop + area.clientHeight - 3 * lines()) area.scrollTop = Math.max(0, top - area.clientHeight / 3);
+    follow();
   }
 
   function sendTyped() {

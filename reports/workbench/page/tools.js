@@ -42,9 +42,7 @@ export function mount(element) {
   store.put("tool", "select");
 }
 
-function group(element, label) {
-  return add(element, "div", { role: "group", "aria-label": label });
-}
+const group = (element, label) => add(element, "div", { role: "group", "aria-label": label });
 
 function button(parent, label, key, title, act) {
   const told = { type: "button", title: title || `${label}: ${key}`, "aria-keyshortcuts": key.replace("Ctrl", "Control"), onclick: act };

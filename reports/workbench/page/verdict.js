@@ -1,6 +1,6 @@
 /** The verdict: what decides it, what would change it, and how hand and solid differ. */
 
-import { command, keepingFocus, make, number } from "./elements.js";
+import { keepingFocus, make, number } from "./elements.js";
 import { edit, send, tell } from "./server.js";
 import { same } from "./store.js";
 
@@ -22,13 +22,16 @@ function band({ low, high, value }) {
   return known === most && known === value ? "" : `${number(known)} to ${number(most)}`;
 }
 
+/** The badge of a verdict, faint where it is of an earlier state of the case. */
+export const stamp = (found, late = false, ...more) => make("strong", { class: `stamp ${found.verdict} ${late ? "late" : ""}` }, found.verdict, ...more);
+
 export function mount(holder, store) {
   const brief = document.getElementById("brief"); // stands above the drawing, whichever panel is open
   brief.addEventListener("click", () => store.put("panel", "verdict"));
-  const stamp = make("p", { class: "stamp-line", role: "status", "aria-live": "polite" });
+  const line = make("p", { class: "stamp-line", role: "status", "aria-live": "polite" });
   const rest = make("div");
   let open = false;
-  holder.append(stamp, rest);
+  holder.append(line, rest);
 
   /** What is known; a problem of the case stands above the drawing, and is no verdict. */
   function known() {
@@ -42,8 +45,8 @@ export function mount(holder, store) {
     const now = store.state.document;
     const late = found && now && (found.revision < now.revision || now.problem);
     holder.classList.toggle("old", Boolean(late));
-    stamp.replaceChildren(...badge(found, now));
-    brief.textContent = found?.verdict ?? "no verdict";
+    line.replaceChildren(...badge(found, now));
+    brief.replaceChildren(found?.verdict ?? "no verdict", make("small", {}, found ? (found.stage === "solids" ? " with solids" : " by hand") : ""));
     brief.className = `stamp ${found?.verdict ?? ""} ${late ? "late" : ""}`;
     brief.hidden = !now?.path;
   }
@@ -57,7 +60,7 @@ export function mount(holder, store) {
     const subjectOf = (name) => (names("links").includes(name) ? { kind: "link", name } : names("joints").includes(name) ? { kind: "joint", name } : null);
     rest.replaceChildren(...[
       ...(found.sentences ?? []).map((sentence) => make("p", {}, sentence)),
-      found.verdict === "undecided" && found.stage === "whole" && found.checks.length ? make("p", {}, make("button", { type: "button", onclick: solve }, "Check with solids")) : null,
+      found.stage !== "solids" && found.checks.length ? make("p", {}, make("button", { type: "button", onclick: solve, disabled: store.state.solids?.state === "running" }, "Check with solids")) : null,
       changes(found),
       sideBySide(),
       table(found, subjectOf),
@@ -74,16 +77,16 @@ export function mount(holder, store) {
     if (!found) return [make("span", { class: "soft" }, now?.problem ? "No verdict yet: the case is not whole." : "The verdict is being computed ...")];
     const computing = !now?.problem && (found.revision < (now?.revision ?? 0) || found.stage === "linear");
     return [
-      make("strong", { class: `stamp ${found.verdict}` }, found.verdict),
+      stamp(found),
       make("span", { class: "soft" }, [STAGES[found.stage], time((found.ms ?? 0) / 1000), computing ? "being computed ..." : ""].filter(Boolean).join("; ")),
     ];
   }
 
   function changes(found) {
-    if (!found.changes?.length) return found.changes === null ? make("p", { class: "soft" }, "What would change it is being tried ...") : null;
-    const one = ({ text, command: typed, operations }) => make("li", {}, text, " ",
-      operations?.length ? make("button", { type: "button", onclick: () => edit(operations).catch(() => {}) }, "Apply") : typed ? command(typed) : null);
-    return [make("h2", {}, "What would change it"), make("ul", { class: "changes" }, ...found.changes.map(one))];
+    if (found.changes?.length === 0) return null;
+    const sought = found.verdict === "pass" ? "It is being tried ..." : "A section that passes is sought ...";
+    const one = ({ text, operations }) => make("li", {}, text, " ", operations?.length ? make("button", { type: "button", onclick: () => edit(operations).catch(() => {}) }, "Apply") : null);
+    return [make("h2", {}, "What would change it"), found.changes ? make("ul", { class: "changes" }, ...found.changes.map(one)) : make("p", { class: "soft" }, sought)];
   }
 
   function table(found, subjectOf) {
@@ -100,9 +103,16 @@ export function mount(holder, store) {
         make("td", { class: "num" }, `${number(check.limit)}${check.unit && check.unit !== "1" ? ` ${check.unit}` : ""}`),
       );
     };
-    const why = (check) => (check.verdict === "pass" || !check.text ? null : make("tr", { class: "why" }, make("td", { colspan: 4 }, check.text)));
     const all = found.checks ?? []; // the server has them with the worst first
     if (!all.length) return null;
+    const alike = Map.groupBy(all, (check) => check.text);
+    /** A reason stands once, below the last of the checks that have it. */
+    const why = (check) => {
+      const same = alike.get(check.text);
+      if (check.verdict === "pass" || !check.text || check !== same.at(-1)) return null;
+      const names = same.length > 1 ? `${[...new Set(same.map((one) => one.subject))].join(", ")}: ` : "";
+      return make("tr", { class: "why" }, make("td", { colspan: 4 }, names + check.text));
+    };
     const head = make("tr", {}, ...["verdict", "of", "value, band", "limit"].map((title, place) => make("th", { scope: "col", class: place > 1 ? "num" : null }, title)));
     return [make("h2", {}, "Checks, the worst first"), make("div", { class: "wide" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...all.flatMap((check) => [row(check), why(check)]))))];
   }
@@ -116,9 +126,7 @@ export function mount(holder, store) {
     const by = new Map(hand.checks.map((check) => [keyOf(check), check]));
     const pairs = solids.checks.map((solid) => [by.get(keyOf(solid)), solid]).filter(([one, other]) => one && other.value > 0 && one.value > 0);
     if (!pairs.length) return null;
-    const links = new Map();
-    for (const pair of pairs) if (!links.has(pair[1].subject)) links.set(pair[1].subject, pair);
-    const figures = [...links].map(([name, [one, other]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other)));
+    const figures = [...Map.groupBy(pairs, ([, solid]) => solid.subject)].map(([name, [[one, other]]]) => make("figure", {}, make("figcaption", {}, name, make("small", {}, ` ${other.quantity ?? other.check}${other.unit && other.unit !== "1" ? ` [${other.unit}]` : ""}`)), bands(name, one, other)));
     return [
       make("h2", {}, "By hand and as a solid"),
       make("p", { class: "soft" }, `All links took ${time(hand.ms / 1000)} by hand and ${time(solids.ms / 1000)} as solids. A bar is the band of a value; the upright line is the limit.`,

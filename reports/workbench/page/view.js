@@ -12,9 +12,7 @@ export function round125(value) {
 export const leastOf = (list) => list.reduce((best, one, k) => (one < list[best] ? k : best), 0);
 
 /** The nearest multiple of a step, without the dust of floating point. */
-export function rounded(value, step) {
-  return Number((Math.round(value / step) * step).toPrecision(12)) || 0;
-}
+export const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12)) || 0;
 
 /** A number for people: three digits that count, none before the point lost. */
 export function number(value, digits = 3) {

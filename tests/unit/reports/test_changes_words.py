@@ -31,6 +31,8 @@ def test_factors_are_rounded_to_the_safe_side(result, check):
     failed = replace(check, verdict=Verdict.FAIL)
     text = told(result, VerdictChange(check=failed, load=0.82759, material=STRONGER))
     assert "It passes with 0.827 times all loads." in text
+    faster = told(result, VerdictChange(check=failed, load=0.82759, faster=True))
+    assert "It passes with 0.827 times all loads, maybe with more." in faster
     assert "A yield strength of 45.3 MPa in place of 41.4 MPa (Rigid PVC" in text
     assert text.endswith("would do.")
     passed = replace(check, verdict=Verdict.PASS)

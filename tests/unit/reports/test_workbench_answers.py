@@ -146,14 +146,25 @@ def known(value):
     return value if math.isfinite(value) else None
 
 
+def here(text):
+    """Return a sentence as the page has it: the button's name stands for the option."""
+    return text.replace("--fidelity solid", "'Check with solids'")
+
+
 @pytest.mark.parametrize("name", ["four-bar", "knee"])
 def test_the_whole_verdict_is_that_of_alula_check(name):
     result, early = solved.by_hand(name), []
     answer = whole_answer(read_text(name)[0], name, early.append)
     told = with_findings(result)
     assert answer["verdict"] == result.verdict
-    here = [line.replace("--fidelity solid", "'Check with solids'") for line in first_lines(told)]
-    assert answer["sentences"] == here, "the button's name stands for the option"
+    first, *rest = map(here, first_lines(told))
+    *uncalibrated, shown = answer["sentences"][: -len(rest)]
+    assert answer["sentences"][-len(rest) :] == rest
+    assert all(one.startswith("Hand calculation is not calibrated") for one in uncalibrated)
+    why = next(one["text"] for one in answer["checks"])
+    assert first.startswith(shown)
+    assert (first == shown) == (answer["verdict"] != "undecided")
+    assert first == shown or first.lower().endswith(why.lower()), "its reason stands beside the check that decides"
     assert "--fidelity" not in "".join([*answer["sentences"], *(one["text"] for one in answer["checks"])])
     checks = {(one["check"], one["subject"], one["load_case"], one["quantity"]): one for one in answer["checks"]}
     assert len(checks) == sum(len(one.checks) for one in result.load_cases.values())
@@ -167,13 +178,19 @@ def test_the_whole_verdict_is_that_of_alula_check(name):
     for link, one in answer["links"].items():
         kinds = ("safety", "plastic-collapse")
         own = [c for c in checks.values() if c["subject"] == link and c["quantity"].startswith(kinds)]
+        if any("not calibrated" in c["text"] for c in own):
+            assert one["use"][1] is None, "a number without band tells no upper end"
+            continue
         factors = [c for c in own if c["low"]]
         assert one["use"][1] == pytest.approx(max(c["limit"] / c["low"] for c in factors))
         assert one["use"][0] == pytest.approx(max(c["limit"] / c["high"] for c in factors if c["high"]))
     [soon] = early
     assert (soon["changes"], soon["checks"], soon["links"]) == (None, answer["checks"], answer["links"])
-    reported = [one["command"] for one in answer["changes"] if not one["operations"]]
-    assert reported == [one["command"] for one in change_records(told)]
+    records = {here(f"{one['title']}: {' '.join(one['sentences'])}"): one["command"] for one in change_records(told)}
+    for text, command in records.items():
+        reasons = [check["text"] for check in answer["checks"] if text.endswith(check["text"])]
+        listed = any(one["text"][1:] == text[1:] and one["command"] == command for one in answer["changes"])
+        assert listed or reasons, "what a check says of itself is not said twice"
     json.dumps(answer, allow_nan=False)
 
 
@@ -296,3 +313,37 @@ def test_all_that_hand_calculation_is_not_calibrated_for_is_told_at_once_and_men
     assert offer["text"].startswith("Hand calculation is calibrated for links of part bar with: ")
     mended = whole_answer(pressed(text, offer), "drawn")
     assert not any("not calibrated" in one["text"] for one in mended["checks"])
+
+
+THIN = DRAWN.replace('thickness = "5 mm"', 'thickness = "2 mm"').replace("-300 N", "-20 N")
+"""One whose bars are too thin for hand calculation: no number of their strength has a band."""
+
+
+def test_what_hand_calculation_is_not_calibrated_for_is_said_first_and_its_use_of_strength_has_no_upper_end():
+    assert THIN.count("2 mm") > DRAWN.count("2 mm")
+    answer = whole_answer(THIN, "drawn")
+    assert answer["verdict"] == "undecided"
+    first = (
+        "Hand calculation is not calibrated for links of part bar: it would be with thickness of bar 2.4 mm (now 2 mm)."
+    )
+    assert answer["sentences"][0] == first
+    assert [one["use"][1] for one in answer["links"].values()] == [None, None, None]
+    reasons = [one["text"] for one in answer["checks"] if one["verdict"] == "undecided"]
+    told = [*answer["sentences"], *(one["text"] for one in answer["changes"])]
+    assert not any(reason.lower() in one.lower() for reason in reasons for one in told), "they stand beside the checks"
+    mended = whole_answer(pressed(THIN, answer["changes"][0]), "drawn")
+    assert "not calibrated" not in mended["sentences"][0]
+    assert all(low <= high for low, high in (one["use"] for one in mended["links"].values()))
+
+
+def test_where_no_section_passes_that_is_said():
+    answer = whole_answer(DRAWN.replace("-300 N", "-3000 N"), "drawn")
+    assert answer["verdict"] == "fail"
+    assert answer["changes"][0] == {
+        "text": "No section that was tried passes by hand.",
+        "command": None,
+        "operations": None,
+    }
+    assert not any(one["operations"] for one in answer["changes"])
+    passed = whole_answer(DRAWN.replace("-300 N", "-3 N"), "drawn")
+    assert (passed["verdict"], [one for one in passed["changes"] if "No section" in one["text"]]) == ("pass", [])

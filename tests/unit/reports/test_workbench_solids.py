@@ -92,6 +92,25 @@ def tell(event, **data):
 tell("links", names=["one", "two"])
 tell("link", name="one", state="solving")
 """
+WHOLE = """
+tell("link", name="one", state="done")
+tell("link", name="two", state="kept")
+time.sleep(60)
+"""
+
+
+def test_what_is_done_after_all_links_is_said(monkeypatch):
+    child(monkeypatch, WHOLE)
+
+    async def told(page, answering):
+        answering.start(1, TEXT, "arm.toml")
+        now = await page.until(lambda data: {"done", "kept"} == {one["state"] for one in data["links"].values()})
+        said = "Stresses of 2 of 2 links are solved. The linkage as a whole is being judged ..."
+        assert (now["state"], now["sentence"]) == ("running", said)
+
+    story(told)
+
+
 ENDS = {
     "failed": 'tell("failed", sentence="pose: it cannot be assembled")',
     "crashed": 'sys.exit("Fatal: out of luck")',
@@ -153,7 +172,7 @@ def test_it_is_stopped_at_once_with_all_that_it_started(monkeypatch, by):
         answering.start(1, TEXT, "arm.toml")
         at_work = await page.until(lambda data: data["sentence"][-1].isdigit())
         processes = [int(number) for number in at_work["sentence"].split()[-2:]]
-        assert at_work["sentence"].startswith("1 of 2 links are done. ")
+        assert at_work["sentence"].startswith("Stresses of 1 of 2 links are solved. ")
         assert all(map(alive, processes))
         page.told.clear()
         if by == "close":
