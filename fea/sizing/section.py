@@ -23,9 +23,9 @@ Sizes = dict[str, str]
 
 _FACTORS = (1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0)
 """On a size of a section: steps of a tenth and more, since what is told is a section that does, not the least."""
-_TRIES = 4
-_MORE = 1.3
-"""Factor on the section modulus of the next try where the last one tells no margin."""
+_TRIES = 6
+_MORE = 1.1
+"""Factor on the section modulus of the next try where no margin tells one: the least step between sections."""
 _SECTION = {"bar": ("width", "thickness"), "tube": ("outer_diameter", "inner_diameter")}
 """Entries of a part; the first one counts twice for bending in the plane. A tube keeps the ratio of both."""
 _TO_WIDTH = {

@@ -5,7 +5,7 @@ import pytest
 from alula.fea.beam.calibration import uncalibrated
 from alula.fea.check.run import check_case
 from alula.fea.sizing.section import following, larger, stated
-from alula.loads.case.case_file import read_case
+from alula.loads.case.case_file import read_case, read_text
 from alula.reports.sentences.verdicts import checks_of
 
 
@@ -51,4 +51,17 @@ def test_a_larger_section_is_one_with_which_the_case_passes():
     assert result.verdict != "pass"
     found = larger(case, "four-bar", checks_of(result))
     assert {"parts.bar.width", "joints.O2.pin_diameter", "links.rocker.end_patch"} <= found.keys()
+    assert check_case(case.with_values(found), fidelity="beam", threads=1).verdict == "pass"
+
+
+def test_sections_are_tried_one_after_the_other_where_no_margin_tells_what_is_lacking(tmp_path):
+    """A collapse that is open has no margin: the section is the first that passes, and no much heavier one."""
+    text = read_text("four-bar")[0].replace("pla-fdm-xy", "aluminium-6061-t6").replace("build_direction", "# ")
+    file = tmp_path / "case.toml"
+    file.write_text(f'{text}\n[checks.collapse]\ntype = "plastic-collapse"\nminimum = 2.4\n', encoding="utf-8")
+    values = {"parts.bar.thickness": "3.2 mm", "links.rocker.end_patch": "5 mm", "checks.stiffness.maximum": "2 mm"}
+    case = read_case(file).with_values(values | {"load_cases.lift.forces.0.force.1": "-160 N"})
+    found = larger(case, str(file), checks_of(check_case(case, name=str(file), fidelity="beam", threads=1)))
+    assert found["parts.bar.width"] == "9.6 mm"
+    assert found["parts.bar.thickness"] == "8 mm"  # 9.6 mm with steps of 1.3
     assert check_case(case.with_values(found), fidelity="beam", threads=1).verdict == "pass"
