@@ -256,24 +256,22 @@ def _eye(body: Body, pin: Pin, states: Sequence[LinkLoads], forces: Piecewise, p
                 each=np.max(found, axis=0))  # fmt: skip
 
 
-def _alone(section: Section, forces: Floats, poisson: float) -> tuple[Floats, Floats]:
-    """Largest shear stress (n,) of the torque and of the shear forces, each by itself, of internal forces (n, 6)."""
-    twist, shear = np.zeros_like(forces), np.zeros_like(forces)
-    twist[:, 3], shear[:, 1:3] = forces[:, 3], forces[:, 1:3]
-    found = equivalent_stress(section, np.concatenate([twist, shear]), poisson) / math.sqrt(3.0)
-    return found[: len(forces)], found[len(forces) :]
+def _with_unit_torque(section: Section, forces: Floats, poisson: float) -> tuple[float, Floats]:
+    """Largest shear stress of a unit torque, and equivalent stress (n,) of internal forces (n, 6)."""
+    found = equivalent_stress(section, np.vstack([np.eye(6)[3], forces]), poisson)
+    return float(found[0]) / math.sqrt(3.0), found[1:]
 
 
 def _junction(body: Body, pin: Pin, forces: Floats, poisson: float) -> Floats:
     """Stress (n,) at the fillet between the section and an eye under the section's forces (n, 6)."""
     section, width = body.part.section, body.part.section.width
-    twisted, sheared = _alone(section, forces, poisson)
+    unit, sheared = _with_unit_torque(section, forces * [0.0, 1.0, 1.0, 0.0, 0.0, 0.0], poisson)
     tension, bending, torsion = shoulder_factors(
         width, (body.ring(pin).diameter - width) / 2.0, body.part.fillet_radius
     )
     bent = bending_stress(section, forces[:, 4], forces[:, 5])
     direct = tension * np.abs(forces[:, 0]) / section.area + bending * bent
-    return np.hypot(direct, math.sqrt(3.0) * (torsion * twisted + sheared))
+    return np.hypot(direct, math.sqrt(3.0) * torsion * unit * np.abs(forces[:, 3]) + sheared)
 
 
 def _bore(body: Body, pin: Pin, loads: Sequence[PinLoad], torque: Floats, before: Floats, after: Floats) -> Floats:
@@ -327,8 +325,8 @@ def _hole(body: Body, row: HoleRow, number: int, x: float, forces: Piecewise, po
     """
     part, section = body.part, body.part.section
     here = forces_at(forces, x)
-    n, v_y, v_z, _, m_y, m_z = here.T
-    twisted, _ = _alone(section, here, poisson)
+    n, v_y, v_z, t, m_y, m_z = here.T
+    unit, plain = _with_unit_torque(section, here, poisson)
     opened, across = (m_z, m_y) if row.along == "y" else (m_y, m_z)
     shear = v_z if row.along == "y" else v_y
     if section.round:
@@ -347,8 +345,7 @@ def _hole(body: Body, row: HoleRow, number: int, x: float, forces: Piecewise, po
         at_rim, aside = half / second, other / other_second
         transverse = rim_shear(section, poisson)[1 if row.along == "y" else 0] * np.abs(shear)
     axial = np.abs(n) / section.area
-    rim = tension * axial + bending * np.abs(opened) * at_rim + 4.0 * (twisted + transverse)
-    plain = equivalent_stress(section, here, poisson)
+    rim = tension * axial + bending * np.abs(opened) * at_rim + 4.0 * (unit * np.abs(t) + transverse)
     each = np.max([rim, plain, axial + np.abs(across) * aside + rim / 3.0], axis=0)
     return CriticalLocation(kind="hole", name=reason("hole_of_row", x=x, row=number + 1), x=x, low=x - row.diameter,
                 high=x + row.diameter, each=each)  # fmt: skip

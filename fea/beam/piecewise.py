@@ -250,16 +250,16 @@ class Piecewise:
             every = measure(rows.reshape(-1, rows.shape[-1])).reshape(rows.shape[:2])
             return np.split(every, ends[:-1], axis=1), np.ones((len(rows), len(ends)), dtype=bool)
         caps = self._caps(bound, rows)
-        most = [np.minimum(_beside(one, 1), _beside(one, 0)) for one in caps]
+        most = [np.hstack([one[:, :1], np.minimum(one[:, :-1], one[:, 1:]), one[:, -1:]]) for one in caps]
         tops = np.stack([one.max(axis=1) for one in caps], axis=1)
         best = np.stack([one.argmax(axis=1) for one in most], axis=1) + np.append(0, ends[:-1])
         # First where the cap is highest, then in those intervals alone whose caps reach what was found there.
         least, counts = np.full(tops.shape, -np.inf), np.zeros(tops.shape, dtype=bool)
-        counts[np.arange(len(rows)), tops.argmax(axis=1)] = True
-        for _ in range(2):
-            state, interval = np.nonzero(counts)
+        state, interval = np.arange(len(rows)), tops.argmax(axis=1)
+        while len(state):
             least[state, interval] = measure(rows[state, best[state, interval]]) * (1.0 - 2.0 * TIE)
             counts = np.asarray(tops >= least.max(axis=1, keepdims=True))
+            state, interval = np.nonzero(counts & np.isneginf(least))
         wanted = [
             one >= np.where(own, low, np.inf)[:, None] for one, own, low in zip(most, counts.T, least.T, strict=True)
         ]
@@ -281,11 +281,6 @@ class Piecewise:
         together = np.concatenate(sizes, axis=1)
         caps = bound(together.reshape(-1, together.shape[-1])).reshape(together.shape[:2])
         return np.split(caps, ends - np.arange(1, len(grids)), axis=1)
-
-
-def _beside(caps: Floats, before: int) -> Floats:
-    """Caps (n, s) of what lies before or after each sample, from those between samples (n, s - 1)."""
-    return np.pad(caps, ((0, 0), (before, 1 - before)), constant_values=np.inf)
 
 
 def _along(c: Floats, s: Floats) -> Floats:

@@ -121,8 +121,10 @@ def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) ->
     """
     fields = _fields(section, poisson)
     _, rows, columns, _ = fields.shape
-    normal, along_y, along_z = (fields.reshape(-1, 6) @ forces.T).reshape(3, rows * columns, -1)
-    square = normal**2 + 3.0 * (along_y**2 + along_z**2)
+    squares = fields.reshape(-1, 6) @ forces.T
+    squares *= squares  # in place: a new array of this size takes longer than its numbers
+    normal, along_y, along_z = squares.reshape(3, rows * columns, -1)
+    square = normal + 3.0 * (along_y + along_z)
     best, each = np.argmax(square, axis=0), np.arange(square.shape[1])
     i, j = np.unravel_index(best, (rows, columns))
     square = square.reshape(rows, columns, -1)

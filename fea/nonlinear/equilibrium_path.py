@@ -287,9 +287,10 @@ class EquilibriumPath:
             ahead = self._strains(state, share * change)
             state = self._moved(state, share * (change + further))
             try:
-                residual, tangent = self.balance(state, factor)
+                residual, tangent = self._ahead(state, factor, ahead)
                 size = self._measure(residual)
                 if size <= max(_TOLERANCE * factor, self._rounding(state)):
+                    _, tangent = self.balance(state, factor)
                     tangents = (tangents + self._solve(tangent, self.balance(state, self.reached)[0])) / 2.0
                     moved = state.displacements - self.state.displacements
                     missed = float(np.linalg.norm(moved - self._displacements(tangents)))
@@ -298,7 +299,7 @@ class EquilibriumPath:
                 best, idle = (size, 0) if size < best / 2.0 else (best, idle + 1)
                 if idle == _IDLE:
                     return None
-                change, further = -self._solve(self._ahead(state, factor, ahead), residual), np.zeros(self.size)
+                change, further = -self._solve(tangent, residual), np.zeros(self.size)
             except CannotRunError:
                 return None
         return None
@@ -311,12 +312,11 @@ class EquilibriumPath:
         nine = np.concatenate([moved[:, 1] - moved[:, 0], spins[:, 0], spins[:, 1]], axis=1)
         return np.asarray(natural.value + (natural.gradient @ nine[:, :, None])[:, :, 0])
 
-    def _ahead(self, state: State, factor: float, strains: Floats) -> Floats:
-        """Derivative of what is left over, with the forces of other natural deformations (m, 6) in the elements."""
+    def _ahead(self, state: State, factor: float, strains: Floats) -> tuple[Floats, Floats]:
+        """As ``balance``, but the derivative has the forces of other natural deformations (m, 6) in the elements."""
         natural, _ = self._natural(state)
-        answer, more = self.respond(state, factor), self.elements.pressed(natural, strains - natural.value)
-        both = ElementResponse(forces=answer.forces + more.forces, tangent=answer.tangent + more.tangent)
-        return self.assemble(both, state, factor)[1]
+        pressed = self.elements.pressed(natural, strains - natural.value)
+        return self.assemble(self.respond(state, factor), state, factor, pressed)
 
     def balance(self, state: State, factor: float) -> tuple[Floats, Floats]:
         """Return the out-of-balance forces and gaps of the guides, with their derivative.
@@ -368,7 +368,9 @@ class EquilibriumPath:
             guide_forces=state.guide_forces + change[self.chain.count :],
         )
 
-    def assemble(self, answer: ElementResponse, state: State, factor: float) -> tuple[Floats, Floats]:
+    def assemble(
+        self, answer: ElementResponse, state: State, factor: float, pressed: ElementResponse | None = None
+    ) -> tuple[Floats, Floats]:
         """Return the out-of-balance forces and gaps, with their derivative, from what the elements answer.
 
         Parameters
@@ -379,6 +381,8 @@ class EquilibriumPath:
             Of the frame.
         factor : float
             Share of the loads.
+        pressed : ElementResponse, optional
+            What the elements answer besides in the derivative alone.
 
         Returns
         -------
@@ -397,7 +401,9 @@ class EquilibriumPath:
             np.add.at(moments, places.nodes, forces.reshape(-1, 2, 6)[..., 3:])
             return T
 
-        add(self.places, answer.forces, answer.tangent)
+        add(self.places, answer.forces, answer.tangent if pressed is None else answer.tangent + pressed.tangent)
+        if pressed is not None:
+            np.add.at(moments, self.places.nodes, pressed.forces.reshape(-1, 2, 6)[..., 3:])
         if model.guides:
             gaps, units = zip(*(self._gap(guide, state) for guide in model.guides), strict=True)
             unit = np.concatenate([u.forces for u in units])

@@ -83,7 +83,7 @@ def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False,
         case=case,
         clearance=apart,
         mass=weighed(case, pose) if needs_masses(case) or asks(case, MassCheck) else None,
-        size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
+        size=extent(case, pose, apart) if measures else None,
         frequencies=asked_frequencies(case, solids=solids, threads=threads),
     )
 

@@ -232,6 +232,24 @@ class Pair:
         return np.abs(seen) + np.abs(u - w) * reach, np.abs(bent) + (np.abs(du - dw) + (u - w) ** 2) * reach
 
 
+def width_at(pair: Pair, place: Placement) -> float:
+    """Return the gap of two outlines at a single pose, without its place.
+
+    Parameters
+    ----------
+    pair, place
+        As of ``gap_at``.
+
+    Returns
+    -------
+    float
+        [mm]; below zero where they lie in each other.
+    """
+    turn, shift = pair.relative(place)
+    value = float(gaps(pair.cores, turn, shift)[0])
+    return value if value > 0.0 else -overlap(pair.cores, turn[0], shift[0])[0]
+
+
 def gap_at(pair: Pair, place: Placement) -> Gap:
     """Return the gap of two outlines at a single pose.
 
@@ -247,10 +265,7 @@ def gap_at(pair: Pair, place: Placement) -> Gap:
     Gap
         In a band of the chords' error.
     """
-    turn, shift = pair.relative(place)
-    value, error = float(gaps(pair.cores, turn, shift)[0]), error_of(pair.cores)
-    if value <= 0.0:
-        value = -overlap(pair.cores, turn[0], shift[0])[0]
+    value, error = width_at(pair, place), error_of(pair.cores)
     spot = _place(pair, place)
     return Gap(names=pair.names, value=value, low=value - error, high=value + error, at=None, place=spot)
 

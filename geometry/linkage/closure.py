@@ -13,7 +13,6 @@ All functions take angles of shape (..., links) and slides (..., slots), so that
 handled at once.
 """
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -72,21 +71,6 @@ class LoopClosure:
         """Column of the link that carries each slot."""
         return tuple(self._index[self.linkage.joints[n].links[0]] for n in self.slots)
 
-    @cached_property
-    def _tree(self) -> dict[str, str]:
-        """Spanning tree by breadth-first search from the ground: link -> joint that leads to it."""
-        tree: dict[str, str] = {}
-        reached, queue = {self.linkage.ground}, deque([self.linkage.ground])
-        while queue:
-            here = queue.popleft()
-            for name in self.linkage.joints_of(here):
-                other = next(link for link in self.linkage.joints[name].links if link != here)
-                if other not in reached:
-                    reached.add(other)
-                    tree[other] = name
-                    queue.append(other)
-        return tree
-
     def _local(self, link: str, point: str) -> complex:
         return complex(*self.linkage.links[link].points[point])
 
@@ -94,7 +78,7 @@ class LoopClosure:
     def _origins(self) -> dict[str, Complex]:
         """Row [C | D] of every link's origin."""
         rows: dict[str, Complex] = {self.linkage.ground: np.zeros(len(self._index) + len(self.slots), dtype=complex)}
-        for link, name in self._tree.items():
+        for link, name in self.linkage.tree.items():
             joint = self.linkage.joints[name]
             here = joint.links.index(link)
             parent = joint.links[1 - here]
@@ -124,7 +108,7 @@ class LoopClosure:
     @cached_property
     def loops(self) -> tuple[str, ...]:
         """Joint that closes each loop."""
-        return tuple(n for n in self.linkage.joints if n not in self._tree.values())
+        return tuple(n for n in self.linkage.joints if n not in self.linkage.tree.values())
 
     def loop_path(self, closing: str) -> tuple[str, ...]:
         """Names of the joints round the loop that a joint closes.
@@ -143,7 +127,7 @@ class LoopClosure:
         def to_ground(link: str) -> list[str]:
             path = []
             while link != self.linkage.ground:
-                joint = self._tree[link]
+                joint = self.linkage.tree[link]
                 path.append(joint)
                 link = next(x for x in self.linkage.joints[joint].links if x != link)
             return path

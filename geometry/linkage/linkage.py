@@ -1,6 +1,7 @@
 """The linkage: links with their points, joints between them, and its mobility."""
 
 import itertools
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -276,7 +277,30 @@ class Linkage:
         tuple of str
             Names of joints.
         """
-        return tuple(name for name, joint in self.joints.items() if link in joint.links)
+        return self._on_links.get(link, ())
+
+    @cached_property
+    def _on_links(self) -> Mapping[str, tuple[str, ...]]:
+        found: dict[str, tuple[str, ...]] = {}
+        for name, joint in self.joints.items():
+            for link in joint.links:
+                found[link] = (*found.get(link, ()), name)
+        return found
+
+    @cached_property
+    def tree(self) -> Mapping[str, str]:
+        """Spanning tree by breadth-first search from the ground: link -> joint that leads to it."""
+        tree: dict[str, str] = {}
+        reached, queue = {self.ground}, deque([self.ground])
+        while queue:
+            here = queue.popleft()
+            for name in self.joints_of(here):
+                other = next(link for link in self.joints[name].links if link != here)
+                if other not in reached:
+                    reached.add(other)
+                    tree[other] = name
+                    queue.append(other)
+        return tree
 
     def point_of(self, joint: str, link: str) -> str:
         """Name of the point at which a joint sits on a link.

@@ -88,11 +88,15 @@ class Reach:
         -------
         float
         """
-        beyond = (np.conj(_DIRECTIONS) * nominal).real - self.support(_DIRECTIONS)
+        beyond = (np.conj(_DIRECTIONS) * nominal).real - self._supports
         return max(0.0, float(np.max(beyond)))
 
     def _extents(self, nominal: complex) -> Real:
-        return np.asarray((np.conj(_DIRECTIONS) * nominal).real + self.support(_DIRECTIONS))
+        return np.asarray((np.conj(_DIRECTIONS) * nominal).real + self._supports)
+
+    @cached_property
+    def _supports(self) -> Real:
+        return self.support(_DIRECTIONS)
 
     def shares(self, nominal: complex = 0.0) -> dict[str, Real]:
         """Return what every joint does where the vector is largest.
@@ -170,7 +174,7 @@ class LooseJoints:
     def rates(self) -> Mapping[str, tuple[Complex, ...]]:
         """Joint -> derivative (..., points) of every point of ``closure.point_names`` by each of its offsets."""
         place, closure = self.place, self.place.closure
-        matrix, by_unknowns = self._matrix(closure, place.q), closure.point_rates(place.q)
+        matrix, by_unknowns = self._plain, closure.point_rates(place.q)
         found = {}
         for name in self.radii:
             each = []
@@ -309,9 +313,13 @@ class LooseJoints:
         closed = np.abs(closure.residual(q)).max(axis=-1, initial=0.0) <= CLOSED * place.linkage.longest
         return Placement(closure=closure, q=q, rows=place.rows), closed & self._same_branch(closure, q)
 
+    @cached_property
+    def _plain(self) -> Real:
+        """The matrix without play."""
+        return self._matrix(self.place.closure, self.place.q)
+
     def _same_branch(self, closure: LoopClosure, q: Real) -> NDArray[np.bool_]:
         """Tell where the determinant has the sign that it has without play: it changes at a dead point."""
-        nominal, here = self._matrix(self.place.closure, self.place.q), self._matrix(closure, q)
-        if here.shape[-1] != here.shape[-2]:
+        if self._plain.shape[-1] != self._plain.shape[-2]:
             return np.ones(q.shape[:-1], dtype=np.bool_)
-        return np.asarray(np.linalg.slogdet(here)[0] == np.linalg.slogdet(nominal)[0])
+        return np.asarray(np.linalg.slogdet(self._matrix(closure, q))[0] == np.linalg.slogdet(self._plain)[0])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.ties import first_least, ranked
-from alula.geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap
+from alula.geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap, width_at
 from alula.geometry.clearance.shape import Shape, link_shape, pin_shape
 from alula.geometry.linkage.motion import Motion, ends_of, solve_motion
 from alula.geometry.linkage.placement import Placement
@@ -291,17 +291,18 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
         return None
     found, pose = assembly(case), pose or case.solve_pose()
     at_rest = _single(pose)
-    gaps = [gap_at(pair, at_rest) for pair in found.pairs]
-    for pair, gap in zip(found.pairs, gaps, strict=True):
-        if gap.high < 0.0:
+    widths = [width_at(pair, at_rest) for pair in found.pairs]
+    for pair, width in zip(found.pairs, widths, strict=True):
+        if width < 0.0 and (gap := gap_at(pair, at_rest)).high < 0.0:
             raise CaseError(_through(case, pair, gap))
     if not case.sweeps:
+        gaps = [gap_at(pair, at_rest) for pair in found.pairs]
         return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(case, gaps))
     motion = way_of(case, pose)
     longest, start, at = case.linkage.longest, start_of(motion), along(motion)
     step, begun = _STEP * motion.coordinate.measure.scale(motion.linkage), (start, at(start))
     over: list[Gap] = []
-    for number in ranked([gap.value for gap in gaps], longest):
+    for number in ranked(widths, longest):
         pair = found.pairs[number]
         enough = max(min((gap.value for gap in over), default=np.inf), 0.0)
         least = least_gap(pair, at, begun, near=_NEAR * longest, step=step, enough=enough)

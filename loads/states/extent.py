@@ -16,7 +16,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.layers import slab
 from alula.loads.records.check_spec import SizeCheck
 from alula.loads.states.actions import lasting
-from alula.loads.states.clearance import Assembly, along, assembly, start_of, way_of
+from alula.loads.states.clearance import Assembly, Clearance, along, assembly, start_of, way_of
 from alula.loads.states.flapping import wing_span
 from alula.loads.text.caveat import Caveat, Topic
 from alula.loads.text.reason import Reason, reason
@@ -76,7 +76,7 @@ class Extent:
         return along(self.motion)(np.array([*np.linspace(first, last, count), *furthest]))
 
 
-def extent(case: Case, pose: Pose, motion: Motion | None = None) -> Extent:
+def extent(case: Case, pose: Pose, known: Clearance | None = None) -> Extent:
     """Return the box about the outlines of a case over its motion, or at its pose where it states none.
 
     Parameters
@@ -84,8 +84,8 @@ def extent(case: Case, pose: Pose, motion: Motion | None = None) -> Extent:
     case : Case
     pose : Pose
         The stated one, or where the linkage balances if it is let go.
-    motion : Motion, optional
-        That of the case, where it was solved before.
+    known : Clearance, optional
+        Of the case, with its outlines and its motion, where it was found before.
 
     Returns
     -------
@@ -96,12 +96,12 @@ def extent(case: Case, pose: Pose, motion: Motion | None = None) -> Extent:
     CaseError
         Where the motion does not exist.
     """
-    found = assembly(case)
+    found = assembly(case) if known is None else known.assembly
     outlines = tuple(_outlines(found))
     if not case.sweeps:
         at_rest = Placement(closure=pose.closure, q=pose.q[None])
         return Extent(assembly=found, pose=pose, motion=None, reaches=reaches_at(outlines, at_rest))
-    motion = motion or way_of(case, pose)
+    motion = way_of(case, pose) if known is None or known.motion is None else known.motion
     near = _NEAR * case.linkage.longest
     told = reaches(outlines, along(motion), start_of(motion), near=near)
     return Extent(assembly=found, pose=pose, motion=motion, reaches=told)

@@ -7,6 +7,7 @@ play. The extremes are the sums over the joints of c/2 times the size of the gra
 worst together; at one pose the linkage is then solved at that worst combination, and the outer of both counts.
 """
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -270,33 +271,33 @@ class Play:
         )
         return np.asarray(sum(sizes, np.zeros(self.loose.place.shape)))
 
-    def _worst(self, key: str, sign: float) -> Displaced | None:
-        """The linkage where a real number is extreme, to first order; of one pose."""
-        shares = {}
-        for name, by in self.gradients.items():
-            gradient = np.array([float(one[key].real) for one in by])
-            shares[name] = sign * gradient / (np.linalg.norm(gradient) or 1.0)
-        return self.at(self.loose.offsets(shares))
+    @cached_property
+    def _worst(self) -> Mapping[tuple[str, float], Displaced | None]:
+        """The linkage where distance and effort are largest and least, to first order; of one pose."""
+        found = {}
+        for key, sign in itertools.product(("distance", "effort"), (1.0, -1.0)):
+            slopes = {name: np.array([float(one[key].real) for one in by]) for name, by in self.gradients.items()}
+            shares = {name: sign * slope / (np.linalg.norm(slope) or 1.0) for name, slope in slopes.items()}
+            found[key, sign] = self.at(self.loose.offsets(shares))
+        return found
 
     @cached_property
     def through_dead_point(self) -> bool:
         """True where play may take the linkage through a dead point, or to where it does not close; of one pose."""
         if self.nominal is None:
             return True
-        if float(self.nominal.distance) <= float(self.slack("distance")):
-            return True
-        ends = (self._worst(key, sign) for key in ("distance", "effort") for sign in (1.0, -1.0))
-        return any(end is None for end in ends)
+        near = float(self.nominal.distance) <= float(self.slack("distance"))
+        return near or any(end is None for end in self._worst.values())
 
     @cached_property
     def nearest(self) -> Displaced | None:
         """The linkage where play brings it nearest to a dead point; None where it goes through one; of one pose."""
-        return None if self.through_dead_point else self._worst("distance", -1.0)
+        return None if self.through_dead_point else self._worst["distance", -1.0]
 
     @cached_property
     def furthest(self) -> Displaced | None:
         """The linkage where play brings it furthest from a dead point; None where it goes through one; of one pose."""
-        return None if self.through_dead_point else self._worst("distance", 1.0)
+        return None if self.through_dead_point else self._worst["distance", 1.0]
 
     @cached_property
     def effort(self) -> Span:
@@ -317,7 +318,7 @@ class Play:
             low, high = (0.0, np.inf) if key == "distance" else (-np.inf, np.inf)
             return Span(value=value, low=low, high=high)
         slack = float(self.slack(key))
-        solved = [self._of(end, key) for s in (1.0, -1.0) if (end := self._worst(key, s)) is not None]
+        solved = [self._of(end, key) for s in (1.0, -1.0) if (end := self._worst[key, s]) is not None]
         low, high = min(value - slack, *solved), max(value + slack, *solved)
         return Span(value=value, low=max(low, 0.0) if key == "distance" else low, high=high)
 
