@@ -60,7 +60,7 @@ def test_sections_are_tried_one_after_the_other_where_no_margin_tells_what_is_la
     file = tmp_path / "case.toml"
     file.write_text(f'{text}\n[checks.collapse]\ntype = "plastic-collapse"\nminimum = 2.4\n', encoding="utf-8")
     values = {"parts.bar.thickness": "3.2 mm", "links.rocker.end_patch": "5 mm", "checks.stiffness.maximum": "2 mm"}
-    case = read_case(file).with_values(values | {"load_cases.lift.forces.0.force.1": "-160 N"})
+    case = read_case(str(file)).with_values(values | {"load_cases.lift.forces.0.force.1": "-160 N"})
     found = larger(case, str(file), checks_of(check_case(case, name=str(file), fidelity="beam", threads=1)))
     assert found["parts.bar.width"] == "9.6 mm"
     assert found["parts.bar.thickness"] == "8 mm"  # 9.6 mm with steps of 1.3
