@@ -251,7 +251,7 @@ class PointDisplacement(LoadedLinkage):
         node, pins = forces.frame.points[self.link, self.point], forces.pins
         rests = np.vstack([self._rests, pins.nearest(node, tight) @ pins.moves(node).T])
         each = [np.linalg.norm(one + rests, axis=1).tolist() for one in tight]
-        return min(max(sought(sizes)[0], (1.0 - LEFT) * min(sizes)) for sizes in each)
+        return float(min(max(sought(sizes)[0], (1.0 - LEFT) * min(sizes)) for sizes in each))
 
     def _loose(self, plane: complex, across: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and largest displacement in the plane and across it, where pins take up their play beside one."""
