@@ -27,6 +27,8 @@ def _beside_the_case(text: str, info: ValidationInfo) -> str:
     """Return the path of a file that stands beside the case file, or anywhere else if it is an absolute path."""
     if not text.strip() or "\0" in text:
         raise refusal("a part needs the name of its file; name it, relative to the case file")
+    if not text.isprintable():
+        raise refusal("the name of a part's file has characters that do not print; rename the file")
     folder = (info.context or {}).get("folder", "")
     return str((Path(folder) / text).absolute())
 

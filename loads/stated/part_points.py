@@ -25,7 +25,7 @@ from alula.geometry.placement.load_faces import load_faces
 from alula.geometry.placement.match import place, points_of_part, with_loaded_bores
 from alula.geometry.placement.placed_body import bores_of
 from alula.loads.stated.level_file import profiled_steps
-from alula.loads.text.explain import sentence
+from alula.loads.text.explain import printable, sentence
 
 FROM_PART = "from-part"
 KINDS: dict[str, type[FilePart]] = {"step": StepPart, "mesh": MeshPart}
@@ -120,7 +120,7 @@ def _placed(name: str, link: dict[str, Any], part: FilePart, joints: object) -> 
         fit = with_loaded_bores(part, place(part, bores_of(part), wanted, others), bores_of(part), others)
         points = _with_faces(part, fit, points, places)
     except AlulaError as error:
-        raise type(error)(f"links.{name}, part {Path(part.file).name}: {error}") from None
+        raise type(error)(f"links.{printable(name)}, part {Path(part.file).name}: {error}") from None
     own = {point: fit.middle(point)[:2].tolist() for point in fit.bores}
     own |= {one.name: (places[one.name][0], own[one.name][1]) for one in wanted if one.slot is not None}
     ends = {one.name: _stated(*fit.span(one.name)) for one in wanted if one.slot is not None}

@@ -1,6 +1,7 @@
 """A link that is made of a part from a STEP file."""
 
 import os
+import tomllib
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.imported import read
 from alula.geometry.keeping.kept import keeping
 from alula.geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
-from alula.loads.case.case_file import read_case
+from alula.loads.case.case_file import read_case, read_text, validate
 from alula.reports.sentences import told
 
 FROM_PART = '"from-part"'
@@ -223,3 +224,16 @@ def test_a_missing_pin_diameter_is_named(tmp_path):
     path.write_text(path.read_text().replace(', pin_diameter = "5 mm"', ""))
     with pytest.raises(CaseError, match=r"joints\.O4\.pin_diameter: .* needs a diameter"):
         read_case(str(path))
+
+
+@pytest.mark.parametrize("name", ["\U0010ffff", "bell\ncrank"])
+def test_what_does_not_print_comes_into_no_sentence(name: str) -> None:
+    """Neither as the name of a link, which is refused later than its part is read, nor as that of a file."""
+    link, file = (tomllib.loads(read_text("step")[0]) for _ in range(2))
+    link["links"][name] = link["links"].pop("bell-crank")
+    link["parts"]["bell-crank"]["file"] = "nowhere.step"
+    file["parts"]["bell-crank"]["file"] = f"{name}.step"
+    for data, said in ((link, "there is no file"), (file, "characters that do not print")):
+        with pytest.raises(CaseError, match=said) as refused:
+            validate(data)
+        assert str(refused.value).isprintable()
