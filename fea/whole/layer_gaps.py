@@ -231,8 +231,9 @@ class LayerGaps:
         free = self._freed
         if min(float(left.min()) for left, _ in self._beside(free)) < 0.0:
             return reason("deflection_closes_gap")
-        if not loose:
-            return reason("state_fits")
+        if not loose:  # nothing is stated, or play in the plane is not followed
+            holes = [hole for name in joints for hole in self.case.linkage.pin_holes(name).holes]
+            return None if all(hole.stated for hole in holes) else reason("state_fits")
         alone = {
             name: self._share([np.delete(each, i, axis=0) for each in free], [each[i] for each in free])
             for i, name in enumerate(joints)

@@ -100,6 +100,19 @@ def test_pins_of_which_nothing_is_stated_run_and_may_close_the_gap():
     assert gap("4.5 mm", stated=False).verdict is Verdict.PASS
 
 
+def test_who_has_stated_all_fits_is_not_asked_for_them(monkeypatch):
+    """Where play in the plane is not followed (redundant linkages, or let go), fits are stated all the same."""
+    monkeypatch.setattr("alula.fea.whole.layer_gaps.clearances", lambda case: {})
+    for fitted in (("O2", "A", "B", "O4"), ("O2", "A", "B")):
+        data = four_bar(tight={}, layer_spacing="4.08 mm", checks=CHECKS)
+        for name in fitted:
+            data["joints"][name]["fit"] = "running"
+        found = check_case(checked(data), fidelity="beam").load_cases["l"].checks
+        one = next(check for check in found if check.quantity is Quantity.LAYER_GAP)
+        assert one.verdict is Verdict.UNDECIDED
+        assert ("state how they sit" in told(one.reason)) == ("O4" not in fitted)
+
+
 def test_what_would_keep_a_gap_open_does_so_where_it_is_done():
     """The share of the clearance that is told keeps it open, and hardly more does not."""
     assert "with 53 % of the clearance at joint B alone it would stay open" in told(gap("4.2 mm", play="0.1 mm").reason)
