@@ -7,16 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, Strict, ValidationInfo, model_validator
 
+from alula.geometry.base import units
 from alula.geometry.base.errors import CaseError
 from alula.geometry.base.model import CaseModel, Name, Stated, Text, refusal
-from alula.geometry.base.units import LARGEST, LEAST, NOT_NEGATIVE, POSITIVE, SIZED, Force, Length, Time, weight_in
+from alula.geometry.base.units import LARGEST, LEAST, NOT_NEGATIVE, POSITIVE, Force, Length, Time, weight_in
 from alula.loads.records.attachment import Attachment
 from alula.loads.records.load_case import Block
 from alula.loads.text.explain import printable
 from alula.loads.text.number_table import read_number_table
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
-Number = Annotated[float, Strict(), Field(gt=0), SIZED]
+Number = Annotated[units.Number, Strict()]
 """Taken as it stands: neither true nor a text is a number, and no text is true or false."""
 Asked = Annotated[bool, Strict()]
 

@@ -291,12 +291,12 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
         return None
     found, pose = assembly(case), pose or case.solve_pose()
     at_rest = _single(pose)
-    widths = [width_at(pair, at_rest) for pair in found.pairs]
+    gaps = [] if case.sweeps else [gap_at(pair, at_rest) for pair in found.pairs]
+    widths = [width_at(pair, at_rest) for pair in found.pairs] if case.sweeps else [gap.value for gap in gaps]
     for pair, width in zip(found.pairs, widths, strict=True):
         if width < 0.0 and (gap := gap_at(pair, at_rest)).high < 0.0:
             raise CaseError(_through(case, pair, gap))
     if not case.sweeps:
-        gaps = [gap_at(pair, at_rest) for pair in found.pairs]
         return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(case, gaps))
     motion = way_of(case, pose)
     longest, start, at = case.linkage.longest, start_of(motion), along(motion)
