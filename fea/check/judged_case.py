@@ -11,7 +11,6 @@ from alula.fea.check.known_stiffness import with_known_stiffness
 from alula.fea.check.load_case import LoadCaseByHand, SolvedAnswers
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.judge import outcomes
 from alula.fea.judging.linkage import no_equilibrium, unless_it_gives_way
 from alula.fea.judging.linkage_numbers import limit_load_outcomes, linkage_numbers
@@ -63,9 +62,7 @@ def judged(
     moved = with_known_stiffness(case, hand.moved, forces, links, hand.cut)
     reactions = moved.reactions or statics.reactions[load_case]
     pins = _pins(case, reactions, hand.shared_forces)
-    in_plane = {x: one for x, one in hand.shared.joints.items() if case.linkage.rise(x) == 0.0}
-    grown = hand.uneven.times(Growths(joints=in_plane))  # ``pins`` and bearing hold the sharing of others
-    pinned = {x: grown.of_pin(x) for x in case.joints}
+    pinned = {x: hand.uneven.of_pin(x) for x in case.joints}  # ``pins`` and bearing hold the sharing of couples
     linkage = linkage_numbers(case, load_case, moved, forces, links, hand.free)
     columns = {x: slenderest(case, x, hand.columns(x)) for x in hand.plates}
     buckling = (

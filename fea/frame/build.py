@@ -11,7 +11,7 @@ from alula.fea.beam.cut_beam import changes
 from alula.fea.beam.flanks import Flanks, flanks_of
 from alula.fea.common.reason import Reason, reason
 from alula.fea.frame.condensed import CondensedLink, LinkFlexibility
-from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam
+from alula.fea.frame.linkage_frame import LinkageFrame, LinkBeam, out_of_plane
 from alula.fea.frame.model import DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from alula.fea.frame.spring import FrameSpring
 from alula.geometry.base.errors import CaseError
@@ -22,6 +22,7 @@ from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose
 from alula.geometry.parts.part import Section
 from alula.loads.case.case import Case
+from alula.loads.case.forks import in_holes
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
 from alula.loads.records.conditions import at_temperature
 from alula.loads.states.actions import lasting
@@ -57,6 +58,7 @@ def build_frame(
     held: Drive | None,
     bonded: bool = False,
     solids: Mapping[str, LinkFlexibility] | None = None,
+    spatial: bool = False,
 ) -> LinkageFrame:
     """Build the frame of a case in a pose under loads.
 
@@ -74,6 +76,8 @@ def build_frame(
         True where all revolute joints are bonded; else those that the case says.
     solids : mapping of str to LinkFlexibility, optional
         Links whose solids tell how they give between their points; these are no beams.
+    spatial : bool, optional
+        True where it moves out of its plane although no load does so, and links do not lie in layers.
 
     Returns
     -------
@@ -91,10 +95,12 @@ def build_frame(
             "loads out of the plane need; give the links parts"
         )
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
-    builder = _Builder(case, pose, loads, solids or {})
-    supports, ties, guides = builder.supports, [], []
     joints = case.linkage.joints
     bonds = frozenset(name for name, joint in joints.items() if joint.fixed or (bonded and not joint.slides))
+    spatial = spatial or case.layered or out_of_plane(loads)
+    beside = frozenset(name for name in joints if spatial and name not in bonds and in_holes(case, name))
+    builder = _Builder(case, pose, loads, solids or {}, beside)
+    supports, ties, guides = builder.supports, [], []
     stiff = bonds if held is None else bonds | {held.joint}
     by_length = sorted(case.joints, key=lambda name: abs(case.linkage.rise(name)))
     contacts = {name: builder.contact(name, twists=name not in stiff) for name in by_length}
@@ -158,8 +164,15 @@ def _guide(pose: Pose, name: str, way: Way, nodes: tuple[int | None, int | None]
 class _Builder:
     """Nodes, beams and loads of all moving links."""
 
-    def __init__(self, case: Case, pose: Pose, loads: Sequence[Load], solids: Mapping[str, LinkFlexibility]) -> None:
-        self.case, self.pose = case, pose
+    def __init__(
+        self,
+        case: Case,
+        pose: Pose,
+        loads: Sequence[Load],
+        solids: Mapping[str, LinkFlexibility],
+        beside: frozenset[str],
+    ) -> None:
+        self.case, self.pose, self.beside = case, pose, beside
         self.condensed: list[CondensedLink] = []
         self.places: list[Real] = []
         self.names: list[str] = []
@@ -214,7 +227,7 @@ class _Builder:
         first, second = self.pins[name]
         linkage, joint = self.case.linkage, self.case.joints[name]
         rise = linkage.rise(name)
-        if rise == 0.0:
+        if rise == 0.0 and name not in self.beside:
             return first, second
         root, link = (second, joint.links[1]) if joint.slides else (first, joint.links[0])
         eyes = [(one, linkage.point_of(name, one)) for one in joint.links]
@@ -232,7 +245,7 @@ class _Builder:
         self.names.append(f"the pin at {name}")
         self.pin_ends[name] = end = len(self.places) - 1
         self.pin_beams[name] = len(self.elements)
-        if joint.pin_diameter is None or not joint.kind.has_pin:
+        if rise == 0.0 or joint.pin_diameter is None or not joint.kind.has_pin:
             self._stiff(root, end, z_axis=ALONG_X)
         else:
             material = at_temperature(self.case.all_materials[joint.pin_material], self.case.conditions)
@@ -432,11 +445,12 @@ class _Builder:
                 self.node_loads.append(NodeLoad(node=node, wrench=wrench, lever=np.array([at, wrench[:3]])))
 
     def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
+        """Add an element that does not give; between two nodes in one place, as a beam along the pins on arms."""
         links = self.case.bending_links
         young = max(self.case.material_of(link).youngs_modulus for link in links)
         sections = [self.case.part_of(link).section for link in links]
         second = RIGID * max(max(s.i_y, s.i_z) for s in sections)
-        size = max(s.half_y for s in sections)
+        size, apart = max(s.half_y for s in sections), float(np.linalg.norm(self.places[b] - self.places[a]))
         section = Section(
             area=RIGID * max(s.area for s in sections),
             i_y=second,
@@ -447,7 +461,15 @@ class _Builder:
             round=True,
         )
         self.elements.append(
-            FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, z_axis=z_axis, rigid=True)
+            FrameElement(
+                nodes=(a, b),
+                section=section,
+                young=young,
+                poisson=0.3,
+                z_axis=z_axis,
+                rigid=True,
+                offsets=np.outer((-0.5, 0.5), size * ALONG_PINS if apart == 0.0 else np.zeros(3)),
+            )
         )
 
 

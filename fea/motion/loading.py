@@ -63,7 +63,7 @@ def loading_over(
         return joint_growth(moved, load_case, joint, evaluated, of).times(grown.through(joint))
 
     def ways(pose: int) -> tuple[Equilibrium, ...]:
-        return (solved.at(pose), *(forces_at(moved, load_case, pose).sharings if case.layered else ()))
+        return (solved.at(pose), *forces_at(moved, load_case, pose).sharings)
 
     def at(pose: int) -> OverMotion:
         def here(link: str) -> list[LinkLoads]:

@@ -327,6 +327,7 @@ class RimPath:
         for end in (0, 1):
             local = state.end_forces[pins, end].reshape(-1, 2, 3, 1)
             forces, moments = (path.elements.axes[pins, None] @ local)[..., 0].swapaxes(0, 1)
+            moments = moments + np.cross(path.elements.arms[pins, end], forces)  # about the node
             turn, shift = slice(6 * end + 3, 6 * end + 6), slice(6 * end, 6 * end + 3)
             work[:, turn, shift] = _turning(forces)
             work[:, turn, turn] = _turning(moments) / 2.0

@@ -52,7 +52,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
-from alula.fea.common.source import COUPLES, UNKNOWN, Source, SourceKind
+from alula.fea.common.source import COUPLES, UNKNOWN, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CaseError
@@ -370,19 +370,30 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
         For a pin without diameter.
     """
     found = stress_at(case, joint, reaction)
-    if not forces.sharings or case.linkage.rise(joint) == 0.0:
+    if not forces.sharings:
         return found
-    every = (forces.reactions, *forces.sharings)
-    plain, *others = stresses_between(case, joint, np.array([one.joints[joint].wrench for one in every]))
+    every = [one.joints[joint] for one in (forces.reactions, *forces.sharings)]
+    if case.linkage.rise(joint) == 0.0:
+        plain, *others = [stress_at(case, joint, one) for one in every]
+    else:
+        plain, *others = stresses_between(case, joint, np.array([one.wrench for one in every]))
 
     def widened(name: str, least: float = 0.0) -> Band:
-        value, sizes = getattr(found, name).value, [getattr(one, name).value for one in (plain, *others)]
-        # Shares first: the least is then 1 at most, and the largest 1 at least, in spite of rounding.
-        low, high = sought([value * (size / sizes[0]) for size in sizes] if sizes[0] > 0.0 else [value, *sizes])
-        low = max(low, min(least, value))
-        width = high / low if low > 0.0 else math.inf
-        ends = (low / value, high / value) if value > 0.0 else UNKNOWN
-        return Band(value=value, low=low, high=high, sources=(replace(COUPLES[0], width=width, ends=ends),))
+        own, known = getattr(found, name), [getattr(one, name) for one in (plain, *others)]
+        value, first = own.value, known[0].value
+
+        def ends_of(lows: list[float], highs: list[float]) -> tuple[float, float]:
+            # Shares first: the least is then 1 at most, and the largest 1 at least, in spite of rounding.
+            low, high = (
+                [value, *(value * (size / first) if first > 0.0 else size for size in each)] for each in (lows, highs)
+            )
+            return max(sought(low)[0], min(least, value)), sought(high)[1]
+
+        low, high = ends_of([one.value for one in known], [one.value for one in known])
+        width, ends = high / low if low > 0.0 else math.inf, (low / value, high / value) if value > 0.0 else UNKNOWN
+        low, high = ends_of([one.low for one in known], [one.high for one in known])
+        sources = distinct(own.sources, (replace(COUPLES[0], width=width, ends=ends),))
+        return Band(value=value, low=low, high=high, sources=sources)
 
     _, most = sought([one.shear / (plain.shear or math.inf) for one in (plain, *others)])
     shear = found.shear * most

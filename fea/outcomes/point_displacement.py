@@ -277,9 +277,9 @@ class PointDisplacement(LoadedLinkage):
         moved = self.moved
         if moved.frame is None or moved.solution is None:
             return None
-        layered = self.case.layered and self.forces is not None and self.forces.pins is not None
+        run = self.forces is not None and self.forces.pins is not None
         loose = self.play is not None and (self.case.layered or np.any(moved.solution.displacements[:, 2:5]))
-        return free_motion(self.case, moved.frame, self.link, self.point) if layered or loose else None
+        return free_motion(self.case, moved.frame, self.link, self.point) if run or loose else None
 
     def elastic(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
         """Return the band without play: what solids or beams leave open, the moduli, and the load.

@@ -17,7 +17,7 @@ from alula.fea.pins.holes import Hole, known_hole, rims_of, shortest
 from alula.fea.pins.programme import NO_TIES
 from alula.geometry.joints.holes import HolePlay
 from alula.loads.case.case import Case
-from alula.loads.case.forks import eye_of
+from alula.loads.case.forks import eye_of, in_holes
 from alula.loads.case.layers import on_one_axis
 
 Real = NDArray[np.float64]
@@ -126,9 +126,9 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     if sits.shared is not None:
         found = [tuple((hole.link, sits.shared[1]) for hole in sits.holes)]
     else:
-        layered = case.linkage.rise(joint) != 0.0
-        holes = [_as_stated(case, joint, hole) for hole in sits.holes] if layered else sits.holes
-        told = [hole for hole in holes if hole.stated or (layered and known_hole(case, joint, hole.link))]
+        stands = case.linkage.rise(joint) != 0.0 or in_holes(case, joint)
+        holes = [_as_stated(case, joint, hole) for hole in sits.holes] if stands else sits.holes
+        told = [hole for hole in holes if hole.stated or (stands and known_hole(case, joint, hole.link))]
         found = [((hole.link, hole.high),) for hole in told if math.isfinite(hole.high)]
     return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
 

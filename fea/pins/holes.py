@@ -239,16 +239,20 @@ class RimFrame:
 
 
 def _noise(frame: LinkageFrame) -> float:
-    every = [(frame.model.elements[i], frame.model.length(i)) for i in frame.pin_beams.values()]
-    return NOTHING * max(pin.young * pin.section.i_y / length**2 for pin, length in every)
+    model = frame.model
+    every = [(model.elements[i], model.length(i)) for i in frame.pin_beams.values()]
+    every = [one for one in every if not one[0].rigid] or [
+        (e, model.length(i)) for i, e in enumerate(model.elements) if not e.rigid
+    ]
+    return NOTHING * max((e.young * e.section.i_y / length**2 for e, length in every), default=1.0)
 
 
 def _couples(frame: LinkageFrame) -> Real:
     """Thrusts of all pins, and couples along and across links without a beam, by natural forces of pins' beams."""
     beams, found = {beam.link for beam in frame.beams.values()}, list[Real]()
-    for k, name in enumerate(frame.pin_beams):
-        first, last = (frame.model.nodes[node][2] for node in frame.model.elements[frame.pin_beams[name]].nodes)
-        turned = -1.0 if last > first else 1.0  # local y of a pin that rises lies against y
+    starts, stops = frame.model.all_ends
+    for k, (name, i) in enumerate(frame.pin_beams.items()):
+        turned = -1.0 if stops[i][2] > starts[i][2] else 1.0  # local y of a pin that rises lies against y
         found.append(_row(frame, {6 * k: 1.0}))
         for end, (link, _) in enumerate(frame.pin_eyes[name]):
             if link not in beams:

@@ -265,7 +265,7 @@ def stood(case: Case, frame: "LinkageFrame", solution: "FrameSolution") -> "tupl
     """
     from alula.fea.pins.states import pin_states
 
-    pins = pin_states(case, frame) if case.layered else None
+    pins = pin_states(case, frame)
     if pins is None:
         return frame.reactions(solution.joint_wrenches, solution.residual), None
     return pins.reactions(pins.value), pins

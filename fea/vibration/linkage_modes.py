@@ -332,7 +332,7 @@ def _drive_stiffness(case: Case, frame: LinkageFrame) -> float | None:
 
 def _released(case: Case, frame: LinkageFrame, divided: FrameModel, held: FrameSolution) -> tuple[FrameModel, Floats]:
     """The divided model without what the drive holds, and the forces of its guides in the held state."""
-    free = build_frame(case, frame.pose, frame.loads, held=None).model
+    free = build_frame(case, frame.pose, frame.loads, held=None, spatial=True).model
     known = {_guide_key(guide): float(force) for guide, force in zip(divided.guides, held.guide_forces, strict=True)}
     assert frame.held is not None
     coarse = frame.reactions(held.joint_wrenches[: len(frame.model.nodes)], held.residual)

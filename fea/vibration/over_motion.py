@@ -231,7 +231,7 @@ def _least_between(function: Callable[[int], tuple[float, float]], low: int, hig
 def _at(
     case: Case, name: str, pose: Pose, loads: Sequence[Load], masses: Mapping[str, PartMass], count: int
 ) -> LinkageModes:
-    frame = build_frame(case, pose, loads, held=case.pinned_drive)
+    frame = build_frame(case, pose, loads, held=case.pinned_drive, spatial=True)
     return linkage_modes(case, name, frame, masses, count=count)
 
 

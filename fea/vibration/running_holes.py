@@ -18,6 +18,7 @@ from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import ALL_DOFS, Dof, FrameModel, Tie
 from alula.fea.vibration.modes import Mode
 from alula.loads.case.case import Case
+from alula.loads.case.forks import in_holes
 
 ACROSS: tuple[Dof, Dof] = ("rx", "ry")
 _NOTHING = 1e-4
@@ -41,7 +42,7 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():
-        if joint.kind.has_pin and linkage.rise(name) != 0.0:
+        if in_holes(case, name) or (joint.kind.has_pin and linkage.rise(name) != 0.0):
             found += [(name, link) for link in joint.bored if linkage.pin_holes(name)[link].high > 0.0]
     return tuple(found)
 

@@ -166,6 +166,27 @@ def outer_link(case: CoreCase, joint: str) -> str | None:
     return max(widths, key=lambda link: widths[link]) if widths else None
 
 
+def in_holes(case: CoreCase, joint: str) -> bool:
+    """Return whether how a pin stands in its holes counts although the links of its joint lie in one layer.
+
+    Parameters
+    ----------
+    case : CoreCase
+    joint : str
+
+    Returns
+    -------
+    bool
+        Of a pin through a fork or a pair of plates, and of one whose clearance is stated. Others are drawn as if both
+        links had one place, where nothing tells how they pass each other, and are tight.
+    """
+    record = case.linkage.joints[joint]
+    if not record.pivots or case.linkage.rise(joint) != 0.0:
+        return False
+    stated = any(hole.stated and hole.high > 0.0 for hole in case.linkage.pin_holes(joint).holes)
+    return stated or outer_link(case, joint) is not None
+
+
 def check_pair(case: CoreCase, link: str) -> None:
     """Check that a link may be a pair of side plates, where it states that it is one.
 

@@ -124,7 +124,7 @@ def check_layers(case: CoreCase) -> None:
                     f"joints.{name}.tight_in: '{link}' is no link of this joint; choose one of {', '.join(joint.links)}"
                 )
         for entry in ("pin_gap",) if layered else () if taken_back else ("tight_in", "heads"):
-            in_fork = layered and outer_link(case, name) is not None  # both links lie in one layer
+            in_fork = (layered or entry == "tight_in") and outer_link(case, name) is not None  # both lie in one layer
             if entry in joint.model_fields_set and not in_fork:
                 why = "the layers tell the gap" if layered else "it has a meaning only where links lie in layers"
                 raise CaseError(f"joints.{name}.{entry}: {why}; leave it out")
