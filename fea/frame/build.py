@@ -233,7 +233,7 @@ class _Builder:
         eyes = [(one, linkage.point_of(name, one)) for one in joint.links]
         eye, opposite = reversed(eyes) if joint.slides else eyes
         far, up = 0.0, -rise if joint.slides else rise
-        for shorter, (start, until) in self.pin_eyes.items() if joint.pivots else ():
+        for shorter, (start, until) in self.pin_eyes.items() if joint.pivots and rise != 0.0 else ():
             reach = linkage.rise(shorter)
             if start == eye and far < reach / up < 1.0 and linkage.joints[shorter].pivots:
                 root, eye, far = self.pin_ends[shorter], until, reach / up

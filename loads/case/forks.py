@@ -177,14 +177,16 @@ def in_holes(case: CoreCase, joint: str) -> bool:
     Returns
     -------
     bool
-        Of a pin through a fork or a pair of plates, and of one whose clearance is stated. Others are drawn as if both
-        links had one place, where nothing tells how they pass each other, and are tight.
+        Of a pin through a fork or a pair of plates, and of one whose clearance is stated unless a layer_spacing of 0
+        takes all links into one plane. Others are drawn as if both links had one place, and are tight.
     """
     record = case.linkage.joints[joint]
     if not record.pivots or case.linkage.rise(joint) != 0.0:
         return False
-    stated = any(hole.stated and hole.high > 0.0 for hole in case.linkage.pin_holes(joint).holes)
-    return stated or outer_link(case, joint) is not None
+    if outer_link(case, joint) is not None:
+        return True
+    holes = case.linkage.pin_holes(joint).holes if case.layer_spacing != 0.0 else ()
+    return any(hole.stated and hole.high > 0.0 for hole in holes)
 
 
 def check_pair(case: CoreCase, link: str) -> None:
