@@ -63,6 +63,20 @@ def four_bar(
     return {**data, **further}
 
 
+def in_one_layer(*, forks: bool = True, **further: Any) -> dict[str, Any]:
+    """Return the data of the four-bar in one layer: the ends of its coupler are forks of unequal gaps."""
+    data = four_bar(tight={}, **further)
+    del data["layer_spacing"]
+    for link in data["links"].values():
+        del link["layer"]
+    data["links"]["base"]["thickness"] = "5 mm"
+    if forks:
+        data["parts"]["thick"] = data["parts"]["bar"] | {"thickness": "10 mm"}
+        eyes = {at: {"fork": gap, "fork_radius": "0.8 mm"} for at, gap in (("A", "4.4 mm"), ("B", "5 mm"))}
+        data["links"]["coupler"] |= {"part": "thick", "eyes": eyes}
+    return data
+
+
 def loaded(
     material: Mapping[str, object], force: list[str], tight: Mapping[str, str | Sequence[str]] | None = None
 ) -> Case:

@@ -1,9 +1,11 @@
 """Pins of joints in one layer, forks among them, stand at the rims of their holes: against another way to solve it."""
 
+import itertools
+
 import numpy as np
 import pytest
 from rims_by_penalty import InHoles
-from tilting_pins import ALUMINIUM, PLA, checked, four_bar
+from tilting_pins import ALUMINIUM, PLA, checked, in_one_layer
 
 from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import internal_forces
@@ -12,7 +14,7 @@ from alula.fea.common.verdict import Quantity
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.forks import eye_of
 
-WIDE = {name: "0.1 mm" for name in ("base", "crank", "coupler", "rocker")}
+WIDE = dict.fromkeys(("base", "crank", "coupler", "rocker"), "0.1 mm")
 HOLES = [
     dict.fromkeys(("O2", "A", "B", "O4"), WIDE),
     {
@@ -24,24 +26,15 @@ HOLES = [
 ]
 
 
-def in_one_layer(clearances, force, *, material=ALUMINIUM, forks=True):
-    """The four-bar with all links in one layer: the ends of its coupler, 10 mm thick, are forks of unequal gaps."""
+def with_clearances(clearances, force, *, material=ALUMINIUM, forks=True):
     checks = {
         "s": {"type": "safety-factor", "minimum": 2.0},
         "p": {"type": "pins", "minimum": 1.0},
         "d": {"type": "displacement", "at": "P", "maximum": "2 mm"},
     }
-    data = four_bar(tight={}, checks=checks)
-    del data["layer_spacing"]
+    data = in_one_layer(forks=forks, checks=checks)
     data["materials"]["m"] |= material
     data["load_cases"]["l"]["forces"][0]["force"] = list(force)
-    for link in data["links"].values():
-        del link["layer"]
-    data["links"]["base"]["thickness"] = "5 mm"
-    if forks:
-        data["parts"]["thick"] = data["parts"]["bar"] | {"thickness": "10 mm"}
-        eyes = {at: {"fork": gap, "fork_radius": "0.8 mm"} for at, gap in (("A", "4.4 mm"), ("B", "5 mm"))}
-        data["links"]["coupler"] |= {"part": "thick", "eyes": eyes}
     for name, joint in data["joints"].items():
         joint["clearance"] = {link: clearances[name][link] for link in joint["links"]}
     return checked(data)
@@ -66,7 +59,7 @@ def stress(case, reactions, statics, link):
     forces = internal_forces(beam_loads(acting, body, case.material_of(link).density))
     over = np.array([part.area, part.i_y / part.half_z, part.i_z / part.half_y])
     places = sorted(x for x, _ in case.links[link].points.values())
-    ends = [x for a, b in zip(places, places[1:], strict=False) for x in (a + 1e-6, b - 1e-6)]
+    ends = [x for a, b in itertools.pairwise(places) for x in (a + 1e-6, b - 1e-6)]
     return max(float((np.abs(forces.at(x)[[0, 4, 5]]) / over).sum()) for x in ends)
 
 
@@ -74,7 +67,7 @@ def stress(case, reactions, statics, link):
 @pytest.mark.parametrize("clearances", HOLES)
 @pytest.mark.parametrize("forks", [True, False])
 def test_links_bear_what_rigid_pins_between_springs_say(clearances, force, forks):
-    case = in_one_layer(clearances, force, forks=forks)
+    case = with_clearances(clearances, force, forks=forks)
     statics, holes = solve_case_statics(case), holes_of(case)
     forces = statics.forces["l"]
     acting = {("rocker", "P"): np.array([float(one.split()[0]) for one in force])}
@@ -97,9 +90,9 @@ def test_links_bear_what_rigid_pins_between_springs_say(clearances, force, forks
 
 def test_bands_hold_all_that_clearances_may_be():
     """Of a fork whose holes are known by ranges: two checks of links, pins, and the point."""
-    ranges = {name: dict.fromkeys(WIDE, ["0.02 mm", "0.1 mm"]) for name in ("O2", "A", "B", "O4")}
+    ranges = {name: {key: ["0.02 mm", "0.1 mm"] for key in WIDE} for name in ("O2", "A", "B", "O4")}
     force = ("0 N", "-4 N", "0.8 N")
-    case = in_one_layer(ranges, force, material=PLA)
+    case = with_clearances(ranges, force, material=PLA)
     bands = check_case(case, fidelity="beam").load_cases["l"]
     acting, holes = {("rocker", "P"): np.array([0.0, -4.0, 0.8])}, holes_of(case)
     draws, lengths, sizes = np.random.default_rng(3), list[float](), list[dict[str, float]]()
@@ -122,10 +115,10 @@ def test_bands_hold_all_that_clearances_may_be():
 
 
 def test_the_pin_of_a_fork_bears_the_couples_of_all_states():
-    """Its band reaches from the least to the largest of what each state makes of it; the value is that of the middle."""
-    ranges = {name: dict.fromkeys(WIDE, ["0 mm", "0.1 mm"]) for name in ("O2", "A", "B", "O4")}
+    """The band reaches from the least to the largest of what each state makes of it."""
+    ranges = {name: {key: ["0 mm", "0.1 mm"] for key in WIDE} for name in ("O2", "A", "B", "O4")}
     wide, known = (
-        check_case(in_one_layer(one, ("0 N", "-10 N", "2 N")), fidelity="beam").load_cases["l"].pins
+        check_case(with_clearances(one, ("0 N", "-10 N", "2 N")), fidelity="beam").load_cases["l"].pins
         for one in (ranges, HOLES[0])
     )
     for name in ("A", "B"):
@@ -136,7 +129,7 @@ def test_the_pin_of_a_fork_bears_the_couples_of_all_states():
 
 def test_in_the_plane_a_fork_is_as_it_was():
     """No couple, no frame: equilibrium alone has the forces."""
-    case = in_one_layer(HOLES[0], ("0 N", "-10 N"))
+    case = with_clearances(HOLES[0], ("0 N", "-10 N"))
     forces = solve_case_statics(case).forces["l"]
     assert forces.frame is None
     assert forces.sharings == ()

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tilting_pins import checked, four_bar
+from tilting_pins import checked, four_bar, in_one_layer
 
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from alula.fea.frame.build import build_frame
@@ -101,6 +101,21 @@ def test_the_fits_decide(monkeypatch):
         assert ("hinges in holes at O2, where" in in_words(found.reason)) == bool(holes)
         lows.append(20.0 * found.value.low)
     assert lows[0] < 0.95 * lows[1] < 0.9 * 57.5
+
+
+@pytest.mark.parametrize("tight", [False, True])
+def test_pins_of_forks_may_run_although_no_link_lies_in_a_layer(tight):
+    """Between four such holes the coupler rolls about its axis; the others, drawn as if in one place, are tight."""
+    data = in_one_layer(checks={"f": {"type": "frequency", "minimum": 2.0}}, load_cases={"l": TURNING})
+    data["materials"]["m"] |= PLASTIC
+    for name in ("A", "B") if tight else ():
+        data["joints"][name]["tight_in"] = data["joints"][name]["links"]
+    case = checked(data)
+    assert {name for name, _ in running_holes(case)} == (set() if tight else {"A", "B"})
+    [found] = [one for one in frequency_outcomes(asked_frequencies(case)) if one.subject == LINKAGE]
+    assert found.value.value > 2.0
+    assert found.verdict is (Verdict.PASS if tight else Verdict.UNDECIDED)
+    assert (found.value.low > 0.5 * found.value.value) == tight
 
 
 def linkage_outcomes() -> list[CheckOutcome]:
