@@ -124,7 +124,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
         how, remedy = reason("unstable_at_pose", pose=when(moved, i), factor=least), reason("check_that_pose")
         slack = stated_scatter(case, load_case).times(eyes)
-        pins = forces_at(moved, load_case, i).pins
+        pins = forces_at(moved, load_case, i).pins if frame.pin_beams else None
         rims = None if pins is None else rim_factors(pins)
         outcome = by_linear_theory(load_case, least, factor, slack, how, remedy, rims)
         if outcome.verdict is not Verdict.PASS:

@@ -60,9 +60,9 @@ def pin_parts(stated: Case, case: LoadCaseResult) -> Iterator[Part]:
     )
     forked = any(forked_link(stated, name) is not None for name in stated.joints)
     fork = "; in a fork, from half of what crosses a gap to forces spread evenly along cheeks and eye" if forked else ""
-    layers = "; between layers, over how pins may stand in their holes" if stated.layered else ""
+    holes = "; and over how pins may stand in their holes" if case.forces.pins is not None else ""
     band = "The band reaches from an equal share of the couple for both eyes to the whole couple on one eye"
-    yield Text(f"{band}{fork}{layers}.", "note")
+    yield Text(f"{band}{fork}{holes}.", "note")
 
 
 def pin_record(case: LoadCaseResult) -> list[dict[str, Any]]:
