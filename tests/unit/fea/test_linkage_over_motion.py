@@ -44,7 +44,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         "blind_link": lambda case: "",
         "_worst": lambda *_: order,
         "pose_at": lambda motion, i: i,
-        "build_frame": lambda case, pose, loads, held: SimpleNamespace(model=None, pose=pose),
+        "build_frame": lambda case, pose, loads, held: SimpleNamespace(model=None, pose=pose, pin_beams={}),
         "linkage_factor": lambda frame: factors[frame.pose],
         "solve_frame": lambda model: None,
         "compliance_range": lambda case, frame, solution: Scatter(high=eyes[frame.pose]),
@@ -54,7 +54,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
     for name, stub in stubs.items():
         monkeypatch.setattr(linkage_history, name, stub)
     moved = SimpleNamespace(
-        case=SimpleNamespace(large_displacement="auto", layered=False),
+        case=SimpleNamespace(large_displacement="auto"),
         motion=SimpleNamespace(
             coordinate=Coordinate("crank"),
             angles=np.radians([10.0, 20.0]),
