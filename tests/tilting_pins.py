@@ -72,7 +72,10 @@ def in_one_layer(*, forks: bool = True, **further: Any) -> dict[str, Any]:
     data["links"]["base"]["thickness"] = "5 mm"
     if forks:
         data["parts"]["thick"] = data["parts"]["bar"] | {"thickness": "10 mm"}
-        eyes = {at: {"fork": gap, "fork_depth": "16 mm", "fork_radius": "0.8 mm"} for at, gap in (("A", "4.4 mm"), ("B", "5 mm"))}
+        eyes = {
+            at: {"fork": gap, "fork_depth": "16 mm", "fork_radius": "0.8 mm"}
+            for at, gap in (("A", "4.4 mm"), ("B", "5 mm"))
+        }
         data["links"]["coupler"] |= {"part": "thick", "eyes": eyes}
     return data
 

@@ -166,7 +166,7 @@ def rim_growth(pins: PinStates, factor: float) -> RimGrowth:
     for one, before, after in zip(every, stood, stand, strict=True):
         more = path.natural_forces(one.moved(after) - plain.moved(before), after - before)
         parts = ends.tight + ends.by_rims @ before
-        found.append((largest(parts), largest(parts + ends.unit * more[ends.rows])))
+        found.append((largest(parts), largest(parts + ends.parts(more.reshape(-1, 6)))))
     (tight, *small), (tight_grown, *grown) = zip(*found, strict=True)
     # What pins make of stresses in small motions has its own band; over its ends those on the deformed shape go.
     plainly = np.divide(tight, tight_grown, out=np.ones_like(tight), where=tight_grown > 0.0)

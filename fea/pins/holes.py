@@ -13,6 +13,7 @@ structural modification by the force method).
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,14 +54,15 @@ class Hole:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BeamEnds:
-    """What bears on the sections at both ends of pins and of all stretches of links' beams, as plain stresses.
+    """What bears on sections at both ends of all stretches of links' beams, and of pins between eyes: plain stresses.
 
     Attributes
     ----------
     owners : tuple of tuple of (str, str)
         Of each of e ends: "link" or "pin", and the name of the link or joint.
-    rows : ndarray of int, shape (e, 4)
-        Natural forces of all elements, six of each, that bear on it.
+    elements : ndarray of int, shape (e,)
+    stations : ndarray, shape (e,)
+        Where on the element, from 0 at its first end to 1.
     unit : ndarray, shape (e, 4)
         Stress that a unit of each makes [1/mm², 1/mm³].
     tight : ndarray, shape (e, 4)
@@ -72,7 +74,8 @@ class BeamEnds:
     """
 
     owners: tuple[tuple[str, str], ...]
-    rows: NDArray[np.int64]
+    elements: NDArray[np.int64]
+    stations: Real
     unit: Real
     tight: Real
     by_rims: Real
@@ -92,12 +95,28 @@ class BeamEnds:
         """
         return BeamEnds(
             owners=tuple(self.owners[k] for k in ends),
-            rows=self.rows[ends],
+            elements=self.elements[ends],
+            stations=self.stations[ends],
             unit=self.unit[ends],
             tight=self.tight[ends],
             by_rims=self.by_rims[ends],
             round=self.round[ends],
         )
+
+    def parts(self, natural: Real) -> Real:
+        """Return the stresses that add up to those of plain sections.
+
+        Parameters
+        ----------
+        natural : ndarray, shape (m, 6, ...)
+            Natural forces of all elements.
+
+        Returns
+        -------
+        ndarray, shape (e, 4, ...)
+            As ``tight``.
+        """
+        return _sections(natural, self.elements, self.stations, self.unit)
 
     def stresses(self, parts: Real) -> Real:
         """Return the stress of plain sections.
@@ -144,6 +163,8 @@ class RimFrame:
         Stiffness [N/mm].
     g : ndarray, shape (4 h,)
         Forces at the rims with tight pins [N].
+    faces : mapping of str to tuple of 2 float
+        Joint -> where on its pin's beam, from 0 to 1, the eyes at both ends end; left out where that is not known.
     """
 
     frame: LinkageFrame
@@ -156,11 +177,12 @@ class RimFrame:
     by_rims: Real
     K: Real
     g: Real
+    faces: Mapping[str, tuple[float, float]]
 
     @cached_property
     def beam_ends(self) -> BeamEnds:
         """Of all pins, and links with a beam."""
-        return _beam_ends(self.frame, self.solved, self.opened)
+        return _beam_ends(self.frame, self.solved, self.opened, self.faces)
 
     @property
     def noise(self) -> float:
@@ -168,7 +190,12 @@ class RimFrame:
         return _noise(self.frame)
 
     @classmethod
-    def of(cls, frame: LinkageFrame, rims: Mapping[tuple[str, str], tuple[float, float]]) -> "RimFrame":
+    def of(
+        cls,
+        frame: LinkageFrame,
+        rims: Mapping[tuple[str, str], tuple[float, float]],
+        faces: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+    ) -> "RimFrame":
         """Condense a frame to the rims of its holes.
 
         Parameters
@@ -177,6 +204,8 @@ class RimFrame:
             With pins that are tight in both links.
         rims : mapping of (str, str) to tuple of 2 float
             Joint and link -> z of the rims of the hole, from the link's mid-plane [mm]; those left out are tight.
+        faces : mapping of str to tuple of 2 float, optional
+            As of the attribute.
 
         Returns
         -------
@@ -215,6 +244,7 @@ class RimFrame:
             by_rims=by_rims,
             K=(K + K.T) / 2.0,
             g=opening.T @ tight,
+            faces=faces,
         )
 
     def divided(self, model: FrameModel, parents: NDArray[np.int64]) -> "RimFrame":
@@ -235,7 +265,7 @@ class RimFrame:
         pins = {name: int(np.flatnonzero(parents == i)[0]) for name, i in self.frame.pin_beams.items()}
         rims = {(name, hole.link): (hole.low, hole.high) for hole in self.holes for name in hole.joints}
         beams = {k: self.frame.beams[i] for k, i in enumerate(parents.tolist()) if i in self.frame.beams}
-        return RimFrame.of(replace(self.frame, model=model, pin_beams=pins, beams=beams), rims)
+        return RimFrame.of(replace(self.frame, model=model, pin_beams=pins, beams=beams), rims, self.faces)
 
 
 def _noise(frame: LinkageFrame) -> float:
@@ -269,25 +299,38 @@ def _row(frame: LinkageFrame, entries: Mapping[int, float]) -> Real:
     return found
 
 
-def _beam_ends(frame: LinkageFrame, solved: FactorisedFrame, opened: Real) -> BeamEnds:
-    beams = [(i, ("link", beam.link)) for i, beam in frame.beams.items()]
-    beams += [(i, ("pin", joint)) for joint, i in frame.pin_beams.items()]
-    ends = [(i, owner, moments) for i, owner in beams for moments in ((1, 3), (2, 4))]
-    rows = np.array(
-        [6 * i + row for i, _, (about_z, about_y) in ends for row in (0, about_z, about_y, 5)], dtype=np.int64
-    )
-    sections = [frame.model.elements[i].section for i, _, _ in ends]
+def _beam_ends(
+    frame: LinkageFrame, solved: FactorisedFrame, opened: Real, faces: Mapping[str, tuple[float, float]]
+) -> BeamEnds:
+    ends = [(i, ("link", beam.link), at) for i, beam in frame.beams.items() for at in (0.0, 1.0)]
+    ends += [(i, ("pin", name), at) for name, i in frame.pin_beams.items() for at in faces.get(name, (0.0, 1.0))]
+    elements, stations = np.array([i for i, _, _ in ends], dtype=np.int64), np.array([at for _, _, at in ends])
+    sections = [frame.model.elements[i].section for i in elements]
     unit = np.array([_unit_stresses(section) for section in sections]).reshape(-1, 4)
+    rows = np.arange(6 * len(frame.model.elements), dtype=np.int64)
     tight, by_rims = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
-    by_rims[np.abs(by_rims).max(axis=1) <= _noise(frame)] = 0.0
+    by_rims[np.abs(by_rims).max(axis=1, initial=0.0) <= _noise(frame)] = 0.0
     return BeamEnds(
         owners=tuple(owner for _, owner, _ in ends),
-        rows=rows.reshape(-1, 4),
+        elements=elements,
+        stations=stations,
         unit=unit,
-        tight=unit * tight.reshape(-1, 4),
-        by_rims=unit[:, :, None] * by_rims.reshape(len(ends), 4, -1),
+        tight=_sections(tight.reshape(-1, 6), elements, stations, unit),
+        by_rims=_sections(by_rims.reshape(-1, 6, by_rims.shape[1]), elements, stations, unit),
         round=np.array([section.round for section in sections], dtype=bool),
     )
+
+
+def _sections(natural: Real, elements: NDArray[np.int64], stations: Real, unit: Real) -> Real:
+    """N/A, bending and shear stress (e, 4, ...) of sections of elements whose natural forces (m, 6, ...) are known.
+
+    Between the moments at an element's ends, which turn the same way, those of its sections go linearly.
+    """
+    every = natural[elements]
+    further = (slice(None), *[None] * (natural.ndim - 2))
+    at = stations[further]
+    found = [every[:, 0], *((1.0 - at) * every[:, k] - at * every[:, k + 1] for k in (1, 3)), every[:, 5]]
+    return np.asarray(np.stack(found, axis=1) * unit[(slice(None), slice(None), *[None] * (natural.ndim - 2))])
 
 
 def _unit_stresses(section: Section) -> tuple[float, float, float, float]:
@@ -342,6 +385,39 @@ def rims_of(case: Case, joint: str, link: str) -> tuple[float, float]:
     """
     found = known_hole(case, joint, link)
     return found or (-shortest(case) / 2.0, shortest(case) / 2.0)
+
+
+def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[float, float]]:
+    """Return where the eyes at both ends of pins between layers end.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        Of its linkage.
+
+    Returns
+    -------
+    dict of str to tuple of 2 float
+        As ``RimFrame.faces``, of pins between eyes that are known and lie side by side.
+    """
+    found, (starts, stops) = dict[str, tuple[float, float]](), frame.model.all_ends
+    for name, i in frame.pin_beams.items():
+        up, rims = float(stops[i][2] - starts[i][2]), [_known_at(case, *eye) for eye in frame.pin_eyes[name]]
+        if case.linkage.rise(name) == 0.0 or None in rims:
+            continue
+        (_, above), (below, _) = (rim if up > 0.0 else (-rim[1], -rim[0]) for rim in rims if rim)
+        ends = above / abs(up), 1.0 + below / abs(up)
+        if 0.0 <= ends[0] <= ends[1] <= 1.0:
+            found[name] = ends
+    return found
+
+
+def _known_at(case: Case, link: str, point: str) -> tuple[float, float] | None:
+    """Return the rims of the hole at a point of a link, as ``known_hole`` does."""
+    linkage = case.linkage
+    [joint, *_] = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
+    return known_hole(case, joint, link)
 
 
 def shortest(case: Case) -> float:

@@ -18,7 +18,7 @@ from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.pins.aims import Aims, Nearest, aims_of
 from alula.fea.pins.ascent import ascend
 from alula.fea.pins.clearances import Radii, clearances_of, furthest, head_gaps, pin_size, radii_of
-from alula.fea.pins.holes import RimFrame, rims_of
+from alula.fea.pins.holes import RimFrame, faces_of, rims_of
 from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
 from alula.fea.pins.tangent import RimTangent, tangent_of
 from alula.geometry.joints.fits import RUNNING, fit
@@ -344,9 +344,10 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
     open_holes = clearances_of(case, frame)
     if not open_holes:
         return None
-    rims = RimFrame.of(frame, {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes})
-    names = [[(joint, hole.link) for joint in hole.joints] for hole in rims.holes]
-    return PinStates(rims=rims, radii=radii_of(open_holes, names, head_gaps(case, rims.holes)))
+    rims = {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes}
+    condensed = RimFrame.of(frame, rims, faces_of(case, frame))
+    names = [[(joint, hole.link) for joint in hole.joints] for hole in condensed.holes]
+    return PinStates(rims=condensed, radii=radii_of(open_holes, names, head_gaps(case, condensed.holes)))
 
 
 def unstated(case: Case, pins: PinStates) -> tuple[str, ...]:

@@ -34,7 +34,9 @@ def test_ends_of_beams_bear_what_joint_forces_say(seed):
         )
         signs.add(np.sign(rise))
         couples[name] = (wrench[3:5] + rise * np.array([-wrench[1], wrench[0]]), wrench[3:5])
-        for part, couple in zip(found["pin", name], couples[name], strict=True):
+        half = [(case.links[link].thickness or 4.0) / 2.0 / abs(rise) for link in case.joints[name].links]
+        for part, at in zip(found["pin", name], (half[0], 1.0 - half[1]), strict=True):  # at the faces of both eyes
+            couple = (1.0 - at) * couples[name][0] + at * couples[name][1]
             assert math.hypot(*part[1:3]) == pytest.approx(32.0 * np.linalg.norm(couple) / (math.pi * diameter**3))
             assert abs(part[0]) == pytest.approx(4.0 * abs(wrench[2]) / (math.pi * diameter**2), abs=1e-9)
     assert signs == {-1.0, 1.0}
