@@ -25,13 +25,10 @@ _ARGUMENTS = (
     *("--headless", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-sync"),
     *("--disable-component-update", "--disable-default-apps", "--disable-extensions", "--force-device-scale-factor=1"),
     *("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars"),
-    *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=<-loopback>"),  # a port at which nobody answers
+    *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=127.0.0.1"),  # of this machine alone somebody answers
+    *("--disable-gpu-compositing", "--disable-gpu-rasterization"),  # of a GPU that is imitated, models alone need one
 )
 NO_WEBGL = ("--disable-3d-apis",)
-LOCAL = ("--proxy-bypass-list=127.0.0.1",)
-"""Pages of this machine's own servers are reached; all else is as before."""
-FLAT = ("--disable-gpu-compositing", "--disable-gpu-rasterization")
-"""Pages without models: where a GPU is only imitated, drawing them without one is quicker."""
 
 
 def programs() -> tuple[str, str] | None:
@@ -51,6 +48,7 @@ class Browser:
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
         self.command("Emulation.setDeviceMetricsOverride", **metrics)
+        self.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
         self.messages(), self.requests()
         self.driver.get(page if isinstance(page, str) else page.as_uri())
 
@@ -78,8 +76,9 @@ class Browser:
         return list(self.driver.find_elements("css selector", selector))
 
     def messages(self) -> list[str]:
-        """Return what the console has shown since this was last asked."""
-        return [entry["message"] for entry in self.driver.get_log("browser")]
+        """Return what the console has shown since this was last asked, but for what the imitated GPU says of its speed."""
+        told = [entry["message"] for entry in self.driver.get_log("browser")]
+        return [message for message in told if "GL Driver Message (OpenGL, Performance" not in message]
 
     def requests(self) -> list[str]:
         """Return the addresses that the page has asked for since this was last asked, but for data in the page."""
