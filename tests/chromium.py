@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import time
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -62,10 +63,13 @@ class Browser:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, script: str, seconds: float = 60.0) -> Any:
-        """Wait until an expression of the page is true, and return it."""
-        from selenium.webdriver.support.ui import WebDriverWait
-
-        return WebDriverWait(self.driver, seconds, 0.02).until(lambda driver: driver.execute_script(f"return {script}"))
+        """Wait until an expression of the page is true, and return it; what takes long is asked for less often."""
+        asked = time.monotonic()
+        while not (found := self.run(f"return {script}")):
+            waited = time.monotonic() - asked
+            assert waited < seconds, f"in {seconds} s it was never true: {script}"
+            time.sleep(0.02 + 0.1 * min(waited, 2.0))
+        return found
 
     def element(self, selector: str) -> Any:
         """Return the first element of a CSS selector."""
@@ -76,7 +80,7 @@ class Browser:
         return list(self.driver.find_elements("css selector", selector))
 
     def messages(self) -> list[str]:
-        """Return what the console has shown since this was last asked, but for what the imitated GPU says of its speed."""
+        """Return what the console has shown since this was last asked, but for the speed of an imitated GPU."""
         told = [entry["message"] for entry in self.driver.get_log("browser")]
         return [message for message in told if "GL Driver Message (OpenGL, Performance" not in message]
 

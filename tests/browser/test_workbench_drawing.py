@@ -59,10 +59,10 @@ def state(browser, expression):
 def settle(browser, what="true"):
     """Wait until the drawing and its forces are of the newest text, nothing is held any more, and something is so."""
     followed = "now.drawn?.revision === now.document.revision && Object.keys(now.drawn.forces).length > 0"
-    for _ in range(1000):
-        if state(browser, f"{followed} && !now.held && {what}"):
-            return
-    pytest.fail("the drawing does not follow the text")
+    browser.wait(
+        "import(new URL('page/store.js', document.baseURI))"
+        f".then(({{ store: {{ state: now }} }}) => {followed} && !now.held && ({what}))"
+    )
 
 
 def handle(browser, label):
