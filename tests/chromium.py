@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import time
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,13 +26,10 @@ _ARGUMENTS = (
     *("--headless", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-sync"),
     *("--disable-component-update", "--disable-default-apps", "--disable-extensions", "--force-device-scale-factor=1"),
     *("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars"),
-    *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=<-loopback>"),  # a port at which nobody answers
+    *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=127.0.0.1"),  # of this machine alone somebody answers
+    *("--disable-gpu-compositing", "--disable-gpu-rasterization"),  # of a GPU that is imitated, models alone need one
 )
 NO_WEBGL = ("--disable-3d-apis",)
-LOCAL = ("--proxy-bypass-list=127.0.0.1",)
-"""Pages of this machine's own servers are reached; all else is as before."""
-FLAT = ("--disable-gpu-compositing", "--disable-gpu-rasterization")
-"""Pages without models: where a GPU is only imitated, drawing them without one is quicker."""
 
 
 def programs() -> tuple[str, str] | None:
@@ -51,6 +49,7 @@ class Browser:
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
         self.command("Emulation.setDeviceMetricsOverride", **metrics)
+        self.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
         self.messages(), self.requests()
         self.driver.get(page if isinstance(page, str) else page.as_uri())
 
@@ -64,10 +63,13 @@ class Browser:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, script: str, seconds: float = 60.0) -> Any:
-        """Wait until an expression of the page is true, and return it."""
-        from selenium.webdriver.support.ui import WebDriverWait
-
-        return WebDriverWait(self.driver, seconds, 0.02).until(lambda driver: driver.execute_script(f"return {script}"))
+        """Wait until an expression of the page is true, and return it; what takes long is asked for less often."""
+        asked = time.monotonic()
+        while not (found := self.run(f"return {script}")):
+            waited = time.monotonic() - asked
+            assert waited < seconds, f"in {seconds} s it was never true: {script}"
+            time.sleep(0.02 + 0.1 * min(waited, 2.0))
+        return found
 
     def element(self, selector: str) -> Any:
         """Return the first element of a CSS selector."""
@@ -78,8 +80,9 @@ class Browser:
         return list(self.driver.find_elements("css selector", selector))
 
     def messages(self) -> list[str]:
-        """Return what the console has shown since this was last asked."""
-        return [entry["message"] for entry in self.driver.get_log("browser")]
+        """Return what the console has shown since this was last asked, but for the speed of an imitated GPU."""
+        told = [entry["message"] for entry in self.driver.get_log("browser")]
+        return [message for message in told if "GL Driver Message (OpenGL, Performance" not in message]
 
     def requests(self) -> list[str]:
         """Return the addresses that the page has asked for since this was last asked, but for data in the page."""

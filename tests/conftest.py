@@ -10,6 +10,7 @@ from pathlib import Path
 
 import chromium
 import pytest
+from _pytest import runner
 from hypothesis import settings
 
 # No deadline per example: a first call may import a library or build a mesh, and machines that test are busy.
@@ -36,6 +37,8 @@ def pytest_configure(config):
     """Make the folder by which the processes of a run share what they solve (``solved``); watch what tests start."""
     sys.addaudithook(as_on_a_bare_machine)
     os.environ["ALULA_CACHE"] = ""  # what an earlier run solved would hide what has changed
+    # Child processes that wait for requests serve those of one environment, and each test would start its own.
+    runner._update_current_test_var = lambda item, when: None
     if not hasattr(config, "workerinput"):
         os.environ["ALULA_TESTS_SHARE"] = tempfile.mkdtemp(prefix="alula-tests-")
 

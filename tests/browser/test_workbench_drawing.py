@@ -6,24 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-import chromium
 import pytest
-from chromium import FLAT, LOCAL, PHONE
+from chromium import PHONE
 
 from alula.reports.workbench.editing.document import Document
 
 WIDE = (1400, 900)
 PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 CASE = Path(__file__).parents[2] / "loads" / "cases" / "four-bar.toml"
-
-
-@pytest.fixture(scope="module")
-def local_browser(tmp_path_factory):
-    """A browser that reaches servers of this machine."""
-    if chromium.programs() is None:
-        pytest.skip(chromium.MISSING)
-    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL, *FLAT) as started:
-        yield started
 
 
 @pytest.fixture(scope="module")
@@ -40,19 +30,18 @@ def served(tmp_path_factory):
 
 
 @pytest.fixture
-def bench(local_browser, served):
+def bench(browser, served):
     """The page with the four-bar as it stands in its file; the console has to be quiet at the end."""
-    open_page(local_browser, served, WIDE)
-    yield local_browser
-    local_browser.driver.execute_async_script(
+    open_page(browser, served, WIDE)
+    yield browser
+    browser.driver.execute_async_script(
         "const done = arguments[arguments.length - 1];"
         "import(new URL('page/server.js', document.baseURI)).then((server) => server.change('reload')).then(done)"
     )
-    assert local_browser.messages() == []
+    assert browser.messages() == []
 
 
 def open_page(browser, address, size):
-    browser.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
     browser.open(address, size)
     browser.wait("document.querySelector('.forces .joint-force') && document.querySelector('.texts .load')")
     settle(browser)
@@ -70,10 +59,10 @@ def state(browser, expression):
 def settle(browser, what="true"):
     """Wait until the drawing and its forces are of the newest text, nothing is held any more, and something is so."""
     followed = "now.drawn?.revision === now.document.revision && Object.keys(now.drawn.forces).length > 0"
-    for _ in range(1000):
-        if state(browser, f"{followed} && !now.held && {what}"):
-            return
-    pytest.fail("the drawing does not follow the text")
+    browser.wait(
+        "import(new URL('page/store.js', document.baseURI))"
+        f".then(({{ store: {{ state: now }} }}) => {followed} && !now.held && ({what}))"
+    )
 
 
 def handle(browser, label):

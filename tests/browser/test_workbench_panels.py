@@ -62,13 +62,6 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]
             served.terminate()
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[chromium.Browser]:
-    """Chromium that reaches this machine, and nothing else."""
-    with chromium.chromium(tmp_path_factory.mktemp("profile"), *chromium.LOCAL) as started:
-        yield started
-
-
 def visit(browser: chromium.Browser, address: str, size: tuple[int, int] = chromium.DESKTOP) -> None:
     browser.open(address, size)
     browser.wait("document.querySelector('#panel-verdict .stamp')")

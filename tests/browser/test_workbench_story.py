@@ -12,9 +12,8 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-import chromium
 import pytest
-from chromium import LOCAL, PHONE
+from chromium import PHONE
 
 from alula.fea.check.run import check_case
 from alula.loads.case.case_file import read_case, read_text
@@ -30,15 +29,6 @@ const all = [...document.querySelectorAll("button, input, select, textarea, summ
 const wanted = all.filter((one) => shown(one) && (one.tabIndex >= 0 || !one.matches("[role=tab]")));
 return [wanted.indexOf(document.activeElement), wanted.length];
 """
-
-
-@pytest.fixture(scope="module")
-def own_browser(tmp_path_factory):
-    """A browser that reaches servers of this machine."""
-    if chromium.programs() is None:
-        pytest.skip(chromium.MISSING)
-    with chromium.chromium(tmp_path_factory.mktemp("profile"), *LOCAL) as started:
-        yield started
 
 
 @contextmanager
@@ -156,12 +146,12 @@ class Page:
                 image.convert("RGB").save(Path(folder) / f"{name}.png", optimize=True)
 
 
-def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tmp_path):
+def test_from_an_empty_folder_to_a_case_that_solids_have_checked(browser, tmp_path):
     """Three links and a load are drawn; the crank fails, is pulled until it passes, is solved as a solid, and saved."""
     folder = tmp_path / "linkages"
     folder.mkdir()
     size = SMALL if os.environ.get("ALULA_PICTURES") else WIDE
-    with opened(own_browser, folder, "clamp.toml", size) as page:
+    with opened(browser, folder, "clamp.toml", size) as page:
         page.press("Draw a linkage")
         page.browser.wait("document.querySelector('.handles circle')")
         hint = page.browser.element("#hint")
@@ -231,7 +221,7 @@ def test_from_an_empty_folder_to_a_case_that_solids_have_checked(own_browser, tm
         beside_another_editor(page, folder / "clamp.toml")
     saved = (folder / "clamp.toml").read_text(encoding="utf-8")
     assert saved == told.replace('"New linkage"', '"Mine"')
-    with opened(own_browser, folder, "clamp.toml") as page:
+    with opened(browser, folder, "clamp.toml") as page:
         page.drawn(3)
         assert page.verdict()["checks"] == passed["checks"]
 
@@ -280,13 +270,13 @@ def beside_another_editor(page, file):
     page.until("now.document.saved")
 
 
-def test_line_ends_and_mark_stay_where_the_text_is_written(own_browser, tmp_path):
+def test_line_ends_and_mark_stay_where_the_text_is_written(browser, tmp_path):
     """As editors of Windows have them; what is typed is sent before Control and S save it."""
     file = tmp_path / "linkages" / "mine.toml"
     file.parent.mkdir()
     before = b"\xef\xbb\xbf" + read_text("four-bar")[0].replace("\n", "\r\n").encode()
     file.write_bytes(before)
-    with opened(own_browser, file.parent, "mine.toml") as page:
+    with opened(browser, file.parent, "mine.toml") as page:
         page.browser.element("#tab-text").click()
         area = "const area = document.querySelector('#panel-text textarea'); area.focus();"
         at = "const at = area.value.indexOf('\"Four-bar') + 1; area.setSelectionRange(at, at + 8);"
@@ -297,10 +287,10 @@ def test_line_ends_and_mark_stay_where_the_text_is_written(own_browser, tmp_path
     assert file.read_bytes() == before.replace(b'"Four-bar', b'"Mine')
 
 
-def test_the_keyboard_alone_draws_and_reaches_everything(own_browser, tmp_path):
+def test_the_keyboard_alone_draws_and_reaches_everything(browser, tmp_path):
     folder = tmp_path / "linkages"
     folder.mkdir()
-    with opened(own_browser, folder, "keys.toml") as page:
+    with opened(browser, folder, "keys.toml") as page:
         for _ in range(6):
             page.keys(TAB)
             if "Draw" in page.browser.driver.switch_to.active_element.text:
@@ -331,11 +321,11 @@ def reach(page, label):
     pytest.fail(f"Tab does not reach {label}")
 
 
-def test_what_is_begun_from_is_legible_on_a_phone_and_refuses_in_a_sentence(own_browser, tmp_path):
+def test_what_is_begun_from_is_legible_on_a_phone_and_refuses_in_a_sentence(browser, tmp_path):
     folder = tmp_path / "linkages"
     folder.mkdir()
     (folder / "mine.toml").write_text(read_text("finger")[0], encoding="utf-8")
-    with opened(own_browser, folder, "new.toml", PHONE) as page:
+    with opened(browser, folder, "new.toml", PHONE) as page:
         assert page.browser.run("return document.documentElement.scrollWidth") == PHONE[0]
         name = page.browser.element("#start input")
         name.clear()

@@ -176,3 +176,8 @@ def _until_gone(pid: bytes) -> None:
     while not programs.ended(int(pid)):
         assert time.monotonic() < deadline, "it lives on"
         time.sleep(0.05)
+
+
+def test_all_tests_have_one_environment() -> None:
+    """Of servers that wait none would serve another test, and each test would start its own (``conftest``)."""
+    assert "PYTEST_CURRENT_TEST" not in os.environ
