@@ -103,5 +103,13 @@ def test_the_fits_decide(monkeypatch):
     assert lows[0] < 0.95 * lows[1] < 0.9 * 57.5
 
 
+def test_heads_without_a_gap_leave_no_hinge():
+    """Faces that touch on both sides hold a link's tilt; with any gap, of which its range may be, it tilts in it."""
+    data = four_bar(play="0.1 mm")
+    for name, gap in {"O2": "0 mm", "A": ["0 mm", "0.02 mm"], "B": "0.02 mm", "O4": "0 mm"}.items():
+        data["joints"][name]["heads"] = {"diameter": "7 mm", "gap": gap}
+    assert {name for name, _ in running_holes(checked(data))} == {"A", "B"}
+
+
 def linkage_outcomes() -> list[CheckOutcome]:
     return [one for one in frequency_outcomes(asked_frequencies(plastic())) if one.subject == LINKAGE]
