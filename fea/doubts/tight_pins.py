@@ -175,6 +175,6 @@ def _helps(cases: Sequence[SharedCouples], link: str) -> Reason:
         if joints and all(one.decided_by(link, joints) for one in cases):
             return reason("fits_decide", joints=list(joints))
     if not own:
-        return reason("no_fit_decides")
+        return reason("narrower_fits")
     widths = {name: max(one.left(link, (name,)).high for one in cases) for name in own}
     return reason("fit_narrows_most", joint=min(own, key=lambda name: widths[name]))

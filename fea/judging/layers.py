@@ -12,10 +12,9 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from alula.fea.outcomes.limits import layer_limit
+from alula.fea.outcomes.limits import in_weakest_direction, layer_limit, may_lie_in_any_direction
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.refine.discretisation import Discretisation
-from alula.fea.solid.layers import in_worst_direction
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 
@@ -120,22 +119,6 @@ def with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckOu
     return outcome
 
 
-def may_lie_in_any_direction(case: Case, link: str) -> bool:
-    """Return whether a link's layers are the weaker, as its card tells, and may have any direction.
-
-    Parameters
-    ----------
-    case : Case
-    link : str
-
-    Returns
-    -------
-    bool
-    """
-    known = case.material_of(link).strength_across_layers is not None
-    return known and case.part_of(link).build_direction is None
-
-
 def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_mises: Band) -> Band:
     """Return a link's safety factor for all directions in which it may have been built.
 
@@ -159,7 +142,7 @@ def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_m
     if not may_lie_in_any_direction(case, link) or math.isnan(factor.low):
         return factor
     material = case.material_of(link)
-    least = layer_scatter(material).low * _weakest(material, principal.high, von_mises.high)
+    least = layer_scatter(material).low * in_weakest_direction(material, principal.high, von_mises.high)
     if not least < factor.low or factor.low == math.inf:
         return factor
     width = factor.low / least if least > 0.0 else math.inf
@@ -172,22 +155,13 @@ def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_m
     return replace(factor, low=least, sources=distinct(tuple(others), (build,)))
 
 
-def _weakest(material: Material, principal: float, von_mises: float) -> float:
-    """Return the safety factor of the weakest direction or less, 0 where shear has no strength."""
-    across, between = material.strength_across_layers, material.shear_strength_between_layers
-    if across is None or between is None:
-        return 0.0
-    worst = in_worst_direction(principal, von_mises, across / between)
-    return across / worst if worst > 0.0 else math.inf
-
-
 def _by_hand(material: Material, result: LinkResult) -> Band:
     """Return the least safety factor that the layers can have by hand: a bound for whatever direction they have."""
     principal, von_mises = result.principal_max, result.von_mises_max
     if result.safety_factor.without or principal.unknowable or math.isinf(von_mises.high):
         return Band.unknown()
-    value = _weakest(material, principal.value, von_mises.value)
-    least = layer_scatter(material).low * _weakest(material, principal.high, von_mises.high)
+    value = in_weakest_direction(material, principal.value, von_mises.value)
+    least = layer_scatter(material).low * in_weakest_direction(material, principal.high, von_mises.high)
     return Band(value=value, low=least, high=math.inf, sources=result.safety_factor.sources)
 
 

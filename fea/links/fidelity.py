@@ -248,7 +248,7 @@ def _limited(task: LinkTask, ranges: OpenRanges, hand: HandBands) -> Iterator[tu
 
 
 def _beyond_meshes(task: LinkTask, name: str, hand: HandBands) -> bool:
-    if name not in task.open_ranges or hand.outside or _layers_open(task, [hand]):
+    if name not in task.open_ranges or hand.outside or _layers_open(task, {name: hand}, task.open_ranges):
         return False
     return none_decides(
         [([(band.low, band.high)], limit) for band, limit, *_ in _limited(task, task.open_ranges[name], hand)]
@@ -384,16 +384,20 @@ def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[
     return None
 
 
-def _layers_open(task: LinkTask, hands: Sequence[HandBands]) -> bool:
-    """Whether layers, in the direction that is the worst for them, might not keep their limits."""
+def _layers_open(task: LinkTask, hands: Mapping[str, HandBands], ranges: Mapping[str, OpenRanges]) -> bool:
+    """Whether layers, in the direction that is the worst for them, might not keep their limits with all causes."""
     layers = task.layers
     if layers is None:
         return False
     if layers.between is None:
         return True
     ratio = layers.across / layers.between
-    worst = max(in_worst_direction(hand.principal.high, hand.von_mises.high, ratio) for hand in hands)
-    return any(worst > least for least, _ in task.layer_limits)
+    for name, hand in hands.items():
+        limits = ranges[name].limits.get("layers", ()) if name in ranges else task.layer_limits
+        worst = in_worst_direction(hand.principal.high, hand.von_mises.high, ratio)
+        if any(worst > least for least, _ in limits):
+            return True
+    return False
 
 
 def decided_by_hand(
@@ -417,9 +421,10 @@ def decided_by_hand(
     for hand in hands:
         if hand.outside:
             return None, reason("uncalibrated_since", outside=hand.outside)
-    if _layers_open(task, hands):
-        return None, reason("layers_open_by_hand")
     ranges = task.open_ranges if doubted is None else doubted
+    named = {loads.name: hand for loads, hand in zip(task.loads, hands, strict=True)}
+    if _layers_open(task, named, ranges):
+        return None, reason("layers_open_by_hand")
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
     open_limit = undecided(task, stresses, [hand.displacement for hand in hands]) or _open_for_doubts(
         task, hands, ranges

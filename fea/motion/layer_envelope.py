@@ -10,11 +10,12 @@ from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
-from alula.fea.judging.layers import in_any_direction, may_lie_in_any_direction
+from alula.fea.judging.layers import in_any_direction
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
 from alula.fea.motion.layer_fatigue import LayerCycle, critical_layer
 from alula.fea.motion.link_envelope import LinkMotion
 from alula.fea.outcomes.fatigue import closed_history, life_scatter, not_closed, strength_at
+from alula.fea.outcomes.limits import may_lie_in_any_direction
 from alula.fea.refine.link_series import STRESS
 from alula.fea.superposition.link_measure import StatePeaks
 from alula.geometry.base.ties import first_largest

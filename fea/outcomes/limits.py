@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from alula.fea.asked.asked import asked, asked_of, asks, cards_of, subjects_of
 from alula.fea.common.reason import Reason, reason
@@ -15,7 +16,8 @@ from alula.fea.common.scatter import (
 )
 from alula.fea.common.verdict import Quantity, Sense, Subject
 from alula.fea.outcomes.fatigue import borne_repeated
-from alula.fea.solid.layers import Layers
+from alula.fea.solid.layers import Layers, in_worst_direction
+from alula.geometry.materials.material import Material
 from alula.geometry.materials.plausible import is_plastic
 from alula.geometry.materials.printable import is_printed, is_solid_stock
 from alula.loads.case.case import Case
@@ -40,7 +42,8 @@ _ON_LOADS = {kind for one in Quantity if one.origin == "loads" and one.sense is 
 def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[Ends, ...]:
     """Return the limits [MPa] of all checks on a link's deciding stress, each with both ends of its stated scatter.
 
-    Plastic collapse and permanent set are among them: below such a stress no path has to be followed.
+    Plastic collapse and permanent set are among them: below such a stress no path has to be followed. Where the layers
+    may have any direction, the limit of a safety factor goes down to that of a pull in the weakest one.
 
     Parameters
     ----------
@@ -61,8 +64,11 @@ def stress_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple
     material, load, found = case.material_of(link), spread or _widest_load(case), []
     for one in asked(case, SafetyFactorCheck, PlasticCollapseCheck, SustainedCheck, subject=Subject.link(link)):
         if one.quantity is not Quantity.SUSTAINED_STRESS:
-            strength = strength_scatter(material).times(load.inverse)
-            found.append(_spread(material.allowable / one.limit, strength))
+            strength = strength_scatter(material)
+            if one.quantity is Quantity.SAFETY_FACTOR and may_lie_in_any_direction(case, link):
+                pulled = layer_scatter(material).low * in_weakest_direction(material, 1.0, 1.0) / material.allowable
+                strength = replace(strength, low=min(strength.low, pulled))
+            found.append(_spread(material.allowable / one.limit, strength.times(load.inverse)))
         elif not math.isnan(one.limit):
             found.append(_spread(one.limit, load.inverse))
     if asks(case, PermanentSetCheck):
@@ -159,6 +165,43 @@ def layer_limits(case: Case, link: str, spread: Scatter | None = None) -> tuple[
         return ()
     scatter = layer_scatter(case.material_of(link)).times((spread or _widest_load(case)).inverse)
     return (_spread(layers.across / least, scatter),)
+
+
+def may_lie_in_any_direction(case: Case, link: str) -> bool:
+    """Return whether a link's layers are the weaker, as its card tells, and may have any direction.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    bool
+    """
+    known = case.material_of(link).strength_across_layers is not None
+    return known and case.part_of(link).build_direction is None
+
+
+def in_weakest_direction(material: Material, principal: float, von_mises: float) -> float:
+    """Return the safety factor of the layers in the weakest direction or less, 0 where shear has no strength.
+
+    Parameters
+    ----------
+    material : Material
+        Its strengths as stated.
+    principal, von_mises : float
+        Largest stresses of all places [MPa].
+
+    Returns
+    -------
+    float
+    """
+    across, between = material.strength_across_layers, material.shear_strength_between_layers
+    if across is None or between is None:
+        return 0.0
+    worst = in_worst_direction(principal, von_mises, across / between)
+    return across / worst if worst > 0.0 else math.inf
 
 
 def _widest_load(case: Case) -> Scatter:

@@ -16,6 +16,7 @@ from alula.fea.common.reason import reason
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import ALL_DOFS, Dof, FrameModel, Tie
+from alula.fea.pins.clearances import gap_over_diameter
 from alula.fea.vibration.modes import Mode
 from alula.loads.case.case import Case
 from alula.loads.case.forks import in_holes
@@ -38,13 +39,20 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     Returns
     -------
     tuple of (str, str)
-        Joint and link. A slot is none of them: it holds the tilt about its direction, as its frame does.
+        Joint and link. A slot is none of them: it holds the tilt about its direction, as its frame does. Nor is a hole
+        between heads without a gap, which hold its link as it is.
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():
         if in_holes(case, name) or (joint.kind.has_pin and linkage.rise(name) != 0.0):
-            found += [(name, link) for link in joint.bored if linkage.pin_holes(name)[link].high > 0.0]
+            every = ((link, linkage.pin_holes(name)[link].high) for link in joint.bored)
+            found += [(name, link) for link, play in every if play > 0.0 and _tilts(case, name, link)]
     return tuple(found)
+
+
+def _tilts(case: Case, joint: str, link: str) -> bool:
+    gap = gap_over_diameter(case, joint, link)
+    return gap is None or gap[1] > 0.0
 
 
 def with_hinges(

@@ -220,7 +220,7 @@ class LayerGaps:
 
     @property
     def remedy(self) -> Reason | None:
-        """What keeps all gaps open, as tried: one tight pin, else less play of all; None where neither does.
+        """What keeps all gaps open, as tried: less play of one joint, else of all, and heads; None where nothing does.
 
         Where deflection alone may close a gap, that is told.
         """
@@ -245,8 +245,13 @@ class LayerGaps:
             every = self._share([each[:0] for each in free], [each.sum(axis=0) for each in free])
             name, rows = "", np.full(len(joints), every)
         share = float(rows.min())
-        tried = share > 0.0 and self._opens([self._free(frame, over, rows) for over in self._overlaps])
-        return reason("less_play_keeps_gap", joint=name, share=share) if tried else None
+        less = share > 0.0 and self._opens([self._free(frame, over, rows) for over in self._overlaps])
+        held = not name and self._opens([self._free(frame, over, held=True) for over in self._overlaps])
+        told = together(
+            reason("less_play_keeps_gap", joint=name, share=share) if less else None,
+            reason("heads_keep_gap") if held else None,
+        )
+        return told or None
 
     def _share(self, others: Sequence[Real], own: Sequence[Real]) -> float:
         """The share of its own play, in hundredths, that leaves every gap open beside what others take; 0 for none."""
@@ -306,8 +311,11 @@ class LayerGaps:
         known = [(one.frame, one.solution) for one in self.moved.shapes]
         return [Raised(frame=frame, solution=solution) for frame, solution in known if frame and solution]
 
-    def _free(self, frame: LinkageFrame, over: Overlap, shares: Real | None = None) -> Real:
-        """How far play of joints, or shares of it, lets both links come nearer at places (J, n), by forces at rims."""
+    def _free(self, frame: LinkageFrame, over: Overlap, shares: Real | None = None, *, held: bool = False) -> Real:
+        """How far play of joints, or shares of it, lets both links come nearer at places (J, n), by forces at rims.
+
+        ``held`` is with heads without a gap, between which no link tilts.
+        """
         total = np.zeros((len(self.case.joints), len(over.places)))
         middle, units = over.places.mean(axis=0), {}
         for link in (over.lower, over.upper):
@@ -317,16 +325,17 @@ class LayerGaps:
         for i, name in enumerate(self.case.joints):
             for group in loose_holes(self.case, name):
                 each = []
-                for held, whole in group:
+                for bored, whole in group:
                     play, force = whole if shares is None else shares[i] * whole, np.zeros((len(over.places), 2, 2))
                     for link, sign in ((over.lower, 1.0), (over.upper, -1.0)):
                         if link in units:
                             origin, (push, about_x, about_y) = units[link]
                             x, y = (over.places - origin).T[..., None, None]
-                            key = name, held
+                            key = name, bored
                             force += sign * (push[key] + y * about_x[key] - x * about_y[key])
                     alone = len(group) == 1
-                    apart = apart_at_rims(self.case, name, held, play) if alone else play
+                    apart = apart_at_rims(self.case, name, bored, play) if alone else play
+                    apart = 0.0 if held else apart
                     each.append(furthest(play / 2.0 * force, np.array(apart / (play / 2.0))))
                 total[i] += np.max(each, axis=0)
         return total

@@ -122,6 +122,12 @@ def test_what_would_keep_a_gap_open_does_so_where_it_is_done():
     assert "no joint alone keeps it open, but with 15 % of all clearances it would stay open" in every
     assert gap("4.05 mm", play="0.015 mm").verdict is Verdict.PASS
     assert gap("4.05 mm", play="0.017 mm").verdict is Verdict.UNDECIDED
+    assert "with heads without a gap on all pins it would stay open" in every
+    held = four_bar(play="0.1 mm", layer_spacing="4.05 mm", checks=CHECKS)
+    for joint in held["joints"].values():
+        joint["heads"] = {"diameter": "7 mm", "gap": "0 mm"}
+    found = check_case(checked(held), fidelity="beam").load_cases["l"].checks
+    assert {one.verdict for one in found if one.quantity is Quantity.LAYER_GAP} == {Verdict.PASS}
     assert "deflection alone may close it" in told(gap("4.001 mm", play="0.1 mm").reason)
 
 

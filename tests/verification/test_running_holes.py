@@ -118,5 +118,13 @@ def test_pins_of_forks_may_run_although_no_link_lies_in_a_layer(tight):
     assert (found.value.low > 0.5 * found.value.value) == tight
 
 
+def test_heads_without_a_gap_leave_no_hinge():
+    """Faces that touch on both sides hold a link's tilt; with any gap, of which its range may be, it tilts in it."""
+    data = four_bar(play="0.1 mm")
+    for name, gap in {"O2": "0 mm", "A": ["0 mm", "0.02 mm"], "B": "0.02 mm", "O4": "0 mm"}.items():
+        data["joints"][name]["heads"] = {"diameter": "7 mm", "gap": gap}
+    assert {name for name, _ in running_holes(checked(data))} == {"A", "B"}
+
+
 def linkage_outcomes() -> list[CheckOutcome]:
     return [one for one in frequency_outcomes(asked_frequencies(plastic())) if one.subject == LINKAGE]

@@ -76,3 +76,16 @@ def test_what_would_narrow_them_is_said_once_of_each_link() -> None:
         assert text.endswith(
             f"no fit of its pins alone would decide its check; that of joint {joint} narrows its band most"
         )
+
+
+def test_who_has_stated_all_fits_is_not_told_that_none_decides() -> None:
+    """Nothing is tried there: the sentence said that no fit would decide, where narrower ones may."""
+    checks = {"s": {"type": "safety-factor", "minimum": 7.0, "links": ["crank", "coupler"]}}
+    data = four_bar(play="0.1 mm", checks=checks, large_displacement="off")
+    data["materials"]["m"] |= ALUMINIUM
+    for joint in data["joints"].values():
+        joint["clearance"] = ["0.05 mm", "0.15 mm"]
+    result = check_case(four_bar_case(data), fidelity="beam")
+    told = [text for text in map(in_words, result.warnings) if "how pins share the couples" in text]
+    assert told
+    assert all(text.endswith("the fits of its pins are stated; narrower ones leave less of that") for text in told)

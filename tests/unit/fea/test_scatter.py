@@ -26,7 +26,9 @@ from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.nonlinear import large_displacement, rim_growth
 from alula.fea.nonlinear.stability import growth
+from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.refinement import Effort
+from alula.fea.solid.layers import Layers, in_worst_direction
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.material import library
 from alula.loads.states.case_motion import solve_case_motion
@@ -134,6 +136,26 @@ def test_hand_calculation_decides_on_the_whole_band():
     decision, why = decided_by_hand(ranged, [hand])
     assert decision is None
     assert "(with stated scatter)" in told(why)
+
+
+def test_layers_are_decided_by_hand_with_all_that_other_causes_make_of_them():
+    """The limits of two loads as sharing of couples or play leave them; the second one's lies in its band alone."""
+    plain = eye_link.task(1000.0)
+    hand = hand_bands(plain, plain.loads[0], eye_link.beam(plain))
+    layers = Layers(normal=(0.0, 0.0, 1.0), across=1.0, between=1.0)
+    most = in_worst_direction(hand.principal.high, hand.von_mises.high, 1.0)
+    loads = plain.loads[0], replace(plain.loads[0], name="other")
+    printed = replace(plain, loads=loads, layers=layers, layer_limits=((1.5 * most, 3.0 * most),))
+
+    def found(*lower):
+        limits = [{"layers": ((one * most, 3.0 * most),)} for one in lower]
+        ranges = {one.name: OpenRanges(limits=of) for one, of in zip(loads, limits, strict=True)}
+        return decided_by_hand(printed, [hand, hand], ranges)
+
+    assert found(1.1, 1.1)[0] is not None
+    decision, why = found(1.1, 0.9)
+    assert decision is None
+    assert "layers" in told(why)
 
 
 def test_hand_calculation_without_calibration_neither_passes_nor_fails(path):
