@@ -44,6 +44,24 @@ import(document.baseURI + "page/store.js").then(({ store }) => {
   done();
 });
 """
+TYPE = """
+const [was, now, ahead, other, done] = arguments;
+const area = document.querySelector("#panel-text textarea");
+const elsewhere = (store) => fetch("text", {
+  method: "POST",
+  headers: { "Content-Type": "application/json" },
+  body: JSON.stringify({ revision: store.state.document.revision, text: store.state.document.text.replace(...other) }),
+});
+import(document.baseURI + "page/store.js").then(async ({ store }) => {
+  area.focus();
+  area.setRangeText(now, area.value.indexOf(was), area.value.indexOf(was) + was.length, "end");
+  area.dispatchEvent(new Event("input"));
+  const answer = elsewhere(store);
+  if (ahead) area.dispatchEvent(new KeyboardEvent("keydown", { key: "Control", ctrlKey: true }));
+  done((await answer).status);
+});
+"""
+"""Type, and have another page change the text before what is typed is sent, or while it is on its way."""
 PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 
 
@@ -171,6 +189,35 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
     write(browser, WIDTH, "9 mm")
     browser.wait("!document.querySelector('#plane svg.old')")
     a_range_waits_for_its_second_value(browser)
+
+
+@pytest.mark.parametrize("ahead", [False, True])
+def test_what_two_pages_write_at_once_stands_both(
+    browser: chromium.Browser, bench: tuple[str, Path], ahead: bool
+) -> None:
+    """Lines of both are in the text; where it is one line, the second page is told, and undo shows that of the first."""
+    address, _ = bench
+    visit(browser, address)
+    open_panel(browser, "text")
+    before = browser.run(f"return {TEXT}")
+    server = 'return import(document.baseURI + "page/server.js").then(({ change }) => change(...arguments))'
+    at_once = 'import(document.baseURI + "page/store.js").then(({ store: { state: now } }) => '
+    title, part = ('title = "', 'title = "{}, '), ("[parts.bar]", "[parts.bar] # {}")
+    for (was, typed), (elsewhere, put) in ((title, part), (part, title)):
+        typed, other = typed.format("mine"), (elsewhere, put.format("theirs"))
+        browser.driver.execute_async_script(TYPE, was, typed, ahead, other)
+        both = f"now.document.text.includes({json.dumps(typed)}) && now.document.text.includes({json.dumps(other[1])})"
+        browser.wait(f"{at_once} {both} && now.document.text === {TEXT})")
+        assert not browser.element("#notice").is_displayed()
+    browser.driver.execute_async_script(TYPE, "theirs, mine", "ours", ahead, ("theirs, mine", "others"))
+    browser.wait("document.querySelector('#notice').innerText.includes('in which you write')")
+    browser.wait(f"{at_once} now.document.text.includes('ours, ') && now.document.text === {TEXT})")
+    browser.run("document.activeElement.blur()")
+    browser.run(server, "undo")
+    browser.wait(f"{TEXT}.includes('others, ')")
+    browser.run(server, "text", {"text": before})
+    browser.wait(f"{TEXT} === {json.dumps(before)}")
+    browser.messages()  # that the server refused what came second
 
 
 def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
