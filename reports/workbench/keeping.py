@@ -108,13 +108,15 @@ def plain_name(name: str, suffix: str) -> str:
     return name
 
 
-def write_file(path: Path, text: str) -> None:
+def write_file(path: Path, text: str, over: str | None = None) -> None:
     """Write a file, all of it or nothing.
 
     Parameters
     ----------
     path : Path
     text : str
+    over : str, optional
+        What must stand there so far.
 
     Raises
     ------
@@ -122,7 +124,7 @@ def write_file(path: Path, text: str) -> None:
         Where the disk refuses, as ``alula.geometry.keeping.whole_file.write_whole`` does; the file is as it was then.
     """
     try:
-        write_whole(path, text.encode())
+        write_whole(path, text.encode(), over=None if over is None else over.encode())
     except OSError as error:
         raise CannotRunError(
             f"'{printable(path.name)}' cannot be written ({error.strerror or error}); the file is as it was, your "

@@ -21,6 +21,8 @@ from alula.reports.workbench.live.answers import case_of
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
 
+UNSEEN = Stamp(0, 0, 0, 0, writable=True)
+"""Of a file that was just written: the next look reads what stands there, ours or another program's."""
 PERIOD = 1.0
 """Seconds from one look at the disk to the next, and from one draft to the next."""
 QUIET = 15.0
@@ -321,7 +323,7 @@ class Session:
             self._look()
             if self._disk == "changed":
                 raise ConflictError("another program has changed the file; take its text over, or overwrite it")
-            await self._save()
+            await self._save("" if self._disk == "deleted" else self._stored)
             self._always = self._always if always is None else always
             self._tell_document()
 
@@ -338,14 +340,15 @@ class Session:
             self._stand(text, stamp)
             self._changed()
 
-    async def _save(self) -> None:
+    async def _save(self, over: str | None = None) -> None:
+        """Write the text into the file, unless something else stands there than what it is written over."""
         text = self._open().text
         if not text.strip() or len(text.encode()) > LARGEST_FILE:
             raise CaseError(
                 "the text is empty or larger than 1 MiB, and no case would be read from it; it was not saved"
             )
-        await asyncio.to_thread(write_file, self.path, text)
-        self._stand(text, stamp_of(self.path))
+        await asyncio.to_thread(write_file, self.path, text, over)
+        self._stand(text, UNSEEN)
         self._tell_document()
 
     def _stand(self, text: str, stamp: Stamp | None) -> None:
@@ -397,7 +400,7 @@ class Session:
             text = self.document.text
             if self._always and not self.saved and self._disk is None:
                 try:
-                    await self._save()
+                    await self._save(self._stored)
                 except AlulaError as error:
                     self._say(str(error))
             if not self.saved and text != self._drafted and self._drafts is not None and self._draft is None:

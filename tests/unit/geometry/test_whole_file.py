@@ -16,6 +16,21 @@ def test_a_file_keeps_its_place_behind_a_link_and_its_permissions(tmp_path):
     assert (file.read_bytes(), file.stat().st_mode & 0o777, link.is_symlink()) == (b"ab", 0o640, True)
 
 
+@pytest.mark.parametrize("there", [b"before", None])
+def test_a_file_is_written_over_what_it_is_meant_to_be_written_over_alone(tmp_path, monkeypatch, there):
+    """What another program writes while the new file is made stays."""
+    file, sync = tmp_path / "one.txt", os.fsync
+    if there is not None:
+        file.write_bytes(there)
+    with monkeypatch.context() as meanwhile, pytest.raises(FileExistsError, match="another program has just changed"):
+        meanwhile.setattr(os, "fsync", lambda descriptor: (file.write_bytes(b"theirs"), sync(descriptor)))
+        write_whole(file, b"after", over=there or b"")
+    assert file.read_bytes() == b"theirs"
+    assert [one.name for one in tmp_path.iterdir()] == ["one.txt"]
+    write_whole(file, b"after", over=b"theirs")
+    assert file.read_bytes() == b"after"
+
+
 @pytest.mark.parametrize("harm", ["read-only", "full", "no folder"])
 def test_what_cannot_be_written_stays_as_it_was(tmp_path, monkeypatch, harm):
     file = tmp_path / "one.txt"
