@@ -1,11 +1,16 @@
 """Files that are written whole or not at all."""
 
 import contextlib
+import ctypes
 import errno
 import os
 import secrets
 import shutil
+import sys
 from pathlib import Path
+
+_FROM_HERE, _EXCHANGE = -100, 2
+"""``AT_FDCWD`` and ``RENAME_EXCHANGE`` of Linux."""
 
 
 def write_whole(path: Path, *content: bytes, lasting: bool = True, over: bytes | None = None) -> None:
@@ -47,11 +52,7 @@ def write_whole(path: Path, *content: bytes, lasting: bool = True, over: bytes |
             with contextlib.suppress(OSError):  # the file of another user, who lets this one write
                 shutil.chown(made, target.stat().st_uid, target.stat().st_gid)
             shutil.copymode(target, made)
-        if (
-            over is not None and (target.read_bytes() if target.exists() else b"") != over
-        ):  # last, as a write takes long
-            raise FileExistsError(errno.EEXIST, "another program has just changed it")
-        made.replace(target)
+        _take_place(made, target, over)
     except BaseException:
         made.unlink(missing_ok=True)
         raise
@@ -62,3 +63,26 @@ def write_whole(path: Path, *content: bytes, lasting: bool = True, over: bytes |
                 os.fsync(folder)
             finally:
                 os.close(folder)
+
+
+def _take_place(made: Path, target: Path, over: bytes | None) -> None:
+    """Give a new file the name of another, where that holds what it is meant to hold."""
+    changed = FileExistsError(errno.EEXIST, "another program has just changed it")
+    if over is not None and (target.read_bytes() if target.exists() else b"") != over:
+        raise changed
+    if over is None or not _exchanged(made, target):
+        made.replace(target)
+        return
+    if made.read_bytes() != over:  # it was changed between the look and the exchange
+        _exchanged(made, target)
+        raise changed
+    made.unlink()
+
+
+def _exchanged(one: Path, other: Path) -> bool:
+    """Let two files have each other's name, in one step; false where the system cannot, or one is missing."""
+    if sys.platform != "linux":
+        return False
+    exchange = getattr(ctypes.CDLL(None), "renameat2", None)
+    names = os.fsencode(one), os.fsencode(other)
+    return bool(exchange and exchange(_FROM_HERE, names[0], _FROM_HERE, names[1], _EXCHANGE) == 0)

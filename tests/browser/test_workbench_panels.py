@@ -195,7 +195,7 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
 def test_what_two_pages_write_at_once_stands_both(
     browser: chromium.Browser, bench: tuple[str, Path], ahead: bool
 ) -> None:
-    """Lines of both are in the text; where it is one line, the second page is told, and undo shows that of the first."""
+    """Lines of both stand in the text; where it is one line, the second page is told, and undo shows the first."""
     address, _ = bench
     visit(browser, address)
     open_panel(browser, "text")

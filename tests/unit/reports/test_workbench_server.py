@@ -401,10 +401,7 @@ def test_a_change_on_the_disk_while_it_is_saved_is_not_overwritten(bench, case, 
     with bench.events() as events:
         monkeypatch.setattr(session, "write_file", meanwhile)
         retitled(bench, "mine")
-        if always:
-            told = events.next("notice")["sentence"]
-        else:
-            told = sentence(bench.post("save"))
+        told = events.next("notice")["sentence"] if always else sentence(bench.post("save"))
         assert "another program has just changed it" in told
         found = events.next("document", disk="changed")
         assert '"mine"' in found["text"]
