@@ -272,7 +272,12 @@ def test_pictures_and_the_report_leave_the_page(
     assert 'fill="rgb(' in drawn
     picture = ElementTree.fromstring(drawn)
     assert picture.tag == "{http://www.w3.org/2000/svg}svg"
-    assert {"crank", "coupler", "rocker"} <= {one.text.partition(":")[0] for one in picture.iter() if one.text}
+    told = [one.text.partition(":")[0] for one in picture.iter() if one.text]
+    assert {"may be more", "joint force", "layer 1"} <= {*told}, "legend and layers are seen as well"
+    assert all(told.count(link) == 2 for link in ("crank", "coupler", "rocker")), "in the plane and in the layers"
+    below = [float(one.get("y")) for one in picture.iter() if one.text in ("joint force", "x, y [mm]")]
+    assert below == sorted(below)
+    assert float(picture.get("height")) > below[-1]
     case = browser.driver.execute_async_script(READ, "application")
     assert tomllib.loads(case)["parts"]["bar"]["width"] == "9 mm"
     browser.run(PRESS, "STEP")
@@ -297,8 +302,12 @@ def copied_commands_run(browser: chromium.Browser, case: Path) -> None:
     """What the page gives to be copied runs as a shell takes it, beside the case; by hand alone, which takes less."""
     entry = "return import(document.baseURI + 'page/store.js').then(({ store }) => store.put('entry', arguments[0]))"
     browser.run(entry, ["parts", "bar", "width"])
-    study, *sizes = [one.text for one in browser.elements("#panel-out .command code")]
-    for command in (study, *sizes):  # sizes are those that the verdict names
+    commands = [one.text for one in browser.elements("#panel-out .command code")]  # sizes that the verdict names
+    for button in ("Study this", "Least size"):
+        browser.run(PRESS, button)
+        commands.append(browser.element("#panel-out .command code").text)
+        assert "parts.bar.width=4.5" in commands[-1]
+    for command in commands:
         program, *words = shlex.split(command)
         assert program == "alula"
         typed = [sys.executable, "-m", program, *words, "--fidelity", "beam"]

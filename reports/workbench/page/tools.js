@@ -29,7 +29,7 @@ export function mount(element) {
   const keeping = group(element, "File");
   const save = button(keeping, "Save", "Ctrl+S", "", () => change("save"));
   const box = make("input", { type: "checkbox", onchange: () => change("save", { always: box.checked }) });
-  add(keeping, "label", { class: "choice" }, box, " save as one goes");
+  add(keeping, "label", { class: "choice" }, box, " by itself");
   loadCases(group(element, "Load case"));
   store.on("document", (now) => {
     undo.disabled = !now.undo;
@@ -69,8 +69,8 @@ export function removeOf(handle) {
 
 /** The load case that is shown: the first one until another is chosen. */
 function loadCases(element) {
-  const list = make("select", { onchange: () => store.put("loadCase", list.value) });
-  add(element, "label", { class: "choice" }, "Load case ", list);
+  const list = make("select", { "aria-label": "Load case", onchange: () => store.put("loadCase", list.value) });
+  add(element, "label", { class: "choice" }, make("span", {}, "Load case "), list);
   const show = () => {
     const names = store.state.drawn?.load_cases ?? [];
     offer(list, names);
