@@ -381,6 +381,18 @@ def joint_of(document, *links):
     return next(name for name, one in document.tables()["joints"].items() if set(one["links"]) == set(links))
 
 
+def test_a_mistake_is_told_before_there_is_a_load(bench):
+    """That loads are missing is none: the line at the bottom says what is wanted next."""
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    bench.run(edit, [{"op": "remove", "path": ["load_cases"]}])
+    bench.wait("document.querySelector('#hint').innerText.includes('Add load')")
+    bench.wait("document.querySelector('#problem').textContent.includes('load_cases')")
+    assert not bench.element("#problem").is_displayed()
+    bench.run(edit, [{"op": "set", "path": ["drive", "joint"], "value": "O9"}])
+    bench.wait("document.querySelector('#problem').innerText.includes(\"'O9' is no joint\")")
+    assert "Add load" in bench.element("#hint").text
+
+
 def test_the_keyboard_alone_moves_a_joint_and_adds_a_load(bench):
     left = state(bench, "now.view.left")
     for _ in range(60):
