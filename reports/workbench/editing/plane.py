@@ -154,9 +154,7 @@ class Plane:
             if not self.joints[name].slides and set(ends) <= self.local.keys():
                 first, second = (self.node[end] for end in ends)
                 self.node = {key: first if one == second else one for key, one in self.node.items()}
-        self.shapes = {
-            name: value_at(tables, ("parts", one.get("part", ""), "shape")) for name, one in self.links.items()
-        }
+        self.shapes = {name: value_at(tables, ("parts", one.get("part"), "shape")) for name, one in self.links.items()}
         self.straight = {name for name in self.links if name != self.ground and self._straight(name)}
         self.frames = self._posed(pose)
         self.at = {

@@ -149,9 +149,7 @@ def rename(draft: TomlText, path: Path, to: str) -> None:
         _rename_point(draft, str(path[1]), name, to, "")
         return
     if not (len(path) == 2 and path[0] in NAMED) or value_at(draft.tables, path) is None:
-        raise CaseError(
-            f"edit {told}: there is no link, joint, point or the like of this name; choose one that is there"
-        )
+        raise CaseError(f"edit {told}: there is nothing of this name; choose one that is there")
     free(draft, path, to)
     if path[0] == "joints" and "points" not in value_at(draft.tables, path):
         links = value_at(draft.tables, (*path, "links"))

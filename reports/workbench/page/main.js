@@ -45,9 +45,6 @@ function tabs() {
   show(store.state.panel);
 }
 
-/** What is missing while a linkage is drawn, which is no mistake. */
-const BEGUN = /^(links: it has|load_cases: this entry is missing|drive: the linkage has mobility)/;
-
 /** The name of the file, what is wrong with it, and what happened. */
 function said() {
   store.on("document", (now) => {
@@ -56,7 +53,7 @@ function said() {
     document.title = now.name ? `${name}${now.saved ? "" : " (not saved)"} - alula` : name;
     const line = now.problem?.line ? `Line ${now.problem.line}: ` : "";
     find("problem").textContent = now.problem ? line + now.problem.sentence : "";
-    find("problem").hidden = !now.problem || (BEGUN.test(now.problem.sentence) && Boolean(tools.nextStep(now)));
+    find("problem").hidden = !now.problem || Boolean(tools.nextStep(now)); // what is only begun is no mistake
     asked(now);
   });
   store.on("notice", (notice) => {

@@ -6,7 +6,7 @@ import { beyond, freePoints, poseHandle, radians, scene } from "./scene.js";
 import { ofPose, reachOf } from "./motion.js";
 import { add, Group, make, perFrame } from "./elements.js";
 import { along, place } from "./labels.js";
-import { angle, fit, gridStep, leastOf, minus, number, plus, size, toScreen, turned } from "./view.js";
+import { angle, fit, gridStep, minus, number, plus, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
 const ARROW = 0.2;
@@ -132,19 +132,13 @@ function grid({ width, height }) {
 
 const trace = (points, closed) => points.map((one, k) => `${k ? "L" : "M"}${toScreen(one).map((part) => part.toFixed(1))}`).join("") + (closed ? "Z" : "");
 
-const mark = ([x, y]) => ({ class: "dead", d: `M${x - 5} ${y}l5 -5l5 5l-5 5Z` });
-
-/** Paths of all points over the motion, with the places where a dead point holds them. */
+/** Paths of all points over the motion. */
 function paths({ now }) {
   const { motion } = store.state;
   if (!store.state.paths || !motion?.points) return;
-  const dead = (motion.dead ?? []).map((value) => leastOf(motion.values.map((one) => Math.abs(one - value))));
   for (const [name, points] of Object.entries(motion.points)) {
     if (now.links.some((link) => link.ground && link.points.some((point) => name === `${link.name}.${point.name}`))) continue;
     groups.paths.put(name, "path", { d: trace(points, false) });
-    for (const k of dead) {
-      groups.paths.put(`${name} ${k}`, "path", mark(toScreen(points[k])));
-    }
   }
 }
 
@@ -158,16 +152,11 @@ function reach({ now, texts }) {
   const stand = (to) => (pose.way ? plus(pose.at, pose.way, to - here) : plus(pose.pivot, turned(minus(pose.at, pose.pivot), radians(to - here))));
   const way = Array.from({ length: 73 }, (_, k) => stand(ends[0] + ((ends[1] - ends[0]) * k) / 72));
   groups.paths.put("reach", "path", { class: "reach", d: trace(way, false) });
-  const told = (to, text) => texts.push({ key: `reach ${text} ${to}`, text: `${text}${number(to)}${kind === "travel" ? " mm" : "°"}`, anchors: [toScreen(stand(to))], kind: "reach", rank: 8 });
-  for (const to of dead) {
-    groups.paths.put(`reach dead ${to}`, "path", mark(toScreen(stand(to))));
-    told(to, "dead at ");
-  }
-  for (const to of turns ? [] : ends.filter((end) => !dead.some((one) => Math.abs(one - end) < 0.02 * (ends[1] - ends[0])))) {
-    const across = pose.way ? turned(pose.way, Math.PI / 2) : minus(stand(to), pose.pivot);
-    const half = 6 / store.state.view.scale / size(across);
-    groups.paths.put(`reach end ${to}`, "path", { class: "end", d: trace([half, -half].map((far) => plus(stand(to), across, far)), false) });
-    told(to, "");
+  const open = turns ? [] : ends.filter((end) => !dead.some((one) => Math.abs(one - end) < 0.02 * (ends[1] - ends[0])));
+  for (const to of [...dead, ...open]) {
+    const [key, at, stops] = [`reach ${to}`, toScreen(stand(to)), dead.includes(to)];
+    groups.paths.put(key, "path", { class: stops ? "dead" : "end", d: `M${at[0] - 5} ${at[1]}l5 -5l5 5l-5 5Z` });
+    texts.push({ key, text: `${stops ? "dead at " : ""}${number(to)}${kind === "travel" ? " mm" : "°"}`, anchors: [at], kind: "reach", rank: 8 });
   }
 }
 

@@ -83,16 +83,14 @@ function loadCases(element) {
   show();
 }
 
-/** What a case that is drawn from nothing wants next; "" where something acts on it already. */
+/** What a case that is drawn from nothing wants next; "" where something acts on it already, or where something is wrong. */
 export function nextStep(now) {
   if (!now?.problem || !now.tables || Object.keys(now.tables.load_cases ?? {}).length) return "";
-  const moving = Object.values(now.tables.links ?? {}).filter((link) => !link.ground).length;
-  const joints = Object.values(now.tables.joints ?? {});
-  if (!moving) return "Begin with Add link: press on a pin of the ground and release where the link shall end.";
-  if (joints.some((joint) => joint.type)) return "";
-  const free = joints.reduce((left, joint) => left - 2 * ((joint.links?.length ?? 1) - 1), 3 * moving);
-  if (free > 1) return `It moves in ${free} ways, and one is to be left: Add link from a free end to another pin or to the ground.`;
-  return free === 1 ? "It moves in one way, as a drive needs it. Add more links, or Add load." : "";
+  const { sentence } = now.problem;
+  const [, ways = 0] = sentence.match(/^drive: the linkage has mobility (\d+)/) ?? [];
+  if (ways > 1) return `It moves in ${ways} ways, and one is to be left: Add link from a free end to another pin or to the ground.`;
+  if (sentence.startsWith("links: it has 1")) return "Begin with Add link: press on a pin of the ground and release where the link shall end.";
+  return sentence.startsWith("load_cases: this entry is missing") ? "It moves in one way, as a drive needs it. Add more links, or Add load." : "";
 }
 
 /** What the tool that is taken up wants, and what the drawing does. */
