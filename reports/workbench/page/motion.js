@@ -118,7 +118,7 @@ function show() {
   parts.slider.max = values.length - 1;
   parts.slider.value = k;
   for (const [place, end] of parts.ends.entries()) end.textContent = number(motion.range[place]) + signs;
-  const more = [...(motion.turns ? ["turns fully"] : []), ...(motion.dead.length ? [`dead at ${motion.dead.map((one) => number(one) + signs).join(", ")}`] : [])];
+  const more = [...(motion.turns ? ["turns fully"] : []), ...(motion.dead.length ? [`dead ${motion.dead.map((one) => number(one) + signs).join(", ")}`] : [])];
   const text = `${number(instant === null && !motion.pose ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
   parts.slider.setAttribute("aria-valuetext", text);
   parts.said.textContent = parts.said.title = [text, ...more].join(", ");

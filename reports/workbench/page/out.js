@@ -110,7 +110,8 @@ export function mount(holder, store) {
 
   /** Offer entries that are quantities; one that is stepped on under Entries is chosen. */
   function entries() {
-    stated = new Map(quantities(store.state.document?.tables ?? {}));
+    const tables = store.state.document?.tables ?? {};
+    stated = new Map([...quantities({ parts: tables.parts }), ...quantities(tables)]); // sizes first
     offer(entry, [...stated.keys()]);
     for (const one of [study, size]) one.disabled = !stated.size;
     const sizes = (store.state.verdict.whole?.changes ?? []).map((change) => change.command).filter(Boolean);

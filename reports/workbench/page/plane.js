@@ -143,7 +143,7 @@ function paths({ now }) {
 }
 
 /** How far the pose's handle gets, with the ends and dead points of its way. */
-function reach({ now, texts }) {
+function reach({ now, texts, taken }) {
   const pose = poseHandle(now, 1 / store.state.view.scale);
   const { ends, dead, turns } = reachOf(store.state.motion) ?? {};
   if (!pose || !ends) return;
@@ -156,6 +156,7 @@ function reach({ now, texts }) {
   for (const to of [...dead, ...open]) {
     const [key, at, stops] = [`reach ${to}`, toScreen(stand(to)), dead.includes(to)];
     groups.paths.put(key, "path", { class: stops ? "dead" : "end", d: `M${at[0] - 5} ${at[1]}l5 -5l5 5l-5 5Z` });
+    taken.push(at);
     texts.push({ key, text: `${stops ? "dead at " : ""}${number(to)}${kind === "travel" ? " mm" : "°"}`, anchors: [at], kind: "reach", rank: 8 });
   }
 }
