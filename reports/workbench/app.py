@@ -172,7 +172,7 @@ def application(session: Session) -> Starlette:
         return JSONResponse(told)
 
     async def schema(request: Request) -> Response:
-        return Response(_schema(), media_type="application/json")
+        return JSONResponse(schema_with_examples())
 
     async def model(request: Request) -> Response:
         return JSONResponse(session.solids.model(request.path_params["link"]))
@@ -213,8 +213,7 @@ def application(session: Session) -> Starlette:
         Route("/drop/{name}", drop, methods=["POST"]),
         Route("/{action}", act, methods=["POST"]),
     ]
-    told = dict.fromkeys((AlulaError, HTTPException, Exception), _refused)
-    app = Starlette(routes=routes, exception_handlers=told)
+    app = Starlette(routes=routes, exception_handlers=dict.fromkeys((AlulaError, HTTPException, Exception), _refused))
     app.router.redirect_slashes = False  # it knows no token
     return app
 
@@ -234,11 +233,6 @@ def _starters() -> list[dict[str, str]]:
     titles = {DRAWING: "begins with two pins of the ground"}
     titles |= {name: read_tables(name)["title"] for name in built_in_cases()}
     return [{"name": name, "title": title} for name, title in titles.items()]
-
-
-@cache
-def _schema() -> str:
-    return json.dumps(schema_with_examples())
 
 
 async def _received(request: Request, most: int) -> bytes:

@@ -109,9 +109,8 @@ def write_file(path: Path, text: str, over: str | None = None) -> None:
     try:
         write_whole(path, text.encode(), over=None if over is None else over.encode())
     except OSError as error:
-        raise CannotRunError(
-            f"'{printable(path.name)}' cannot be written ({error.strerror or error}); your changes stay here"
-        ) from None
+        why = error.strerror or error
+        raise CannotRunError(f"'{printable(path.name)}' cannot be written ({why}); your changes stay here") from None
 
 
 def digest(text: str) -> str:

@@ -365,16 +365,14 @@ class Session:
             self._disk = "changed" if there else "deleted"
             self._say(str(error) if there else f"'{printable(self.path.name)}' is gone; save to write it anew")
         else:
-            taken = document.text == self._stored != text
-            if taken:
+            if document.text == self._stored != text:
                 document.replace(text)
-            known = text in (self._stored, document.text)
-            if known and (text != self._stored or before in ("changed", "deleted")):
                 self._stand(text)
-            self._disk = access if known else "changed"
-            if taken:
                 self._say("another program has changed the file; its text is taken over, and undo takes it back")
                 self._changed()
+            elif text == document.text != self._stored or (text == self._stored and before in ("changed", "deleted")):
+                self._stand(text)
+            self._disk = access if text == self._stored else "changed"
         if self._disk != before:
             self._tell_document()
 

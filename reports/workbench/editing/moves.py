@@ -141,13 +141,12 @@ def _reshaped(
         elif zero:
             slid = ((origin - new[own[zero]]) / cmath.rect(1.0, angle)).real
             origin = new[own[zero]]
+    held = {end for ends in plane.ends.values() for end in ends}
     for key, node in own.items():
         there = (new[node] - origin) / cmath.rect(1.0, angle)
         if axis is not None and key in axis:
             there = complex(there.real)
-        elif axis is not None and (
-            abs(plane.local[key].imag) < SAME or not any(key in ends for ends in plane.ends.values())
-        ):
+        elif axis is not None and (abs(plane.local[key].imag) < SAME or key not in held):
             there = plane.local[key] + shift.real
         _write(draft, plane, key, there)
     for entry in (("slots", point) for point in plane.links[link].get("slots", {})):

@@ -145,10 +145,7 @@ class Plane:
                     raise CaseError(f"links.{name}.points.{point}: it must be [x, y]; correct it in the text first")
                 self.local[name, point] = complex(*(size(one, "length", entry) for one in at))
         named = {name: joint.points or (name, name) for name, joint in self.joints.items()}
-        self.ends = {
-            name: ((joint.links[0], named[name][0]), (joint.links[1], named[name][1]))
-            for name, joint in self.joints.items()
-        }
+        self.ends = {name: tuple(zip(joint.links, named[name], strict=True)) for name, joint in self.joints.items()}
         self.node = {key: key for key in self.local}
         for name, ends in self.ends.items():
             if not self.joints[name].slides and set(ends) <= self.local.keys():

@@ -77,9 +77,7 @@ export function mount(holder, store) {
   /** The panel was opened: what is wrong is seen. */
   function opened() {
     const line = store.state.document?.problem?.line;
-    if (!line) return;
-    const top = (line - 1) * lines();
-    if (top < area.scrollTop || top > area.scrollTop + area.clientHeight - 3 * lines()) area.scrollTop = Math.max(0, top - area.clientHeight / 3);
+    if (line) area.scrollTop = (line - 1) * lines() - area.clientHeight / 3;
     follow();
   }
 
@@ -101,10 +99,7 @@ export function mount(holder, store) {
     show(store.state.document);
   }
 
-  area.addEventListener("input", () => {
-    number();
-    later();
-  });
+  for (const act of [number, later]) area.addEventListener("input", act);
   area.addEventListener("blur", () => {
     sendTyped();
     gesture = newGesture(); // what is typed when one comes back is another step

@@ -78,8 +78,7 @@ function loadCases(element) {
     list.value = store.state.loadCase ?? "";
     element.hidden = names.length < 2;
   };
-  store.on("drawn", show);
-  store.on("loadCase", show);
+  for (const key of ["drawn", "loadCase"]) store.on(key, show);
   show();
 }
 
