@@ -92,7 +92,7 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """Put the first problem of a validation into one sentence: entry, value, rule, remedy.
 
-    A mistyped key comes before the entry that it leaves missing. Where an entry is missing, all that are missing are
+    What is wrong comes before what is missing: a mistyped key leaves an entry missing. Where an entry is missing, all that are missing are
     told.
 
     Parameters
@@ -113,10 +113,7 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
         return "case: a text in it holds half of a surrogate pair, which is no character; remove it"
     # A default that needs another entry is no problem of its own: that entry's is told.
     problems = [problem for problem in problems if problem["type"] != "default_factory_not_called"] or problems
-    first = problems[0]
-    if first["type"] == "missing":
-        beside = (p for p in problems if p["type"] == "extra_forbidden" and p["loc"][:-1] == first["loc"][:-1])
-        first = next(beside, first)
+    first = next((one for one in problems if one["type"] not in ("missing", "too_short")), problems[0])
     kind, place, value = first["type"], _place(first["loc"]), first["input"]
     context: dict[str, Any] = dict(first.get("ctx", {}))
     meant = ""

@@ -172,22 +172,22 @@ def application(session: Session) -> Starlette:
         return JSONResponse(told)
 
     async def schema(request: Request) -> Response:
-        return Response(_schema(), media_type="application/json")
+        return JSONResponse(schema_with_examples())
 
     async def model(request: Request) -> Response:
         return JSONResponse(session.solids.model(request.path_params["link"]))
 
     async def report(request: Request) -> Response:
         fidelity: Literal["beam", "solid"] = "solid" if request.query_params.get("fidelity") == "solid" else "beam"
-        data = await asyncio.to_thread(out.report, session.text, str(session.path), fidelity)
+        data = await asyncio.to_thread(out.report, session.opened().text, str(session.path), fidelity)
         return Response(data, media_type="text/html", headers={"Content-Security-Policy": REPORT})
 
     async def case(request: Request) -> Response:
-        return _file(session.text.encode(), session.path.name)
+        return _file(session.opened().text.encode(), session.path.name)
 
     async def step(request: Request) -> Response:
         link = request.path_params["link"]
-        return _file(await asyncio.to_thread(out.step, session.text, str(session.path), link), f"{link}.step")
+        return _file(await asyncio.to_thread(out.step, session.opened().text, str(session.path), link), f"{link}.step")
 
     async def drop(request: Request) -> Response:
         data = await _received(request, LARGEST_FILE)
@@ -213,8 +213,7 @@ def application(session: Session) -> Starlette:
         Route("/drop/{name}", drop, methods=["POST"]),
         Route("/{action}", act, methods=["POST"]),
     ]
-    told = {AlulaError: _explained, HTTPException: _unknown, Exception: _broken}
-    app = Starlette(routes=routes, exception_handlers=told)
+    app = Starlette(routes=routes, exception_handlers=dict.fromkeys((AlulaError, HTTPException, Exception), _refused))
     app.router.redirect_slashes = False  # it knows no token
     return app
 
@@ -234,11 +233,6 @@ def _starters() -> list[dict[str, str]]:
     titles = {DRAWING: "begins with two pins of the ground"}
     titles |= {name: read_tables(name)["title"] for name in built_in_cases()}
     return [{"name": name, "title": title} for name, title in titles.items()]
-
-
-@cache
-def _schema() -> str:
-    return json.dumps(schema_with_examples())
 
 
 async def _received(request: Request, most: int) -> bytes:
@@ -285,16 +279,11 @@ def _sentence(status: int, sentence: str) -> Response:
     return JSONResponse({"sentence": " ".join(sentence.split())}, status)
 
 
-async def _explained(request: Request, error: Exception) -> Response:
-    return _sentence(409 if isinstance(error, ConflictError) else 422, str(error))
-
-
-async def _unknown(request: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)
-    return _sentence(error.status_code, "there is nothing at this address")
-
-
-async def _broken(request: Request, error: Exception) -> Response:
+async def _refused(request: Request, error: Exception) -> Response:
+    if isinstance(error, HTTPException):
+        return _sentence(error.status_code, "there is nothing at this address")
+    if isinstance(error, AlulaError):
+        return _sentence(409 if isinstance(error, ConflictError) else 422, str(error))
     return _sentence(500, f"internal error of alula, not of the case: {type(error).__name__}: {printable(str(error))}")
 
 

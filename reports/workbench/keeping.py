@@ -6,7 +6,6 @@ import importlib.util
 import json
 import os
 from pathlib import Path
-from typing import NamedTuple
 
 from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError
 from alula.geometry.base.locks import locked
@@ -18,35 +17,19 @@ from alula.loads.text.file_text import file_text
 _DRAFT = "draft.json"
 
 
-class Stamp(NamedTuple):
-    """What the disk says of a file without reading it: another content comes with another stamp."""
-
-    inode: int
-    size: int
-    modified: int
-    changed: int
-    writable: bool
-
-
-def stamp_of(path: Path) -> Stamp | None:
-    """Return the stamp of a file.
+def writable(path: Path) -> bool:
+    """Return whether a file may be written; its bits count for those as well whom the system lets write all the same.
 
     Parameters
     ----------
     path : Path
+        Of a file that is there.
 
     Returns
     -------
-    Stamp or None
-        None where there is no such file.
+    bool
     """
-    try:
-        state = path.stat()
-    except (OSError, ValueError):
-        return None
-    # The bits count for those as well whom the system lets write all the same.
-    writable = bool(state.st_mode & 0o222) and os.access(path, os.W_OK)
-    return Stamp(state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns, writable)
+    return bool(path.stat().st_mode & 0o222) and os.access(path, os.W_OK)
 
 
 def case_text(path: Path) -> str:
@@ -108,13 +91,15 @@ def plain_name(name: str, suffix: str) -> str:
     return name
 
 
-def write_file(path: Path, text: str) -> None:
+def write_file(path: Path, text: str, over: str | None = None) -> None:
     """Write a file, all of it or nothing.
 
     Parameters
     ----------
     path : Path
     text : str
+    over : str, optional
+        What must stand there so far.
 
     Raises
     ------
@@ -122,12 +107,10 @@ def write_file(path: Path, text: str) -> None:
         Where the disk refuses, as ``alula.geometry.keeping.whole_file.write_whole`` does; the file is as it was then.
     """
     try:
-        write_whole(path, text.encode())
+        write_whole(path, text.encode(), over=None if over is None else over.encode())
     except OSError as error:
-        raise CannotRunError(
-            f"'{printable(path.name)}' cannot be written ({error.strerror or error}); the file is as it was, your "
-            "changes stay here"
-        ) from None
+        why = error.strerror or error
+        raise CannotRunError(f"'{printable(path.name)}' cannot be written ({why}); your changes stay here") from None
 
 
 def digest(text: str) -> str:

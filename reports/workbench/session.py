@@ -16,7 +16,7 @@ from alula.loads.text.file_text import LARGEST_FILE
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.editing.edits import EMPTY
 from alula.reports.workbench.editing.toml_text import value_at
-from alula.reports.workbench.keeping import Drafts, Stamp, case_text, digest, plain_name, stamp_of, write_file
+from alula.reports.workbench.keeping import Drafts, case_text, digest, plain_name, writable, write_file
 from alula.reports.workbench.live.answers import case_of
 from alula.reports.workbench.live.solids import Solids
 from alula.reports.workbench.live.workers import Workers
@@ -102,7 +102,6 @@ class Session:
         self.folder, self.path, self.new = folder, folder, "my-case.toml"
         self.document: Document | None = None
         self._stored = ""  # the text that the file held when it was last read or written
-        self._stamp: Stamp | None = None  # of the file then
         self._disk: str | None = None
         self._always = False
         self._problem: dict[str, Any] | None = None
@@ -176,7 +175,7 @@ class Session:
             self.tell("notice", {"sentence": sentence})
 
     def _find(self, sentence: str) -> None:
-        self._problem = {"sentence": sentence, "line": self._open().line_of(sentence)}
+        self._problem = {"sentence": sentence, "line": self.opened().line_of(sentence)}
         self._tell_document()
 
     def _tell_document(self) -> None:
@@ -203,25 +202,25 @@ class Session:
         """Change the case by operations, which were made on a revision and are undone with others of their gesture."""
         if not all(isinstance(one, Mapping) for one in operations):
             raise CaseError("operations: each must be an object")
-        text = self._open(revision).text
+        text = self.opened(revision).text
         pose = await asyncio.to_thread(self._posed, text)
-        self._open(revision).apply(operations, pose, gesture)
+        self.opened(revision).apply(operations, pose, gesture)
         self._changed()
 
     async def write(self, revision: int, text: str, gesture: str) -> None:
         """Put another text in place of the one of a revision."""
-        self._open(revision).replace(text, gesture)
+        self.opened(revision).replace(text, gesture)
         self._changed()
 
     async def undo(self, revision: int | None, gesture: str = "", *, redo: bool = False) -> None:
         """Take back the last change, if it is of this gesture, or make the one anew that was taken back last."""
-        document = self._open(revision)
+        document = self.opened(revision)
         document.redo() if redo else document.undo(gesture)
         self._changed()
 
     async def take_draft(self, take: bool) -> None:
         """Take what an earlier server kept, or let it go."""
-        document, draft = self._open(), self._draft
+        document, draft = self.opened(), self._draft
         if draft is None:
             raise ConflictError("no unsaved changes of this case are kept")
         self._draft = None
@@ -233,19 +232,24 @@ class Session:
 
     async def check_solids(self, do: str) -> None:
         """Start or stop the check by solids."""
-        document = self._open()
+        document = self.opened()
         if do == "start":
             self.solids.start(document.revision, document.text, str(self.path))
         else:
             self.solids.stop()
 
-    @property
-    def text(self) -> str:
-        """Of the open case, without a byte order mark."""
-        return self._open().text.removeprefix("\ufeff")
+    def opened(self, revision: int | None = None) -> Document:
+        """Return the document, which has to be the one that a page knows.
 
-    def _open(self, revision: int | None = None) -> Document:
-        """Return the document, which has to be the one that a page knows."""
+        Parameters
+        ----------
+        revision : int, optional
+            That the page knows.
+
+        Returns
+        -------
+        Document
+        """
         if self.document is None:
             raise ConflictError("no case is open; open one first")
         if revision is not None and revision != self.document.revision:
@@ -263,7 +267,7 @@ class Session:
         """Tell how the document stands after a change, and have it answered."""
         if self._draft is not None and self._set_aside(self._draft, "was not taken"):
             self._draft = None
-        document = self._open()
+        document = self.opened()
         self._tell_document()
         self._workers.ask(document.revision, document.text, str(self.path))
 
@@ -272,9 +276,7 @@ class Session:
     @property
     def saved(self) -> bool:
         """Whether the file holds the text that is shown."""
-        return self.document is None or (
-            self.document.text == self._stored and self._disk not in ("changed", "deleted")
-        )
+        return self.document is None or (self.document.text == self._stored and self._disk in (None, "read-only"))
 
     async def open(self, path: str, starter: str = "", as_: str = "") -> None:
         """Open a case of the folder, or a built-in one that is copied there first."""
@@ -297,13 +299,13 @@ class Session:
         new : bool, optional
             Whether it was made just now: what was not saved is of another one of its name.
         """
-        stamp, text, revision = stamp_of(file), case_text(file), self.document.revision + 1 if self.document else 0
+        text, revision = case_text(file), self.document.revision + 1 if self.document else 0
         if self._drafts is not None:
             self._drafts.close()
         self.path, self.document, self._drafts = file, Document(text), None
         self.document.revision = revision  # answers about the case before are not taken for its own
         self._always, self._problem, self._draft, self._last = False, None, None, {}
-        self._stand(text, stamp)
+        self._stand(text)
         self._drafts = Drafts(file)
         if not self._drafts.alone:
             self._say("this case is open in another alula as well; what is not saved here is not kept")
@@ -321,7 +323,7 @@ class Session:
             self._look()
             if self._disk == "changed":
                 raise ConflictError("another program has changed the file; take its text over, or overwrite it")
-            await self._save()
+            await self._save("" if self._disk == "deleted" else self._stored)
             self._always = self._always if always is None else always
             self._tell_document()
 
@@ -333,50 +335,44 @@ class Session:
     async def reload(self) -> None:
         """Take the text of the file over; what was here comes back by undo."""
         async with self._files:
-            document, stamp, text = self._open(), stamp_of(self.path), case_text(self.path)
+            document, text = self.opened(), case_text(self.path)
             document.replace(text)
-            self._stand(text, stamp)
+            self._stand(text)
             self._changed()
 
-    async def _save(self) -> None:
-        text = self._open().text
+    async def _save(self, over: str | None = None) -> None:
+        """Write the text into the file, unless something else stands there than what it is written over."""
+        text = self.opened().text
         if not text.strip() or len(text.encode()) > LARGEST_FILE:
-            raise CaseError(
-                "the text is empty or larger than 1 MiB, and no case would be read from it; it was not saved"
-            )
-        await asyncio.to_thread(write_file, self.path, text)
-        self._stand(text, stamp_of(self.path))
+            raise CaseError("the text is empty or larger than 1 MiB, so no case; it was not saved")
+        await asyncio.to_thread(write_file, self.path, text, over)
+        self._stand(text)
         self._tell_document()
 
-    def _stand(self, text: str, stamp: Stamp | None) -> None:
+    def _stand(self, text: str) -> None:
         """Take a text for the one that the file holds."""
-        self._stored, self._stamp, self._drafted, self._notice = text, stamp, "", ""
-        self._disk = "read-only" if stamp is not None and not stamp.writable else None
+        self._stored, self._disk, self._drafted, self._notice = text, None, "", ""
         if self.saved and self._drafts is not None and self._draft is None:
             self._drafts.drop()
 
     def _look(self) -> None:
         """See what another program has done to the file: where nothing is unsaved here, its text is taken over."""
-        document, stamp, before = self._open(), stamp_of(self.path), self._disk
-        if stamp == self._stamp:
-            return
-        self._stamp, self._disk = stamp, "changed"
-        if stamp is None:
-            self._disk = "deleted"
-            self._say(f"'{printable(self.path.name)}' is gone; save to write it anew")
+        document, before = self.opened(), self._disk
+        try:
+            text, access = case_text(self.path), None if writable(self.path) else "read-only"
+        except (CaseError, OSError) as error:
+            there = self.path.exists()
+            self._disk = "changed" if there else "deleted"
+            self._say(str(error) if there else f"'{printable(self.path.name)}' is gone; save to write it anew")
         else:
-            try:
-                text = case_text(self.path)
-            except CaseError as error:
-                self._say(str(error))
-            else:
-                if text in (self._stored, document.text):
-                    self._stand(text, stamp)
-                elif document.text == self._stored:
-                    document.replace(text)
-                    self._stand(text, stamp)
-                    self._say("another program has changed the file; its text is taken over, and undo takes it back")
-                    self._changed()
+            if document.text == self._stored != text:
+                document.replace(text)
+                self._stand(text)
+                self._say("another program has changed the file; its text is taken over, and undo takes it back")
+                self._changed()
+            elif text == document.text != self._stored or (text == self._stored and before in ("changed", "deleted")):
+                self._stand(text)
+            self._disk = access if text == self._stored else "changed"
         if self._disk != before:
             self._tell_document()
 
@@ -397,7 +393,7 @@ class Session:
             text = self.document.text
             if self._always and not self.saved and self._disk is None:
                 try:
-                    await self._save()
+                    await self._save(self._stored)
                 except AlulaError as error:
                     self._say(str(error))
             if not self.saved and text != self._drafted and self._drafts is not None and self._draft is None:
@@ -419,7 +415,7 @@ class Session:
         if self._drafts is not None:
             if not self.saved and self._draft is None:
                 with suppress(AlulaError):
-                    self._drafts.keep(self._open().text, self._stored)
+                    self._drafts.keep(self.opened().text, self._stored)
             self._drafts.close()
         await asyncio.gather(self._workers.close(), self.solids.close())
 

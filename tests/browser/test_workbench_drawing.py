@@ -1,6 +1,7 @@
 """The drawing of the workbench, as hands use it: mouse, finger and keyboard; the text and the numbers follow."""
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -232,6 +233,57 @@ def test_an_arrow_and_the_pose_are_pulled(bench):
     bench.wait("[...document.querySelectorAll('.texts text')].some((one) => one.textContent.startsWith('beyond'))")
 
 
+def test_the_way_of_the_pose_its_ends_and_its_dead_points_are_marked(bench):
+    """Unasked, in the plane and on the slider: a full turn, then a crank that gets as far as a dead point."""
+    settle(bench, "now.motion?.points")
+    bench.wait("document.querySelector('.paths .reach')")
+    zoom = "import(document.baseURI + 'page/view.js').then(({ zoom }) => zoom(0.5, [300, 300]))"
+    bench.run(f"return {zoom}")
+    assert bench.elements(".paths .dead, .paths .end") == []
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    bench.run(edit, [{"op": "set", "path": ["links", "crank", "points", "A", 0], "value": "75 mm"}])
+    bench.wait("document.querySelectorAll('.paths .end').length === 1 && document.querySelector('.track .dead line')")
+    dead, value = state(bench, "now.motion.dead[0]"), state(bench, "now.drawn.coordinate.value")
+    assert [one.text for one in bench.elements(".texts .reach")] == [f"dead at {dead:.0f}°", f"{value:g}°"]
+    assert [one.text for one in bench.elements("#motion small")] == [f"{value:g}°", f"{dead:.0f}°"]
+    marked = angle_about_the_crank(bench, bench.element(".paths .dead")) - angle_about_the_crank(
+        bench, handle(bench, "Pose")
+    )
+    assert marked % 360.0 == pytest.approx((dead - value) % 360.0, abs=0.5)
+    bench.run(edit, [{"op": "remove", "path": ["motion"]}])  # what it could move through has two dead points
+    bench.wait("document.querySelectorAll('.paths .dead').length === 2")
+    assert bench.elements(".paths .end") == []
+    slider = [{"op": "set", "path": ["motion"], "value": {"coordinate": "rocker", "range": ["55 deg", "70 deg"]}}]
+    bench.run(edit, [{"op": "set", "path": ["links", "crank", "points", "A", 0], "value": "40 mm"}, *slider])
+    bench.wait("document.querySelectorAll('.paths .end').length === 2")
+    settle(bench, "now.motion?.pose")
+    ends = state(bench, "[now.motion.pose[0], now.motion.pose.at(-1)]")
+    told = sorted(float(one.text.rstrip("°")) for one in bench.elements(".texts .reach"))
+    assert told == pytest.approx(sorted(ends), abs=0.5), "of the crank, which the pose turns"
+
+
+def angle_about_the_crank(browser, element):
+    """Return the direction from the crank's pivot to the middle of an element [deg]."""
+    middle = "const box = arguments[0].getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]"
+    (x, y), (x0, y0) = (browser.run(middle, one) for one in (element, handle(browser, "Joint O2")))
+    return math.degrees(math.atan2(y0 - y, x - x0))
+
+
+@pytest.mark.parametrize("size", [WIDE, (1180, 720)])
+def test_the_bar_stands_in_one_row(bench, served, size):
+    """Also where one of two load cases is chosen there."""
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    bench.run(edit, [{"op": "set", "path": ["load_cases", "another-one"], "value": {"own_weight": True}}])
+    open_page(bench, served, size)
+    bench.wait("document.querySelector('header select').checkVisibility()")
+    shown = "[...document.querySelectorAll('header :is(button, input, select)')].filter((one) => one.checkVisibility())"
+    middles = bench.run(
+        f"return {shown}.map((one) => one.getBoundingClientRect()).map(({{ y, height }}) => y + height / 2)"
+    )
+    assert len(middles) > 10
+    assert max(middles) - min(middles) < 3.0
+
+
 def the_motion_slides(browser):
     """A press on the track, a pull and keys each show the instant at which they leave the slider."""
     from selenium.webdriver.common.action_chains import ActionChains
@@ -316,6 +368,18 @@ def last(document, link):
 
 def joint_of(document, *links):
     return next(name for name, one in document.tables()["joints"].items() if set(one["links"]) == set(links))
+
+
+def test_a_mistake_is_told_before_there_is_a_load(bench):
+    """That loads are missing is none: the line at the bottom says what is wanted next."""
+    edit = "import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
+    bench.run(edit, [{"op": "remove", "path": ["load_cases"]}])
+    bench.wait("document.querySelector('#hint').innerText.includes('Add load')")
+    bench.wait("document.querySelector('#problem').textContent.includes('load_cases')")
+    assert not bench.element("#problem").is_displayed()
+    bench.run(edit, [{"op": "set", "path": ["drive", "joint"], "value": "O9"}])
+    bench.wait("document.querySelector('#problem').innerText.includes(\"'O9' is no joint\")")
+    assert bench.element("#problem").is_displayed()
 
 
 def test_the_keyboard_alone_moves_a_joint_and_adds_a_load(bench):

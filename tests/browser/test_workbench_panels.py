@@ -44,6 +44,24 @@ import(document.baseURI + "page/store.js").then(({ store }) => {
   done();
 });
 """
+TYPE = """
+const [was, now, ahead, other, done] = arguments;
+const area = document.querySelector("#panel-text textarea");
+const elsewhere = (store) => fetch("text", {
+  method: "POST",
+  headers: { "Content-Type": "application/json" },
+  body: JSON.stringify({ revision: store.state.document.revision, text: store.state.document.text.replace(...other) }),
+});
+import(document.baseURI + "page/store.js").then(async ({ store }) => {
+  area.focus();
+  area.setRangeText(now, area.value.indexOf(was), area.value.indexOf(was) + was.length, "end");
+  area.dispatchEvent(new Event("input"));
+  const answer = elsewhere(store);
+  if (ahead) area.dispatchEvent(new KeyboardEvent("keydown", { key: "Control", ctrlKey: true }));
+  done((await answer).status);
+});
+"""
+"""Type, and have another page change the text before what is typed is sent, or while it is on its way."""
 PRESS = "[...document.querySelectorAll('button')].find((one) => one.textContent === arguments[0]).click()"
 
 
@@ -166,6 +184,35 @@ def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Bro
     a_range_waits_for_its_second_value(browser)
 
 
+@pytest.mark.parametrize("ahead", [False, True])
+def test_what_two_pages_write_at_once_stands_both(
+    browser: chromium.Browser, bench: tuple[str, Path], ahead: bool
+) -> None:
+    """Lines of both stand in the text; where it is one line, the second page is told, and undo shows the first."""
+    address, _ = bench
+    visit(browser, address)
+    open_panel(browser, "text")
+    before = browser.run(f"return {TEXT}")
+    server = 'return import(document.baseURI + "page/server.js").then(({ change }) => change(...arguments))'
+    at_once = 'import(document.baseURI + "page/store.js").then(({ store: { state: now } }) => '
+    title, part = ('title = "', 'title = "{}, '), ("[parts.bar]", "[parts.bar] # {}")
+    for (was, typed), (elsewhere, put) in ((title, part), (part, title)):
+        typed, other = typed.format("mine"), (elsewhere, put.format("theirs"))
+        browser.driver.execute_async_script(TYPE, was, typed, ahead, other)
+        both = f"now.document.text.includes({json.dumps(typed)}) && now.document.text.includes({json.dumps(other[1])})"
+        browser.wait(f"{at_once} {both} && now.document.text === {TEXT})")
+        assert not browser.element("#notice").is_displayed()
+    browser.driver.execute_async_script(TYPE, "theirs, mine", "ours", ahead, ("theirs, mine", "others"))
+    browser.wait("document.querySelector('#notice').innerText.includes('in which you write')")
+    browser.wait(f"{at_once} now.document.text.includes('ours, ') && now.document.text === {TEXT})")
+    browser.run("document.activeElement.blur()")
+    browser.run(server, "undo")
+    browser.wait(f"{TEXT}.includes('others, ')")
+    browser.run(server, "text", {"text": before})
+    browser.wait(f"{TEXT} === {json.dumps(before)}")
+    browser.messages()  # that the server refused what came second
+
+
 def a_range_waits_for_its_second_value(browser: chromium.Browser) -> None:
     """What was typed first stays, without a sentence, and both are stated at once."""
     edit = "return import(document.baseURI + 'page/server.js').then(({ edit }) => edit(arguments[0]))"
@@ -218,7 +265,12 @@ def test_pictures_and_the_report_leave_the_page(
     assert 'fill="rgb(' in drawn
     picture = ElementTree.fromstring(drawn)
     assert picture.tag == "{http://www.w3.org/2000/svg}svg"
-    assert {"crank", "coupler", "rocker"} <= {one.text.partition(":")[0] for one in picture.iter() if one.text}
+    told = [one.text.partition(":")[0] for one in picture.iter() if one.text]
+    assert {"may be more", "joint force", "layer 1"} <= {*told}, "legend and layers are seen as well"
+    assert all(told.count(link) == 2 for link in ("crank", "coupler", "rocker")), "in the plane and in the layers"
+    below = [float(one.get("y")) for one in picture.iter() if one.text in ("joint force", "x, y [mm]")]
+    assert below == sorted(below)
+    assert float(picture.get("height")) > below[-1]
     case = browser.driver.execute_async_script(READ, "application")
     assert tomllib.loads(case)["parts"]["bar"]["width"] == "9 mm"
     browser.run(PRESS, "STEP")
@@ -243,8 +295,12 @@ def copied_commands_run(browser: chromium.Browser, case: Path) -> None:
     """What the page gives to be copied runs as a shell takes it, beside the case; by hand alone, which takes less."""
     entry = "return import(document.baseURI + 'page/store.js').then(({ store }) => store.put('entry', arguments[0]))"
     browser.run(entry, ["parts", "bar", "width"])
-    study, *sizes = [one.text for one in browser.elements("#panel-out .command code")]
-    for command in (study, *sizes):  # sizes are those that the verdict names
+    commands = [one.text for one in browser.elements("#panel-out .command code")]  # sizes that the verdict names
+    for button in ("Study this", "Least size"):
+        browser.run(PRESS, button)
+        commands.append(browser.element("#panel-out .command code").text)
+        assert "parts.bar.width=4.5" in commands[-1]
+    for command in commands:
         program, *words = shlex.split(command)
         assert program == "alula"
         typed = [sys.executable, "-m", program, *words, "--fidelity", "beam"]

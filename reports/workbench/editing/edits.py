@@ -51,12 +51,9 @@ def perform(draft: TomlText, operation: Mapping[str, Any], pose: Pose | None) ->
     try:
         _perform(draft, operation, pose)
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, StopIteration):  # of another form
-        raise CaseError(
-            f"edit {operation.get('op')}: it does not fit what the case states; undo, or correct the text"
-        ) from None
-    for table, entries in (
-        Case.derived(draft.tables).items() if operation.get("op") in ("move", "length", "rename") else ()
-    ):
+        raise CaseError(f"edit {operation.get('op')}: it does not fit the case; undo, or correct the text") from None
+    shaped = operation.get("op") in ("move", "length", "rename")
+    for table, entries in Case.derived(draft.tables).items() if shaped else ():
         for path in entries:
             keys = keys_of(path)
             if value_at(before, keys) != value_at(draft.tables, keys):
@@ -140,9 +137,7 @@ def _link(draft: TomlText, pose: Pose | None, operation: Mapping[str, Any], *end
     if keys == [None, None]:
         raise CaseError("edit link: it hangs nowhere; begin it at the ground, at a joint or at a point of another link")
     if keys[0] and keys[1] and keys[0][0] == keys[1][0]:
-        raise CaseError(
-            f"edit link: both ends are on link '{keys[0][0]}', so it could not move; end it on another link"
-        )
+        raise CaseError(f"edit link: both ends are on link '{keys[0][0]}'; end it on another link")
     plane = Plane(draft.tables, pose)
     first, last = (plane.place(*key) if key else complex(*end["at"]) for key, end in zip(keys, ends, strict=True))
     if abs(last - first) < SAME:
@@ -214,9 +209,7 @@ def _join(draft: TomlText, pose: Pose | None, first: Mapping[str, Any], second: 
         raise CaseError(f"edit join: both points are of link '{one[0]}'; choose points of two links")
     plane = Plane(draft.tables, pose)
     if plane.node[one] == plane.node[other]:
-        raise CaseError(
-            f"edit join: {one[0]}.{one[1]} and {other[0]}.{other[1]} are joined already; choose another point"
-        )
+        raise CaseError(f"edit join: the points are joined already; choose another than {other[0]}.{other[1]}")
     held = {end for ends in plane.ends.values() for end in ends}
     still, moved = (other, one) if other in held and one not in held else (one, other)
     if abs(plane.place(*moved) - plane.place(*still)) > SAME:

@@ -47,10 +47,7 @@ def move(draft: TomlText, plane: Plane, key: Point, to: complex) -> None:
     root, links = plane.node[key], {link for link, point in plane.local if plane.node[link, point] == plane.node[key]}
     for link in links:
         if plane.shapes[link] in KINDS:
-            raise CaseError(
-                f"links.{link}.points: they come from the file of part '{plane.links[link]['part']}'; move the bore in "
-                "that file, or give the link another part"
-            )
+            raise CaseError(f"links.{link}.points: they come from the file of its part; move the bore in that file")
     pins = {plane.node[end] for name in plane.joints for end in plane.ends[name] if end in plane.local}
     axes = {link: _axis(plane, link, pins | {root}) for link in plane.links if link in plane.straight}
     if root not in pins and len(axes.get(key[0], ())) > 2:  # a load point: it slides along the axis of its link
@@ -112,9 +109,7 @@ def _settled(
             step = np.zeros(2 * len(names))
             step[free] = np.linalg.lstsq(slopes[:, free], -gaps, rcond=1e-9)[0]
             z = z + step[::2] + 1j * step[1::2]
-    raise CaseError(
-        "edit: the joint cannot stand there while its links stay straight and its guide stays; move another"
-    )
+    raise CaseError("edit: the joint cannot stand there with straight links and its guide; move another")
 
 
 def _reshaped(
@@ -146,13 +141,12 @@ def _reshaped(
         elif zero:
             slid = ((origin - new[own[zero]]) / cmath.rect(1.0, angle)).real
             origin = new[own[zero]]
+    held = {end for ends in plane.ends.values() for end in ends}
     for key, node in own.items():
         there = (new[node] - origin) / cmath.rect(1.0, angle)
         if axis is not None and key in axis:
             there = complex(there.real)
-        elif axis is not None and (
-            abs(plane.local[key].imag) < SAME or not any(key in ends for ends in plane.ends.values())
-        ):
+        elif axis is not None and (abs(plane.local[key].imag) < SAME or key not in held):
             there = plane.local[key] + shift.real
         _write(draft, plane, key, there)
     for entry in (("slots", point) for point in plane.links[link].get("slots", {})):

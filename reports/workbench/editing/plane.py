@@ -145,18 +145,13 @@ class Plane:
                     raise CaseError(f"links.{name}.points.{point}: it must be [x, y]; correct it in the text first")
                 self.local[name, point] = complex(*(size(one, "length", entry) for one in at))
         named = {name: joint.points or (name, name) for name, joint in self.joints.items()}
-        self.ends = {
-            name: ((joint.links[0], named[name][0]), (joint.links[1], named[name][1]))
-            for name, joint in self.joints.items()
-        }
+        self.ends = {name: tuple(zip(joint.links, named[name], strict=True)) for name, joint in self.joints.items()}
         self.node = {key: key for key in self.local}
         for name, ends in self.ends.items():
             if not self.joints[name].slides and set(ends) <= self.local.keys():
                 first, second = (self.node[end] for end in ends)
                 self.node = {key: first if one == second else one for key, one in self.node.items()}
-        self.shapes = {
-            name: value_at(tables, ("parts", one.get("part", ""), "shape")) for name, one in self.links.items()
-        }
+        self.shapes = {name: value_at(tables, ("parts", one.get("part"), "shape")) for name, one in self.links.items()}
         self.straight = {name for name in self.links if name != self.ground and self._straight(name)}
         self.frames = self._posed(pose)
         self.at = {

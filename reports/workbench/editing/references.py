@@ -110,13 +110,10 @@ def _owners(tables: Mapping[str, Any], record: Any, path: Path) -> tuple[str, ..
 
 def _of_point(tables: Mapping[str, Any], link: str, name: str) -> list[Reference]:
     """Return what refers to a point of a link; not what may mean that of another moving link."""
-    others = [
-        one
-        for one, table in tables["links"].items()
-        if one != link and name in table.get("points", {}) and not table.get("ground")
-    ]
+    moving = {one: table for one, table in tables["links"].items() if one != link and not table.get("ground")}
+    others = {one for one, table in moving.items() if name in table.get("points", {})}
     found = (one for one in references(tables) if one.kind == "points" and one.name == name and link in one.links)
-    return [one for one in found if len(one.links) == 1 or not set(others) & set(one.links)]
+    return [one for one in found if len(one.links) == 1 or not others & {*one.links}]
 
 
 def _of_own_name(tables: Mapping[str, Any], link: str, name: str) -> bool:
@@ -149,9 +146,7 @@ def rename(draft: TomlText, path: Path, to: str) -> None:
         _rename_point(draft, str(path[1]), name, to, "")
         return
     if not (len(path) == 2 and path[0] in NAMED) or value_at(draft.tables, path) is None:
-        raise CaseError(
-            f"edit {told}: there is no link, joint, point or the like of this name; choose one that is there"
-        )
+        raise CaseError(f"edit {told}: there is nothing of this name; choose one that is there")
     free(draft, path, to)
     if path[0] == "joints" and "points" not in value_at(draft.tables, path):
         links = value_at(draft.tables, (*path, "links"))
@@ -299,11 +294,8 @@ def _record(tables: Mapping[str, Any], one: Reference) -> Path:
     if table in ("drive", "flapping_wing", "ways_to_hold", "published_statics"):
         return path[:1]
     names = value_at(tables, path[:-1])
-    if (
-        table in NAMED
-        and table != "load_cases"
-        and not (table == "checks" and isinstance(names, list) and len(names) > 1)
-    ):
+    several = isinstance(names, list) and len(names) > 1
+    if table in NAMED and table != "load_cases" and not (table == "checks" and several):
         return path[:2]
     if path[-2] == "leaves":  # a load line that lost its far end would go to the ground
         return path[:-2]

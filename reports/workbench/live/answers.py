@@ -28,6 +28,7 @@ Stage = Callable[[str, str, Callable[[str, Plain], None]], None]
 
 _SHORT = 1e-3
 """How far poses end before a dead point [rad], or over the longest link: less than can be seen."""
+_UNLOADED = "load_cases: this entry is missing; add it"
 _SLOW = 50.0
 """Time of a pose with its joint forces above which the next pose is told before they are known [ms]."""
 
@@ -51,9 +52,13 @@ def case_of(text: str, name: str) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
+    return _case(parse_tables(text.removeprefix("\ufeff"), "case"), name)
+
+
+def _case(tables: Plain, name: str) -> Case:
     folder = folder_of(name)
     with reading_within(Path(folder)):
-        return changed_case(parse_tables(text.removeprefix("\ufeff"), "case"), (), name, folder)
+        return changed_case(tables, (), name, folder)
 
 
 def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = None) -> Plain:
@@ -87,8 +92,20 @@ def pose_answer(text: str, name: str, early: Callable[[Plain], None] | None = No
     except AlulaError as error:
         problem = str(error)
         with suppress(ValueError, RecursionError):  # no TOML
-            seen = seen or drawn_loosely(tomllib.loads(text.removeprefix("\ufeff")), case)
+            tables = tomllib.loads(text.removeprefix("\ufeff"))
+            seen = seen or drawn_loosely(tables, case)
+            if problem == _UNLOADED:
+                problem = _beside(tables, name) or problem
     return _posed(seen, forces, problem, start)
+
+
+def _beside(tables: Plain, name: str) -> str | None:
+    """Return what is wrong with a case beside that no load is stated, which is told only where one is."""
+    try:
+        _case(tables | {"load_cases": {"weight": {"own_weight": True}}}, name).solve_pose()
+    except AlulaError as error:
+        return None if str(error).startswith("load_cases") else str(error)
+    return None
 
 
 def _posed(seen: Plain | None, forces: Plain | None, problem: str | None, start: float) -> Plain:

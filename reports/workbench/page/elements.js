@@ -17,7 +17,7 @@ const SPACE = "http://www.w3.org/2000/svg";
 const DRAWN = ["svg", "line", "rect", "text", "g", "title", "path", "circle", "defs", "pattern"];
 
 /** Set attributes, and listeners (`onclick` and the like, as functions); null and false take an attribute away. */
-function set(element, attributes) {
+export function set(element, attributes) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) element.removeAttribute(name);
     else if (typeof value === "function") element.addEventListener(name.slice(2), value);

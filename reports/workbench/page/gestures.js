@@ -22,18 +22,12 @@ let nudged = { time: 0, handle: null, gesture: "" };
 export function mount(element) {
   svg = element;
   parent = svg.parentElement;
-  svg.addEventListener("pointerdown", down);
-  svg.addEventListener("pointermove", move);
-  svg.addEventListener("pointerup", up);
-  svg.addEventListener("pointercancel", cancel);
+  const hands = { pointerdown: down, pointermove: move, pointerup: up, pointercancel: cancel, keydown: keys, focusin: focused };
+  for (const [event, act] of Object.entries(hands)) svg.addEventListener(event, act);
   svg.addEventListener("wheel", wheel, { passive: false });
-  svg.addEventListener("keydown", keys);
-  svg.addEventListener("focusin", focused);
   document.addEventListener("keydown", typed);
   document.addEventListener("pointerdown", ({ target }) => target.closest?.(".entry, #sheet") || entry.close());
-  store.on("drawn", settle);
-  store.on("drawn", takeUp);
-  store.on("drawn", entry.refresh);
+  for (const act of [settle, takeUp, entry.refresh]) store.on("drawn", act);
   store.on("document", settle);
 }
 

@@ -16,9 +16,8 @@ import * as out from "./out.js";
 import { add } from "./elements.js";
 
 const find = (id) => document.getElementById(id);
-const MODULES = { verdict, forms, text, solids, out };
 const TITLES = { verdict: "Verdict", forms: "Entries", text: "Text", solids: "Solids", out: "Out" };
-const PANELS = Object.keys(MODULES);
+const PANELS = Object.keys(TITLES);
 
 /** Tabs as a keyboard expects them: arrows go from tab to tab, Tab goes into the panel. */
 function tabs() {
@@ -85,8 +84,6 @@ tabs();
 said();
 tools.mount(find("tools")); // first: it chooses the load case of what is drawn
 gestures.mount(plane.mount(find("plane")));
-side.mount(find("side"));
-motion.mount(find("motion"));
-start.mount(find("start"));
-for (const name of PANELS) MODULES[name].mount(find(`panel-${name}`), store);
+for (const [id, part] of Object.entries({ side, motion, start })) part.mount(find(id));
+for (const [name, panel] of Object.entries({ verdict, forms, text, solids, out })) panel.mount(find(`panel-${name}`), store);
 connect();

@@ -21,14 +21,15 @@ export function mount(element) {
     element,
     play: button("Play", () => (playing ? stop() : start())),
     slider: make("input", { type: "range", min: 0, step: 1, "aria-label": "Instant of the motion", oninput: slid }),
+    ends: [make("small"), make("small")],
     dead: make("svg", { class: "dead", "aria-hidden": "true" }),
     said: make("output"),
     one: button("", () => edit([{ op: "set", path: ["motion"], value: store.state.motion.offer }]), { hidden: true }),
     use: button("Use this pose", take, { class: "kept" }),
     back: button("Back to the case's pose", leave, { class: "kept" }),
   };
-  const { play, slider, dead, said, one, use, back } = parts;
-  element.append(play, make("div", { class: "track" }, slider, dead), said, use, back, make("label", { class: "choice" }, box, " paths of points"), one);
+  const { play, slider, ends, dead, said, one, use, back } = parts;
+  element.append(play, ends[0], make("div", { class: "track" }, slider, dead), ends[1], said, use, back, make("label", { class: "choice" }, box, " paths of points"), one);
   store.on("motion", () => {
     const { motion, instant } = store.state;
     if (instant !== null && !(instant < motion?.values?.length)) leave();
@@ -73,6 +74,16 @@ function stop() {
 /** The coordinate of the pose at each instant; the motion may prescribe another one. */
 export const ofPose = (motion) => motion.pose ?? motion.values;
 
+/** The pose's coordinate where the motion ends and is dead, or where one would that could be stated. */
+export function reachOf(motion) {
+  const free = motion?.offer?.range?.map(Number.parseFloat);
+  if (motion?.offer) return { ends: free ?? [0, 360], dead: free ?? [], turns: !free };
+  if (!motion?.values) return null;
+  const values = ofPose(motion);
+  const dead = motion.dead.map((to) => (motion.pose ? values[leastOf(motion.values.map((one) => Math.abs(one - to)))] : to));
+  return { ends: [Math.min(...values), Math.max(...values)], dead, turns: motion.turns };
+}
+
 /** The instant nearest to the case's own pose. */
 function nearest() {
   const { motion, drawn } = store.state;
@@ -89,6 +100,7 @@ function show() {
   parts.play.setAttribute("aria-pressed", String(playing !== null));
   parts.play.textContent = playing ? "Pause" : "Play";
   parts.element.hidden = !motion;
+  for (const end of parts.ends) end.hidden = !moves;
   if (!moves) {
     const told = store.state.document?.problem?.sentence === motion?.problem; // it stands above the drawing already
     const none = motion?.problem && !told && !store.state.document?.tables?.motion;
@@ -105,11 +117,11 @@ function show() {
   const k = instant ?? nearest();
   parts.slider.max = values.length - 1;
   parts.slider.value = k;
-  const range = motion.turns ? "turns fully" : `reaches ${(motion.range ?? []).map((one) => number(one) + signs).join(" to ")}`;
-  const dead = motion.dead?.length ? `; dead at ${motion.dead.map((one) => number(one) + signs).join(", ")}` : "";
+  for (const [place, end] of parts.ends.entries()) end.textContent = number(motion.range[place]) + signs;
+  const more = [...(motion.turns ? ["turns fully"] : []), ...(motion.dead.length ? [`dead ${motion.dead.map((one) => number(one) + signs).join(", ")}`] : [])];
   const text = `${number(instant === null && !motion.pose ? store.state.drawn?.coordinate?.value ?? values[k] : values[k], 4)}${signs}`;
   parts.slider.setAttribute("aria-valuetext", text);
-  parts.said.textContent = parts.said.title = `${text} (${range}${dead})`;
+  parts.said.textContent = parts.said.title = [text, ...more].join(", ");
   const share = (value) => `${(100 * (value - values[0])) / (values.at(-1) - values[0] || 1)}%`;
-  parts.dead.replaceChildren(...(motion.dead ?? []).map((value) => make("line", { x1: share(value), x2: share(value), y1: 0, y2: 8 })));
+  parts.dead.replaceChildren(...motion.dead.map((value) => make("line", { x1: share(value), x2: share(value), y1: 0, y2: 8 })));
 }

@@ -2,10 +2,11 @@
 
 import { same, store } from "./store.js";
 import { shownVerdict } from "./verdict.js";
-import { beyond, freePoints, poseHandle, scene } from "./scene.js";
+import { beyond, freePoints, poseHandle, radians, scene } from "./scene.js";
+import { ofPose, reachOf } from "./motion.js";
 import { add, Group, make, perFrame } from "./elements.js";
 import { along, place } from "./labels.js";
-import { angle, fit, gridStep, leastOf, minus, number, plus, size, toScreen, turned } from "./view.js";
+import { angle, fit, gridStep, minus, number, plus, size, toScreen, turned } from "./view.js";
 
 /** Share of the linkage's size that the largest force's arrow is long, as in the drawings of reports. */
 const ARROW = 0.2;
@@ -106,7 +107,7 @@ function drawAll() {
   if (now && state.view) {
     perNewton = arrowScale(now);
     const sheet = { now, texts: [], taken: [], ...svg.getBoundingClientRect().toJSON(), size: now.drawn.size * state.view.scale };
-    for (const part of [grid, paths, bodies, springs, joints, forces, moments, handles, lengths, hand, texts]) part(sheet);
+    for (const part of [grid, paths, reach, bodies, springs, joints, forces, moments, handles, lengths, hand, texts]) part(sheet);
   }
   for (const group of Object.values(groups)) group.end();
   legend(now);
@@ -131,18 +132,32 @@ function grid({ width, height }) {
 
 const trace = (points, closed) => points.map((one, k) => `${k ? "L" : "M"}${toScreen(one).map((part) => part.toFixed(1))}`).join("") + (closed ? "Z" : "");
 
-/** Paths of all points over the motion, with the places where a dead point holds them. */
+/** Paths of all points over the motion. */
 function paths({ now }) {
   const { motion } = store.state;
   if (!store.state.paths || !motion?.points) return;
-  const dead = (motion.dead ?? []).map((value) => leastOf(motion.values.map((one) => Math.abs(one - value))));
   for (const [name, points] of Object.entries(motion.points)) {
     if (now.links.some((link) => link.ground && link.points.some((point) => name === `${link.name}.${point.name}`))) continue;
     groups.paths.put(name, "path", { d: trace(points, false) });
-    for (const k of dead) {
-      const [x, y] = toScreen(points[k]);
-      groups.paths.put(`${name} ${k}`, "path", { class: "dead", d: `M${x - 5} ${y}l5 -5l5 5l-5 5Z` });
-    }
+  }
+}
+
+/** How far the pose's handle gets, with the ends and dead points of its way. */
+function reach({ now, texts, taken }) {
+  const pose = poseHandle(now, 1 / store.state.view.scale);
+  const { ends, dead, turns } = reachOf(store.state.motion) ?? {};
+  if (!pose || !ends) return;
+  const { kind, value } = now.drawn.coordinate;
+  const here = now.still ? value : ofPose(store.state.motion)[store.state.instant];
+  const stand = (to) => (pose.way ? plus(pose.at, pose.way, to - here) : plus(pose.pivot, turned(minus(pose.at, pose.pivot), radians(to - here))));
+  const way = Array.from({ length: 73 }, (_, k) => stand(ends[0] + ((ends[1] - ends[0]) * k) / 72));
+  groups.paths.put("reach", "path", { class: "reach", d: trace(way, false) });
+  const open = turns ? [] : ends.filter((end) => !dead.some((one) => Math.abs(one - end) < 0.02 * (ends[1] - ends[0])));
+  for (const to of [...dead, ...open]) {
+    const [key, at, stops] = [`reach ${to}`, toScreen(stand(to)), dead.includes(to)];
+    groups.paths.put(key, "path", { class: stops ? "dead" : "end", d: `M${at[0] - 5} ${at[1]}l5 -5l5 5l-5 5Z` });
+    taken.push(at);
+    texts.push({ key, text: `${stops ? "dead at " : ""}${number(to)}${kind === "travel" ? " mm" : "°"}`, anchors: [at], kind: "reach", rank: 8 });
   }
 }
 
@@ -329,7 +344,7 @@ function handles({ now, taken, texts }) {
   }
   for (const free of freePoints(now)) put(`point ${free.link}.${free.point}`, { kind: "point", link: free.link, point: free.point }, toScreen(free.at), `Point ${free.point} of ${free.link} ${where(free.at)}`);
   for (const joint of now.joints) put(`joint ${joint.name}`, { kind: "joint", name: joint.name }, toScreen(joint.at), `Joint ${joint.name} of ${joint.links.join(" and ")}, ${joint.kind}, ${where(joint.at)}`);
-  const pose = poseHandle(now, 1 / store.state.view.scale);
+  const pose = now.still && poseHandle(now, 1 / store.state.view.scale);
   if (pose) {
     const at = toScreen(pose.at);
     const { coordinate } = now.drawn;

@@ -3,7 +3,7 @@
 import { store, same } from "./store.js";
 import { minus, plus, size, turned } from "./view.js";
 
-const radians = (degrees) => (degrees * Math.PI) / 180;
+export const radians = (degrees) => (degrees * Math.PI) / 180;
 export const key = (link, point) => `${link}.${point}`;
 
 /** Links, joints and loads with their places; null while nothing is known. */
@@ -80,9 +80,9 @@ export const toLocal = (link, place) => turned(minus(place, link.origin), -radia
 export const fromLocal = (link, local) => plus(link.origin, turned(local, radians(link.direction)));
 
 /** The handle of the pose: beyond the far end of the link that the pose turns, or along the way of what slides. */
-export function poseHandle({ links, joints, drawn, still }, pixel) {
+export function poseHandle({ links, joints, drawn }, pixel) {
   const pose = drawn.coordinate;
-  if (!pose || !still) return null;
+  if (!pose) return null;
   const sliding = joints.find((joint) => joint.name === pose.name && joint.way) ?? joints.find((joint) => joint.way && joint.links.includes(pose.name));
   if (pose.kind === "travel" && sliding) return { at: plus(sliding.at, sliding.way, 34 * pixel), way: sliding.way, pivot: sliding.at };
   const link = links.find((one) => one.name === pose.name);

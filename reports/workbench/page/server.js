@@ -2,7 +2,7 @@
 
 import { store } from "./store.js";
 
-const EVENTS = ["document", "drawn", "motion", "solids", "notice"];
+const EVENTS = ["document", "drawn", "verdict", "motion", "solids", "notice"];
 let revision = 0;
 let waiting = [];
 let busy = false;
@@ -76,10 +76,6 @@ export function connect() {
     lost = false;
   };
   for (const name of EVENTS) source.addEventListener(name, (event) => take(name, JSON.parse(event.data)));
-  source.addEventListener("verdict", (event) => {
-    const verdict = JSON.parse(event.data);
-    store.put("verdict", { ...store.state.verdict, [verdict.stage]: verdict });
-  });
 }
 
 function take(name, value) {
@@ -90,7 +86,7 @@ function take(name, value) {
   }
   // Told before its joint forces are known: those of the drawing before stand until then.
   if (name === "drawn" && !value.problem && !Object.keys(value.forces).length) value.forces = store.state.drawn?.forces ?? {};
-  store.put(name, value);
+  store.put(name, name === "verdict" ? { ...store.state.verdict, [value.stage]: value } : value);
 }
 
 /** Another case was opened: nothing that was told of the last one holds. */

@@ -89,8 +89,7 @@ function show() {
     if (mine.length) marks.put(`pin ${joint.name}`, "line", { class: "pin", x1: x, x2: x, y1: Math.min(...mine) - 8, y2: Math.max(...mine) + 8 });
   }
   for (const link of links) bar(link, extent(link), heights.get(link.name));
-  rows.end();
-  marks.end();
+  for (const group of [rows, marks]) group.end();
 }
 
 function bar(link, [left, right], y) {

@@ -1,6 +1,6 @@
 /** What the page knows. Modules know the store alone, not each other. */
 
-const listeners = new Map();
+const listeners = {};
 
 export const store = {
   state: {
@@ -25,15 +25,14 @@ export const store = {
 
   /** Call `listener(value)` after each change of a key. */
   on(key, listener) {
-    if (!listeners.has(key)) listeners.set(key, new Set());
-    listeners.get(key).add(listener);
+    (listeners[key] ??= new Set()).add(listener);
   },
 
   /** Set a key and tell its listeners. */
   put(key, value) {
     if (store.state[key] === value) return;
     store.state[key] = value;
-    for (const listener of listeners.get(key) ?? []) listener(value);
+    for (const listener of listeners[key] ?? []) listener(value);
   },
 };
 

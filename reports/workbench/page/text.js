@@ -1,7 +1,7 @@
 /** The text of the case: with line numbers, and what is wrong at its line. */
 
 import { make } from "./elements.js";
-import { change, newGesture } from "./server.js";
+import { change, newGesture, tell } from "./server.js";
 
 const PAUSE = 300; // ms after the last key until the text is sent
 export function mount(holder, store) {
@@ -10,7 +10,9 @@ export function mount(holder, store) {
   const wrong = make("p", { class: "at-line", id: "text-wrong", hidden: true });
   const editor = make("div", { class: "editor" }, numbers, area, wrong);
   holder.append(editor);
-  let typed = null; // the timer of what was typed and not sent
+  let [base, revision] = ["", -1]; // what the server is known to have: what stands here, but for what is typed
+  let sending = false;
+  let typed = null; // the timer until that is sent
   let gesture = newGesture();
   const lines = () => Number.parseFloat(getComputedStyle(area).lineHeight);
 
@@ -33,22 +35,37 @@ export function mount(holder, store) {
     numbers.replaceChildren(...Array.from({ length: count }, (_, k) => (k + 1 === bad ? make("b", {}, `${k + 1}\n`) : `${k + 1}\n`)));
   }
 
-  /** Take a new text; caret and scroll stay with what they stood at. */
-  function take(text) {
-    const was = area.value;
-    if (was === text) return;
-    let same = 0;
-    while (same < was.length && was[same] === text[same]) same += 1;
+  /** What a text has in place of a range of another. */
+  function difference(was, text) {
+    let from = 0;
+    while (from < was.length && was[from] === text[from]) from += 1;
     let tail = 0;
-    while (tail < was.length - same && tail < text.length - same && was.at(-1 - tail) === text.at(-1 - tail)) tail += 1;
+    while (tail < was.length - from && tail < text.length - from && was.at(-1 - tail) === text.at(-1 - tail)) tail += 1;
+    return { from, to: was.length - tail, put: text.slice(from, text.length - tail) };
+  }
+
+  /** Take in what the server has; what is typed stays, and so do caret and scroll. Where both are in one line, the reader is told. */
+  function take(text) {
+    const [theirs, mine] = [text, area.value].map((one) => difference(base, one));
+    const apart = (one, other) => base.slice(one.to, other.from).includes("\n");
+    const ahead = area.value === base || apart(theirs, mine);
+    const clash = text !== area.value && !ahead && !apart(mine, theirs);
+    base = text;
+    if (clash) return tell("Another page or program has changed the lines in which you write. Your text stands; Undo shows the other one.");
+    if (text === area.value) return;
+    const shift = ahead ? 0 : mine.put.length - (mine.to - mine.from);
     const top = area.scrollTop;
-    area.setRangeText(text.slice(same, text.length - tail), same, was.length - tail, "preserve");
+    area.setRangeText(theirs.put, theirs.from + shift, theirs.to + shift, "preserve");
     area.scrollTop = top;
   }
 
   function show(now) {
     if (!now) return;
-    if (typed === null) take(now.text.replaceAll("\r\n", "\n"));
+    if (!sending && now.revision > revision) {
+      take(now.text.replaceAll("\r\n", "\n"));
+      revision = now.revision;
+      if (area.value !== base) later();
+    }
     number();
     const { sentence, line } = now.problem ?? {};
     wrong.textContent = sentence ?? "";
@@ -60,25 +77,29 @@ export function mount(holder, store) {
   /** The panel was opened: what is wrong is seen. */
   function opened() {
     const line = store.state.document?.problem?.line;
-    if (!line) return;
-    const top = (line - 1) * lines();
-    if (top < area.scrollTop || top > area.scrollTop + area.clientHeight - 3 * lines()) area.scrollTop = Math.max(0, top - area.clientHeight / 3);
+    if (line) area.scrollTop = (line - 1) * lines() - area.clientHeight / 3;
     follow();
   }
 
-  function sendTyped() {
-    clearTimeout(typed);
-    if (typed === null) return;
-    typed = null;
-    const end = store.state.document.text.includes("\r\n") ? "\r\n" : "\n"; // a text area has lost it
-    change("text", { text: area.value.replaceAll("\n", end) }, gesture).catch(() => {}); // the sentence stands above the page
-  }
-
-  area.addEventListener("input", () => {
-    number();
+  function later() {
     clearTimeout(typed);
     typed = setTimeout(sendTyped, PAUSE);
-  });
+  }
+
+  async function sendTyped() {
+    clearTimeout(typed);
+    const text = area.value;
+    if (sending || text === base) return;
+    sending = true;
+    const end = store.state.document.text.includes("\r\n") ? "\r\n" : "\n"; // a text area has lost it
+    const answer = await change("text", { text: text.replaceAll("\n", end), revision }, gesture).catch(() => null); // the sentence stands above the page
+    sending = false;
+    if (answer) [base, revision] = [text, answer.revision];
+    if (answer && area.value !== base) later();
+    show(store.state.document);
+  }
+
+  for (const act of [number, later]) area.addEventListener("input", act);
   area.addEventListener("blur", () => {
     sendTyped();
     gesture = newGesture(); // what is typed when one comes back is another step

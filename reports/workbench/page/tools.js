@@ -29,7 +29,7 @@ export function mount(element) {
   const keeping = group(element, "File");
   const save = button(keeping, "Save", "Ctrl+S", "", () => change("save"));
   const box = make("input", { type: "checkbox", onchange: () => change("save", { always: box.checked }) });
-  add(keeping, "label", { class: "choice" }, box, " save as one goes");
+  add(keeping, "label", { class: "choice" }, box, " by itself");
   loadCases(group(element, "Load case"));
   store.on("document", (now) => {
     undo.disabled = !now.undo;
@@ -69,8 +69,8 @@ export function removeOf(handle) {
 
 /** The load case that is shown: the first one until another is chosen. */
 function loadCases(element) {
-  const list = make("select", { onchange: () => store.put("loadCase", list.value) });
-  add(element, "label", { class: "choice" }, "Load case ", list);
+  const list = make("select", { "aria-label": "Load case", onchange: () => store.put("loadCase", list.value) });
+  add(element, "label", { class: "choice" }, make("span", {}, "Load case "), list);
   const show = () => {
     const names = store.state.drawn?.load_cases ?? [];
     offer(list, names);
@@ -78,21 +78,18 @@ function loadCases(element) {
     list.value = store.state.loadCase ?? "";
     element.hidden = names.length < 2;
   };
-  store.on("drawn", show);
-  store.on("loadCase", show);
+  for (const key of ["drawn", "loadCase"]) store.on(key, show);
   show();
 }
 
-/** What a case that is drawn from nothing wants next; "" where something acts on it already. */
+/** What a case that is drawn from nothing wants next; "" where something acts on it already, or where something is wrong. */
 export function nextStep(now) {
   if (!now?.problem || !now.tables || Object.keys(now.tables.load_cases ?? {}).length) return "";
-  const moving = Object.values(now.tables.links ?? {}).filter((link) => !link.ground).length;
-  const joints = Object.values(now.tables.joints ?? {});
-  if (!moving) return "Begin with Add link: press on a pin of the ground and release where the link shall end.";
-  if (joints.some((joint) => joint.type)) return "";
-  const free = joints.reduce((left, joint) => left - 2 * ((joint.links?.length ?? 1) - 1), 3 * moving);
-  if (free > 1) return `It moves in ${free} ways, and one is to be left: Add link from a free end to another pin or to the ground.`;
-  return free === 1 ? "It moves in one way, as a drive needs it. Add more links, or Add load." : "";
+  const { sentence } = now.problem;
+  const [, ways = 0] = sentence.match(/^drive: the linkage has mobility (\d+)/) ?? [];
+  if (ways > 1) return `It moves in ${ways} ways, and one is to be left: Add link from a free end to another pin or to the ground.`;
+  if (sentence.startsWith("links: it has 1")) return "Begin with Add link: press on a pin of the ground and release where the link shall end.";
+  return sentence.startsWith("load_cases: this entry is missing") ? "It moves in one way, as a drive needs it. Add more links, or Add load." : "";
 }
 
 /** What the tool that is taken up wants, and what the drawing does. */

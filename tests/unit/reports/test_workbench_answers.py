@@ -124,6 +124,24 @@ def test_what_balances_by_itself_is_drawn_where_it_stands():
     assert {spring["kind"] for spring in answer["drawn"]["springs"]} == {"coil", "wall"}
 
 
+@pytest.mark.parametrize(
+    ("there", "instead", "told"),
+    [
+        ("[drive]", "[drive]", "load_cases: this entry is missing"),
+        ('joint = "O2"', 'joint = "O9"', "drive.joint: 'O9'"),
+        ('coordinate = "crank"', 'coordinate = "crankk"', "pose.coordinate: 'crankk'"),
+        ('points.B = ["120 mm"', 'points.B = ["320 mm"', "pose: the linkage cannot be assembled"),
+        ('width = "8 mm"', 'widht = "8 mm"', "parts.bar.widht: this key is unknown"),
+    ],
+)
+def test_what_is_wrong_is_told_before_there_is_a_load(there, instead, told):
+    text = read_text("four-bar")[0]
+    loads = text[text.index("[load_cases.lift]") : text.index("# The checks that")]
+    answer = posed("four-bar", (loads, ""), (there, instead))
+    assert answer["problem"].startswith(told)
+    assert answer["drawn"]["links"]
+
+
 def test_a_problem_is_one_sentence_and_what_can_be_is_drawn():
     open_loop = posed("four-bar", ('points.B = ["120 mm"', 'points.B = ["320 mm"'))
     assert open_loop["problem"].startswith("pose: the linkage cannot be assembled")

@@ -394,7 +394,7 @@ def test_every_name_of_the_records_is_known() -> None:
         ({"op": "link", "name": "crank", "from": {"joint": "A"}, "to": {"at": [9, 9]}}, "is there already"),
         ({"op": "rename", "path": ["links", "crank"], "to": "rocker"}, "is there already"),
         ({"op": "rename", "path": ["links", "crank"], "to": "a.b"}, "a name is made of"),
-        ({"op": "rename", "path": ["pose", "angle"], "to": "x"}, "no link, joint"),
+        ({"op": "rename", "path": ["pose", "angle"], "to": "x"}, "nothing of this name"),
         ({"op": "move", "link": "crank", "point": "X", "to": [1, 1]}, "no such point"),
         ({"op": "move", "joint": "A", "to": [0, 0]}, "no length"),
         ({"op": "move", "joint": "A", "to": ["x", None]}, "does not fit"),

@@ -387,6 +387,47 @@ def test_a_change_on_the_disk_is_offered_where_something_is_unsaved(bench, case)
             assert (told["disk"], told["saved"]) == (None, True)
 
 
+@pytest.mark.parametrize("always", [False, True])
+def test_a_change_on_the_disk_while_it_is_saved_is_not_overwritten(bench, case, monkeypatch, always):
+    """Another program writes after the last look at the disk, while the new file is being made: its text stays."""
+    theirs, write = case.read_bytes().replace(b"title = ", b"title = 'theirs' # "), session.write_file
+
+    def meanwhile(*what):
+        case.write_bytes(theirs)
+        write(*what)
+
+    if always:
+        bench.post("save", always=True)
+    with bench.events() as events:
+        monkeypatch.setattr(session, "write_file", meanwhile)
+        retitled(bench, "mine")
+        told = events.next("notice")["sentence"] if always else sentence(bench.post("save"))
+        assert "another program has just changed it" in told
+        found = events.next("document", disk="changed")
+        assert '"mine"' in found["text"]
+        assert not found["saved"]
+    assert case.read_bytes() == theirs
+    assert bench.post("reload")[0] == 200
+    assert "'theirs'" in bench.document()["text"]
+
+
+def test_a_change_on_the_disk_right_after_it_is_saved_is_seen(bench, case, monkeypatch):
+    """Another program writes before the page has looked at what it saved: its text is taken over."""
+    write, theirs = session.write_file, case.read_bytes().replace(b"title = ", b"title = 'theirs' # ")
+
+    def written(*what):
+        write(*what)
+        case.write_bytes(theirs)
+
+    with bench.events() as events:
+        monkeypatch.setattr(session, "write_file", written)
+        retitled(bench, "mine")
+        assert bench.post("save")[0] == 200
+        told = events.next("document", revision=2)
+        assert "'theirs'" in told["text"]
+        assert told["saved"]
+
+
 def test_a_deleted_file_is_written_anew_on_request_alone(bench, case):
     bench.post("save", always=True)
     with bench.events() as events:
