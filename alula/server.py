@@ -75,32 +75,25 @@ def serve(folder: Path, threads: int) -> None:
 
 
 def made(folder: Path, threads: int) -> "MCPServer":
-    """Return a server with its tools.
-
-    Parameters
-    ----------
-    folder : Path
-    threads : int
-        As for ``serve``.
-
-    Returns
-    -------
-    mcp.server.MCPServer
-
-    Raises
-    ------
-    CannotRunError
-        Where the package ``mcp`` is not installed.
-    """
+    """Return a server with its tools, an ``mcp.server.MCPServer``; arguments and errors are those of ``serve``."""
     try:
+        import anyio
         from mcp.server import MCPServer
         from mcp.server.mcpserver.exceptions import ToolError
+        from mcp.server.stdio import stdio_server
         from mcp_types import ToolAnnotations
     except ImportError:
         raise CannotRunError(f"mcp: the package mcp is not installed; run {extra_command('mcp')}") from None
 
     class Server(MCPServer):
-        """A server that tells of wrong arguments in one sentence, as of all else."""
+        """A server that answers lines that are no messages, and tells of wrong arguments in one sentence."""
+
+        async def run_stdio_async(self) -> None:
+            send, messages = anyio.create_memory_object_stream[Any]()
+            async with stdio_server() as (lines, answers), anyio.create_task_group() as beside:
+                beside.start_soon(_pass_on, lines, send, answers)
+                server = self._lowlevel_server
+                await server.run(messages, answers, server.create_initialization_options())
 
         async def call_tool(self, name: str, arguments: dict[str, Any], context: Any = None) -> Any:
             known = [
@@ -115,19 +108,32 @@ def made(folder: Path, threads: int) -> "MCPServer":
                     raise ToolError(sentence(error.__cause__, BaseModel)) from None
                 raise
 
-    server, one_at_a_time = (
-        Server("alula", instructions=_ABOUT, version=alula.__version__, log_level="CRITICAL"),
-        threading.Lock(),
-    )
-    home = folder.absolute()
+    server = Server("alula", instructions=_ABOUT, version=alula.__version__, log_level="CRITICAL")
+    one_at_a_time = threading.Lock()
     for name in TOOLS:
         function = getattr(alula, name)
         server.add_tool(
-            _tool(function, home, threads, one_at_a_time),
+            _tool(function, folder.absolute(), threads, one_at_a_time),
             description=str(inspect.getdoc(function)).partition("\nExamples\n")[0],
             annotations=ToolAnnotations(read_only_hint=True, open_world_hint=False),
         )
     return server
+
+
+async def _pass_on(lines: Any, send: Any, answers: Any) -> None:
+    """Pass on the messages of a program; the package drops a line that is none, which JSON-RPC wants answered."""
+    from mcp.shared.message import SessionMessage
+    from mcp_types import INVALID_REQUEST, PARSE_ERROR, ErrorData, JSONRPCError
+
+    async with send:
+        async for line in lines:
+            if isinstance(line, ValidationError):
+                no_json = line.errors()[0]["type"] == "json_invalid"
+                code, what = (PARSE_ERROR, "JSON") if no_json else (INVALID_REQUEST, "message of JSON-RPC 2.0")
+                error = ErrorData(code=code, message=f"the line is no {what}")
+                await answers.send(SessionMessage(JSONRPCError(jsonrpc="2.0", id=None, error=error)))
+            else:
+                await send.send(line)
 
 
 def _tool(
@@ -140,8 +146,7 @@ def _tool(
     asked = [_plain(one) for name, one in stated.items() if name not in _LEFT_OUT]
     of_case = "case" in stated
     if of_case:
-        values = inspect.Parameter("values", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=_VALUES)
-        asked.append(values)
+        asked.append(inspect.Parameter("values", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=_VALUES))
 
     @wraps(function)
     def tool(**arguments: Any) -> Answer:

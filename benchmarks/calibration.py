@@ -9,7 +9,6 @@ The largest von Mises and principal stress at each critical location (``alula.fe
 by the estimate there.
 """
 
-import datetime
 import json
 import math
 import sys
@@ -29,9 +28,11 @@ from alula.fea.solid.stress import stress_field
 from alula.geometry.bodies.eyes import RIM
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from alula.reports.sentences import told
+from benchmarks.record import RESULTS, circumstances
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
-KEPT = Path(__file__).with_name("results") / "calibration.json"
+KEPT = RESULTS / "calibration.json"
 SETTINGS = MeshSettings(size=0.45, bore_elements=14, hole_elements=8, turn_elements=8, fillet_size=0.9, growth=0.8)
 YOUNG = 2400.0
 MARGIN = 1.15
@@ -216,7 +217,7 @@ def solids(body: Body, nu: float) -> dict[str, dict[str, list[float]]]:
             von = [float(f.von_mises[inside].max()) for f in fields]
             first = [float(f.principal[inside, 0].max()) for f in fields]
             share = max(v / p for v, p in zip(von, peaks, strict=True))
-            row[location.name] = _rounded(share, min(von), max(von), min(first), max(first))
+            row[told(location.name)] = _rounded(share, min(von), max(von), min(first), max(first))
     return kept
 
 
@@ -236,7 +237,7 @@ def compare(body: Body, nu: float, kept: dict[str, dict[str, list[float]]]) -> l
         of_all = {"case": loads.name, "kind": "displacement", "share": 1.0, "by_hand": 1.0}
         rows.append(of_all | {"von_mises": [value / moved for value in solid["displacement"]]})
         for location in places:
-            share, *stresses = solid[location.name]
+            share, *stresses = solid[told(location.name)]
             ratios = [value / location.estimate for value in stresses]
             row = {"case": loads.name, "kind": location.kind, "share": share, "by_hand": location.estimate / hand}
             rows.append(row | {"von_mises": ratios[:2], "principal": ratios[2:]})
@@ -270,15 +271,15 @@ def _up(value: float) -> float:
     return math.ceil(1000.0 * value) / 1000.0
 
 
-def table(shape: str, found: dict) -> str:
-    """Return one shape's measurements as TOML."""
-    rows = [row for part in found["parts"] for row in part["rows"]]
-    ratios = [part["proportions"] for part in found["parts"]]
+def table(shape: str, date: str, found: list[dict]) -> str:
+    """Return one shape's measurements, by parts, as TOML."""
+    rows = [row for part in found for row in part["rows"]]
+    ratios = [part["proportions"] for part in found]
     lines = [
         f"[{shape}]",
-        f'measured = "{found["date"]}"',
+        f'measured = "{date}"',
         f"parts = {len(ratios)}",
-        f"cases = {len({(part['number'], r['case']) for part in found['parts'] for r in part['rows']})}",
+        f"cases = {len({(number, r['case']) for number, part in enumerate(found) for r in part['rows']})}",
         f"margin = {MARGIN}",
         f"displacement = {factors([r for r in rows if r['kind'] == 'displacement'], 'von_mises')}",
         f"[{shape}.ranges]",
@@ -304,25 +305,36 @@ HEADER = """\
 """
 
 
-def main() -> None:
-    """Measure every part of both shapes, or take what was kept, and write the table."""
-    kept: dict[str, dict] = json.loads(KEPT.read_text()) if sys.argv[1:] == ["estimates"] else {}
-    found: dict[str, dict] = {}
-    for shape, parts in (("tube", TUBES), ("bar", BARS)):
-        if shape not in kept:
-            kept[shape] = {"date": str(datetime.date.today()), "parts": []}
-            for number, (body, nu) in enumerate(bodies(shape)):
-                print(f"{shape} {number}: ", end="", flush=True)
-                kept[shape]["parts"].append({"proportions": parts[number], "solid": solids(body, nu)})
-            KEPT.write_text(json.dumps(kept, indent=None, separators=(",", ":")).replace('},"', '},\n"') + "\n")
-        found[shape] = {"date": kept[shape]["date"], "parts": []}
+SHAPES = {"tube": TUBES, "bar": BARS}
+
+
+def written(kept: dict[str, dict]) -> str:
+    """Return the whole table: the solids that were kept over the estimates of today."""
+    tables = []
+    for shape, parts in SHAPES.items():
+        found = []
         for number, (body, nu) in enumerate(bodies(shape)):
             part = kept[shape]["parts"][number]
             if tuple(part["proportions"]) != parts[number]:
                 raise SystemExit(f"{shape} {number} was solved with other proportions; solve every solid again")
-            rows = compare(body, nu, part["solid"])
-            found[shape]["parts"].append({"number": number, "proportions": proportions(body, nu), "rows": rows})
-    FILE.write_text(HEADER + "\n".join(table(shape, rows) for shape, rows in found.items()))
+            found.append({"proportions": proportions(body, nu), "rows": compare(body, nu, part["solid"])})
+        tables.append(table(shape, kept["date"][:10], found))
+    return HEADER + "\n".join(tables)
+
+
+def main() -> None:
+    """Measure every part of both shapes, or take what was kept, and write the table."""
+    if sys.argv[1:] == ["estimates"]:
+        kept = json.loads(KEPT.read_text())
+    else:
+        kept = circumstances()
+        for shape, parts in SHAPES.items():
+            kept[shape] = {"parts": []}
+            for number, (body, nu) in enumerate(bodies(shape)):
+                print(f"{shape} {number}: ", end="", flush=True)
+                kept[shape]["parts"].append({"proportions": parts[number], "solid": solids(body, nu)})
+        KEPT.write_text(json.dumps(kept, indent=None, separators=(",", ":")).replace('},"', '},\n"') + "\n")
+    FILE.write_text(written(kept))
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 """What a perfectly plastic eye bears, by limit analysis, over the formulas of ``fea/modes/eye_modes.py``.
 
-    python -m benchmarks.eye_limits [pressures]
+    python -m benchmarks.eye_limits [anew | pressures]
 
-Writes ``fea/eye_scatter.toml`` from drawn eyes, and tries it on further ones; ``pressures`` for what pins in contact
-bear more than pressures that are given.
+Writes ``fea/eye_scatter.toml`` from drawn eyes, and tries it on further ones. Eyes that are kept are not solved again,
+unless ``anew``; ``pressures`` for what pins in contact bear more than pressures that are given.
 
 Eyes are drawn: outer radius over that of the hole, pin over hole, shank over eye, and the angle of the force to the
 pull straight off the shank. Of the eye alone the strength is in question: the shank is five times as strong, and held
@@ -24,14 +24,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import clarabel
 import gmsh
 import numpy as np
 import scipy.sparse as sp
 
 from alula.fea.modes.eye_modes import EyeMode, RoundEye, asme_bth_1
+from benchmarks.record import RESULTS, save
 
-KEPT = Path(__file__).with_name("results") / "eyes.json"
+KEPT = RESULTS / "eyes.json"
 SCATTER = Path(__file__).parents[1] / "fea" / "eye_scatter.toml"
 CALIBRATING, TRYING = 60, 30
 """Eyes from which the bands come, and further ones on which they are tried."""
@@ -110,6 +110,8 @@ def limit_load(
 
     ``thick`` for plane strain; ``given`` for a pressure as a cosine over so many degrees in place of contact.
     """
+    import clarabel
+
     places, triangles = mesh(radius, shank, size)
     count, even, pressed = 9 * len(triangles), list[list[tuple[int, float]]](), list[list[tuple[int, float]]]()
     faces: dict[tuple[int, int], list[int]] = {}
@@ -270,13 +272,12 @@ def pressures() -> None:
 
 
 def main() -> None:
-    """Compare drawn eyes with the formulas; those that are kept are not solved again."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))["eyes"]
+    """Compare drawn eyes with the formulas."""
+    found = [] if sys.argv[1:] == ["anew"] else json.loads(KEPT.read_text(encoding="utf-8"))["eyes"]
     for eye in draw()[len(found) :]:
         found.append(tried(eye))
         print(json.dumps(found[-1]), flush=True)
-        kept = {"element": ELEMENT, "dent": DENT, "eyes": found}
-        KEPT.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        save("eyes", {"element": ELEMENT, "dent": DENT, "eyes": found})
     SCATTER.write_text(table(found), encoding="utf-8")
 
 

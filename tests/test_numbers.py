@@ -2,6 +2,7 @@
 
 import ast
 import importlib.util
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -10,8 +11,8 @@ import pytest
 from pages import renewed_numbers
 from programs import ROOT
 
-from benchmarks import tables
-from benchmarks.record import printed
+from benchmarks import calibration, eye_limits, tables
+from benchmarks.record import RESULTS, printed
 from benchmarks.renew import older, results, stale
 
 OF = {"alula": {"version": "1.0", "sources": "ab"}}
@@ -30,6 +31,22 @@ def test_at_a_release_all_results_are_of_its_version() -> None:
     assert newest[1] == version
     if not newest[2]:
         assert not {name: why for name, record in results().items() if (why := older(record, version))}
+
+
+def test_what_calculations_take_from_results_follows_from_them() -> None:
+    """It is measured once and stays, so that what makes it would be out of date unnoticed."""
+    kept, eyes = (json.loads(one.KEPT.read_text(encoding="utf-8")) for one in (calibration, eye_limits))
+    assert calibration.written(kept) == calibration.FILE.read_text(encoding="utf-8")
+    assert eye_limits.table(eyes["eyes"]) == eye_limits.SCATTER.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("file", sorted(RESULTS.glob("*.json")), ids=lambda file: file.stem)
+def test_a_result_notes_when_and_by_which_version_it_was_made(file: Path) -> None:
+    if file.stem in ("coverage-series", "coverage-truth"):
+        file = RESULTS / "coverage.json"  # which is written with them
+    record = json.loads(file.read_text(encoding="utf-8"))
+    assert re.match(r"\d{4}-\d\d-\d\d", record["date"])
+    assert record["alula"]["version"]
 
 
 @pytest.mark.parametrize(

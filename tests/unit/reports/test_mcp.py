@@ -1,8 +1,11 @@
 """``alula mcp``: what a program sees that speaks the protocol, by the package's own client."""
 
 import asyncio
+import json
 import os
+import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -131,14 +134,44 @@ def test_a_mistake_is_one_sentence(home):
         serve(home / "nowhere", 1)
 
 
+THICK = {"parts.bar.thickness": "9 mm"}
+"""Of the four-bar: by default hand calculation decides no strength, and one mesh of each link does."""
+
+
 def test_the_command_speaks_it_over_standard_input_and_output(home):
     started = StdioServerParameters(
         command=sys.executable, args=["-m", "alula", "mcp", str(home), "--threads", "1"], env=dict(os.environ)
     )
-    (answer, again), _ = asked(
+    (by_hand, solved, part), _ = asked(
         started,
         ("check", {"case": CASE, "fidelity": "beam"}),
+        ("check", {"case": CASE, "values": THICK}),
         ("inspect", {"path": "bell-crank.step"}),
     )
-    assert answer.structured_content["verdict"] == "undecided"
-    assert not again.is_error
+    assert by_hand.structured_content["verdict"] == "undecided"
+    assert solved.structured_content["verdict"] == "pass"
+    assert not part.is_error
+
+
+NO_JSON, NO_MESSAGE = (-32700, "JSON"), (-32600, "message of JSON-RPC 2.0")
+
+
+def test_a_line_that_is_no_message_is_answered_and_the_next_one_too(home):
+    """As JSON-RPC 2.0 has it in section 5.1: without an identifier, since none was read."""
+    lines = ["check four-bar", '"\\ud800"', "[]", '{"jsonrpc": "2.0", "id": 7}']
+    lines += ['{"jsonrpc": "2.0", "id": 8, "method": "ping"}', "{", '{"jsonrpc": "2.0", "id": 9, "method": "ping"}']
+    command = [sys.executable, "-m", "alula", "mcp", str(home)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as server:
+        late = threading.Timer(120, server.kill)
+        late.start()
+        server.stdin.write("\n".join(lines) + "\n")
+        server.stdin.flush()
+        answers = [json.loads(server.stdout.readline()) for _ in lines]
+        late.cancel()
+        server.stdin.close()
+        assert server.stdout.read() == ""
+    assert [one["error"] for one in answers if one["id"] is None] == [
+        {"code": code, "message": f"the line is no {what}"}
+        for code, what in (NO_JSON, NO_JSON, NO_MESSAGE, NO_MESSAGE, NO_JSON)
+    ]
+    assert sorted(one["id"] for one in answers if one["id"] is not None) == [8, 9]
