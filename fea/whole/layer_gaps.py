@@ -219,7 +219,7 @@ class LayerGaps:
         return min(found, key=lambda one: one.left.low, default=None)
 
     @property
-    def remedy(self) -> Reason | None:
+    def remedy(self) -> Reason | str | None:
         """What keeps all gaps open, as tried: less play of one joint, else of all, and heads; None where nothing does.
 
         Where deflection alone may close a gap, that is told.
