@@ -92,8 +92,8 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """Put the first problem of a validation into one sentence: entry, value, rule, remedy.
 
-    What is wrong comes before what is missing: a mistyped key leaves an entry missing. Where an entry is missing, all that are missing are
-    told.
+    What is wrong comes before what is missing: a mistyped key leaves an entry missing. Where one is missing, all that
+    are missing are told.
 
     Parameters
     ----------

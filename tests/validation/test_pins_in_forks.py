@@ -11,6 +11,8 @@ from alula.fea.beam.cut_free import beam_loads, link_loads
 from alula.fea.beam.theory import internal_forces
 from alula.fea.check.run import check_case
 from alula.fea.common.verdict import Quantity
+from alula.fea.frame import build
+from alula.fea.nonlinear.on_rims import divided
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.loads.case.forks import eye_of
 
@@ -133,3 +135,19 @@ def test_in_the_plane_a_fork_is_as_it_was():
     forces = solve_case_statics(case).forces["l"]
     assert forces.frame is None
     assert forces.sharings == ()
+
+
+@pytest.mark.parametrize("times", [0.25, 4.0])
+def test_how_long_the_element_of_a_pin_is_changes_no_stability(monkeypatch, times):
+    """It stands for a pin of no length between its links: two forks, with rims that touch on one side and on both."""
+
+    def factors():
+        for force in (("0 N", "-10 N", "1 N"), ("0 N", "-20 N", "0.2 N")):
+            pins = solve_case_statics(with_clearances(HOLES[0], force)).forces["l"].pins
+            assert pins is not None
+            path = divided(pins, 1)
+            yield path.extended(pins.tangent(pins.radii.value, pins.value)).factor()
+
+    plain = [*factors()]
+    monkeypatch.setattr(build, "ALONG_PINS", times * build.ALONG_PINS)
+    assert [*factors()] == pytest.approx(plain, rel=2e-3)
