@@ -150,4 +150,4 @@ def test_how_long_the_element_of_a_pin_is_changes_no_stability(monkeypatch, time
 
     plain = [*factors()]
     monkeypatch.setattr(build, "ALONG_PINS", times * build.ALONG_PINS)
-    assert [*factors()] == pytest.approx(plain, rel=2e-3)
+    assert [*factors()] == pytest.approx(plain, rel=1e-4)
