@@ -22,13 +22,15 @@ flat.table("links")
 
 # %%
 # Built flat, the layers lie in the plane of the linkage, as all its loads. They bear little, and the strength in
-# their plane decides. Built upright, with layers across the link, the same bending pulls them apart.
+# their plane decides. Built upright, with layers across the link, the same bending pulls them apart. Both have one
+# strength across the layers, 12 to 45 MPa, which is most of either band: at the same strength the values compare.
 rocker = {
     way: report.result.load_cases["lift"].links["rocker"] for way, report in (("flat", flat), ("upright", upright))
 }
 layers = {way: found.layers.safety_factor for way, found in rocker.items()}
 print({way: f"{factor.value:.1f} ({factor.low:.1f} to {factor.high:.1f})" for way, factor in layers.items()})
-assert layers["upright"].high < layers["flat"].low
+assert layers["upright"].value < layers["flat"].value / 2.0
+assert layers["upright"].low < layers["flat"].low / 2.0
 
 # %%
 # An independent bound: no plane bears more normal stress than the largest principal stress. The part holds its layers
