@@ -3,6 +3,7 @@
 With ``ALULA_PICTURES=docs/images`` the story draws the pictures of the tutorial anew.
 """
 
+import contextlib
 import io
 import json
 import os
@@ -68,10 +69,16 @@ class Page:
         self.browser.wait(script, seconds)
 
     def press(self, label):
-        """Press a button by what stands on it."""
+        """Press a button by what stands on it; once more where the page has drawn it anew in between."""
+        from selenium.common.exceptions import StaleElementReferenceException
+
         shown = "one.checkVisibility() && one.innerText.startsWith(arguments[0])"
         found = f"[...document.querySelectorAll('button')].find((one) => {shown})"
-        self.browser.run(f"return {found}", label).click()
+        for _ in range(3):
+            with contextlib.suppress(StaleElementReferenceException):
+                self.browser.run(f"return {found}", label).click()
+                return
+        raise AssertionError(f"'{label}' is drawn anew again and again")
 
     def keys(self, *keys):
         from selenium.webdriver.common.action_chains import ActionChains
