@@ -98,8 +98,8 @@ def build_frame(
     joints = case.linkage.joints
     bonds = frozenset(name for name, joint in joints.items() if joint.fixed or (bonded and not joint.slides))
     spatial = spatial or case.layered or out_of_plane(loads)
-    beside = frozenset(name for name in joints if spatial and name not in bonds and in_holes(case, name))
-    builder = _Builder(case, pose, loads, solids or {}, beside)
+    standing = frozenset(name for name in joints if spatial and name not in bonds and in_holes(case, name))
+    builder = _Builder(case, pose, loads, solids or {}, standing)
     supports, ties, guides = builder.supports, [], []
     stiff = bonds if held is None else bonds | {held.joint}
     by_length = sorted(case.joints, key=lambda name: abs(case.linkage.rise(name)))
@@ -170,9 +170,9 @@ class _Builder:
         pose: Pose,
         loads: Sequence[Load],
         solids: Mapping[str, LinkFlexibility],
-        beside: frozenset[str],
+        standing: frozenset[str],
     ) -> None:
-        self.case, self.pose, self.beside = case, pose, beside
+        self.case, self.pose, self.standing = case, pose, standing
         self.condensed: list[CondensedLink] = []
         self.places: list[Real] = []
         self.names: list[str] = []
@@ -227,7 +227,7 @@ class _Builder:
         first, second = self.pins[name]
         linkage, joint = self.case.linkage, self.case.joints[name]
         rise = linkage.rise(name)
-        if rise == 0.0 and name not in self.beside:
+        if rise == 0.0 and name not in self.standing:
             return first, second
         root, link = (second, joint.links[1]) if joint.slides else (first, joint.links[0])
         eyes = [(one, linkage.point_of(name, one)) for one in joint.links]

@@ -126,7 +126,7 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     if sits.shared is not None:
         found = [tuple((hole.link, sits.shared[1]) for hole in sits.holes)]
     else:
-        stands = case.linkage.rise(joint) != 0.0 or in_holes(case, joint)
+        stands = in_holes(case, joint)
         holes = [_as_stated(case, joint, hole) for hole in sits.holes] if stands else sits.holes
         told = [hole for hole in holes if hole.stated or (stands and known_hole(case, joint, hole.link))]
         found = [((hole.link, hole.high),) for hole in told if math.isfinite(hole.high)]

@@ -44,7 +44,7 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():
-        if in_holes(case, name) or (joint.kind.has_pin and linkage.rise(name) != 0.0):
+        if in_holes(case, name):
             every = ((link, linkage.pin_holes(name)[link].high) for link in joint.bored)
             found += [(name, link) for link, play in every if play > 0.0 and _tilts(case, name, link)]
     return tuple(found)

@@ -167,7 +167,7 @@ def outer_link(case: CoreCase, joint: str) -> str | None:
 
 
 def in_holes(case: CoreCase, joint: str) -> bool:
-    """Return whether how a pin stands in its holes counts although the links of its joint lie in one layer.
+    """Return whether how a joint's pin stands in its holes counts.
 
     Parameters
     ----------
@@ -177,11 +177,14 @@ def in_holes(case: CoreCase, joint: str) -> bool:
     Returns
     -------
     bool
-        Of a pin through a fork or a pair of plates, and of one whose clearance is stated unless a layer_spacing of 0
-        takes all links into one plane. Others are drawn as if both links had one place, and are tight.
+        Of every pin between layers. Of links in one layer, of a pin through a fork or a pair of plates, and of one
+        whose clearance is stated unless a layer_spacing of 0 takes all links into one plane. Others are drawn as if
+        both links had one place, and are tight.
     """
     record = case.linkage.joints[joint]
-    if not record.pivots or case.linkage.rise(joint) != 0.0:
+    if case.linkage.rise(joint) != 0.0:
+        return record.kind.has_pin
+    if not record.pivots:
         return False
     if outer_link(case, joint) is not None:
         return True
