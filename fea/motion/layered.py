@@ -42,6 +42,21 @@ class LayeredMotion:
     ways: Mapping[tuple[str, str], LinkAnswers] = field(default_factory=dict)
 
 
+def has_couples(moved: CaseMotion) -> bool:
+    """Return whether joint forces make couples across the plane.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+
+    Returns
+    -------
+    bool
+        Of links in layers, and of a structure that is loaded out of its plane.
+    """
+    return moved.case.layered or (moved.held is None and any(map(out_of_plane, moved.loads.values())))
+
+
 def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMotion:
     """Return a motion with the couples between layers, or a structure with what loads out of its plane make.
 
@@ -61,8 +76,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         Where the frame of a pose moves without strain.
     """
     case = moved.case
-    spatial = moved.held is None and any(map(out_of_plane, moved.loads.values()))
-    if not (case.layered or spatial) or not moved.forces:
+    if not has_couples(moved) or not moved.forces:
         return LayeredMotion(moved=moved)
     forces: dict[str, Kinetostatics] = {}
     ways: dict[tuple[str, str], LinkAnswers] = {}

@@ -12,7 +12,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.loading import Demand, OverMotion, Real
 from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
-from alula.fea.motion.layered import forces_at
+from alula.fea.motion.layered import forces_at, has_couples
 from alula.fea.motion.loosened import joint_growth
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.statics import Equilibrium
@@ -63,7 +63,7 @@ def loading_over(
         return joint_growth(moved, load_case, joint, evaluated, of).times(grown.through(joint))
 
     def ways(pose: int) -> tuple[Equilibrium, ...]:
-        return (solved.at(pose), *forces_at(moved, load_case, pose).sharings)
+        return (solved.at(pose), *(forces_at(moved, load_case, pose).sharings if has_couples(moved) else ()))
 
     def at(pose: int) -> OverMotion:
         def here(link: str) -> list[LinkLoads]:

@@ -61,10 +61,8 @@ class BeamEnds:
     owners : tuple of tuple of (str, str)
         Of each of e ends: "link" or "pin", and the name of the link or joint.
     elements : ndarray of int, shape (e,)
-    stations : ndarray, shape (e,)
-        Where on the element, from 0 at its first end to 1.
-    unit : ndarray, shape (e, 4)
-        Stress that a unit of each makes [1/mm², 1/mm³].
+    unit : ndarray, shape (e, 4, 6)
+        Stresses that a unit of each of an element's natural forces makes there [1/mm², 1/mm³].
     tight : ndarray, shape (e, 4)
         N/A, bending stress in the plane and out of it, and √3 times shear stress of the torque, with tight pins [MPa].
     by_rims : ndarray, shape (e, 4, 4 h)
@@ -75,7 +73,6 @@ class BeamEnds:
 
     owners: tuple[tuple[str, str], ...]
     elements: NDArray[np.int64]
-    stations: Real
     unit: Real
     tight: Real
     by_rims: Real
@@ -96,7 +93,6 @@ class BeamEnds:
         return BeamEnds(
             owners=tuple(self.owners[k] for k in ends),
             elements=self.elements[ends],
-            stations=self.stations[ends],
             unit=self.unit[ends],
             tight=self.tight[ends],
             by_rims=self.by_rims[ends],
@@ -116,7 +112,7 @@ class BeamEnds:
         ndarray, shape (e, 4, ...)
             As ``tight``.
         """
-        return _sections(natural, self.elements, self.stations, self.unit)
+        return _stresses(self.unit, natural[self.elements])
 
     def stresses(self, parts: Real) -> Real:
         """Return the stress of plain sections.
@@ -304,33 +300,29 @@ def _beam_ends(
 ) -> BeamEnds:
     ends = [(i, ("link", beam.link), at) for i, beam in frame.beams.items() for at in (0.0, 1.0)]
     ends += [(i, ("pin", name), at) for name, i in frame.pin_beams.items() for at in faces.get(name, (0.0, 1.0))]
-    elements, stations = np.array([i for i, _, _ in ends], dtype=np.int64), np.array([at for _, _, at in ends])
+    elements, at = np.array([i for i, _, _ in ends], dtype=np.int64), np.array([at for _, _, at in ends])
     sections = [frame.model.elements[i].section for i in elements]
-    unit = np.array([_unit_stresses(section) for section in sections]).reshape(-1, 4)
+    shares = np.zeros((len(ends), 4, 6))
+    shares[:, 0, 0] = shares[:, 3, 5] = 1.0
+    for row, moment in ((1, 1), (2, 3)):  # between those at both ends, which turn the same way, moments go linearly
+        shares[:, row, moment], shares[:, row, moment + 1] = 1.0 - at, -at
+    unit = shares * np.array([_unit_stresses(section) for section in sections]).reshape(-1, 4, 1)
     rows = np.arange(6 * len(frame.model.elements), dtype=np.int64)
     tight, by_rims = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
     by_rims[np.abs(by_rims).max(axis=1, initial=0.0) <= _noise(frame)] = 0.0
     return BeamEnds(
         owners=tuple(owner for _, owner, _ in ends),
         elements=elements,
-        stations=stations,
         unit=unit,
-        tight=_sections(tight.reshape(-1, 6), elements, stations, unit),
-        by_rims=_sections(by_rims.reshape(-1, 6, by_rims.shape[1]), elements, stations, unit),
+        tight=_stresses(unit, tight.reshape(-1, 6)[elements]),
+        by_rims=_stresses(unit, by_rims.reshape(-1, 6, by_rims.shape[1])[elements]),
         round=np.array([section.round for section in sections], dtype=bool),
     )
 
 
-def _sections(natural: Real, elements: NDArray[np.int64], stations: Real, unit: Real) -> Real:
-    """N/A, bending and shear stress (e, 4, ...) of sections of elements whose natural forces (m, 6, ...) are known.
-
-    Between the moments at an element's ends, which turn the same way, those of its sections go linearly.
-    """
-    every = natural[elements]
-    further = (slice(None), *[None] * (natural.ndim - 2))
-    at = stations[further]
-    found = [every[:, 0], *((1.0 - at) * every[:, k] - at * every[:, k + 1] for k in (1, 3)), every[:, 5]]
-    return np.asarray(np.stack(found, axis=1) * unit[(slice(None), slice(None), *[None] * (natural.ndim - 2))])
+def _stresses(unit: Real, natural: Real) -> Real:
+    """Stresses (e, 4, ...) by units (e, 4, 6) of natural forces (e, 6, ...)."""
+    return np.asarray(np.einsum("efk,ek...->ef...", unit, natural))
 
 
 def _unit_stresses(section: Section) -> tuple[float, float, float, float]:
