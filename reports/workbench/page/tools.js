@@ -29,7 +29,7 @@ export function mount(element) {
   const keeping = group(element, "File");
   const save = button(keeping, "Save", "Ctrl+S", "", () => change("save"));
   const box = make("input", { type: "checkbox", onchange: () => change("save", { always: box.checked }) });
-  add(keeping, "label", { class: "choice" }, box, " by itself");
+  add(keeping, "label", { class: "choice" }, box, " autosave");
   loadCases(group(element, "Load case"));
   store.on("document", (now) => {
     undo.disabled = !now.undo;
