@@ -1,18 +1,21 @@
 """Clearances drawn at random against the bands of what they were drawn from, over random linkages in layers.
 
-    python -m benchmarks.draws [--linkages 20] [--draws 10000] [--first 0]
+    python -m benchmarks.draws [--linkages 20] [--draws 10000] [--first 0] [--cases six-bar ...]
 
 Each linkage has four, six or eight links in layers of their own; of each hole is stated a range of its clearance, a
 press, one range for both of a joint's holes, a fit, or nothing. Each draw takes a clearance for every hole from what is
 stated of it, at its ends as often as between them. Told are the draws outside the bands: of thrusts, of pins' stress,
 of links' stress by hand, of the displacement of a point, and of the lowest frequency.
+
+Of built-in cases the draws are of the clearances that these state, and told is how far they spread as well: by what a
+band is wider the search is not sharp, the rest is what pins do that stand anywhere in such holes.
 """
 
 import argparse
 import cmath
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -31,12 +34,14 @@ from alula.fea.standing.case_statics import CaseStatics, solve_case_statics
 from alula.fea.standing.thrust import thrusts
 from alula.fea.vibration.linkage_modes import LinkageModes, linkage_modes, on_rims
 from alula.loads.case.case import Case
-from alula.loads.case.case_file import validate
+from alula.loads.case.case_file import built_in_cases, read_case, validate
 from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.masses import part_masses
 from benchmarks.record import save
 
 Real = NDArray[np.float64]
+BY_COUPLES = 1.5
+"""Ratio of its ends from which on a band is told beside the spread of its draws."""
 SAME = 2e-3
 """Share of a band's larger end by which a draw may lie outside without being told."""
 TRIED = 5
@@ -173,36 +178,63 @@ def shares(pins: PinStates, count: int, seed: int) -> Real:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outside:
-    """A band that draws leave.
+class Drawn:
+    """A band, and the draws that it should hold.
 
     Attributes
     ----------
     of : str
         What the band is of.
-    draws : int
-        How many lie outside.
-    excess : float
-        By how much at most, over the end of the band that is larger.
-    left : float
-        The same over what lies between its ends.
+    low, high : float
+        Its ends.
+    least, most : float
+        Of the draws.
+    beyond : int
+        How many draws lie outside by more than ``SAME``.
     """
 
     of: str
-    draws: int
-    excess: float
-    left: float
+    low: float
+    high: float
+    least: float
+    most: float
+    beyond: int
+
+    @classmethod
+    def of_all(cls, of: str, low: float, high: float, found: Real) -> "Drawn":
+        """Compare draws with a band.
+
+        Parameters
+        ----------
+        of : str
+        low, high : float
+        found : ndarray, shape (n,)
+
+        Returns
+        -------
+        Drawn
+        """
+        beyond = np.maximum(found - high, low - found) > SAME * max(abs(low), abs(high))
+        return cls(
+            of=of, low=low, high=high, least=float(found.min()), most=float(found.max()), beyond=int(beyond.sum())
+        )
+
+    @property
+    def excess(self) -> float:
+        """By how much a draw lies outside at most, over the end of the band that is larger."""
+        return self._left / (max(abs(self.low), abs(self.high)) or 1.0)
+
+    @property
+    def left(self) -> float:
+        """The same over what lies between the ends."""
+        return self._left / (self.high - self.low) if self.high > self.low else math.inf
+
+    @property
+    def _left(self) -> float:
+        return max(self.most - self.high, self.low - self.least)
 
 
-def _beyond(of: str, low: float, high: float, found: Real) -> Iterator[Outside]:
-    beyond = np.maximum(found - high, low - found)
-    excess = beyond / (max(abs(low), abs(high)) or 1.0)
-    if excess.max() > SAME:
-        left = float(beyond.max()) / (high - low) if high > low else math.inf
-        yield Outside(of=of, draws=int((excess > SAME).sum()), excess=float(excess.max()), left=left)
-
-
-def outside(case: Case, count: int, seed: int = 0) -> list[Outside]:
+def outside(case: Case, count: int, seed: int = 0) -> list[Drawn]:
     """Draw clearances of a linkage and return the bands that some draw leaves.
 
     Parameters
@@ -214,20 +246,39 @@ def outside(case: Case, count: int, seed: int = 0) -> list[Outside]:
 
     Returns
     -------
-    list of Outside
+    list of Drawn
     """
     statics = solve_case_statics(case)
-    forces = statics.forces["l"]
-    pins = forces.pins
+    pins = statics.forces["l"].pins
     if pins is None:
         return []
     v = pins.solved(shares(pins, count, seed)).v
-    names = list(case.joints)
+    return [one for one in (*compared(statics, "l", v), *_points(case, statics, pins, v)) if one.beyond]
+
+
+def compared(statics: CaseStatics, load_case: str, v: Real) -> Iterator[Drawn]:
+    """Yield the bands of thrusts, of pins' stress and of links' stress by hand, as how pins stand makes them.
+
+    Parameters
+    ----------
+    statics : CaseStatics
+    load_case : str
+        Its name; of a linkage whose pins stand in their holes.
+    v : ndarray, shape (n, 4 h)
+        Where pins stand in each draw.
+
+    Yields
+    ------
+    Drawn
+    """
+    case, forces = statics.standing[load_case].case, statics.forces[load_case]
+    pins, names = forces.pins, list(case.joints)
+    assert pins is not None
     # What joints bear is affine in where pins stand.
     at_zero = _wrenches(pins, names, np.zeros(v.shape[1]))
     by_unit = np.array([_wrenches(pins, names, unit) - at_zero for unit in np.eye(v.shape[1])])
     drawn = at_zero + np.einsum("nv,vjk->njk", v, by_unit)
-    found, thrust = list[Outside](), thrusts(forces)
+    thrust = thrusts(forces)
     largest = max(
         float(np.abs(one.joints[name].wrench[:3]).max())
         for one in (forces.reactions, *forces.sharings)
@@ -235,13 +286,12 @@ def outside(case: Case, count: int, seed: int = 0) -> list[Outside]:
     )
     for j, name in enumerate(names):
         if name in thrust and thrust[name].high > 1e-4 * largest:
-            found += _beyond(f"thrust at {name}", thrust[name].low, thrust[name].high, np.abs(drawn[:, j, 2]))
-        if case.linkage.rise(name) != 0.0:
+            yield Drawn.of_all(f"thrust at {name}", thrust[name].low, thrust[name].high, np.abs(drawn[:, j, 2]))
+        if case.linkage.rise(name) != 0.0 and case.joints[name].pivots:
             band = shared_stress(case, name, forces.reactions.joints[name], forces).equivalent
             each = np.array([one.equivalent.value for one in stresses_between(case, name, drawn[:, j])])
-            found += _beyond(f"pin at {name}", band.low, band.high, each)
-    found += _stresses(case, statics, pins, v)
-    return [*found, *_points(case, statics, pins, v)]
+            yield Drawn.of_all(f"pin at {name}", band.low, band.high, each)
+    yield from _stresses(statics, load_case, v)
 
 
 def _wrenches(pins: PinStates, names: list[str], v: Real) -> Real:
@@ -249,9 +299,12 @@ def _wrenches(pins: PinStates, names: list[str], v: Real) -> Real:
     return np.array([found[name].wrench for name in names])
 
 
-def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:
+def _stresses(statics: CaseStatics, load_case: str, v: Real) -> Iterator[Drawn]:
     """Stress of links in those draws in which plain sections at the ends of their beams bear most and least."""
-    forces, loads, ends = statics.forces["l"], statics.loads["l"], pins.aims.ends
+    case, forces, loads = statics.standing[load_case].case, statics.forces[load_case], statics.loads[load_case]
+    pins = forces.pins
+    assert pins is not None
+    ends = pins.aims.ends
     borne, number = pins.aims.stresses(v), tuple(dict.fromkeys(ends.owners))
     for link in case.checked_links:
         own = [borne[:, k] for k, owner in enumerate(ends.owners) if owner == ("link", link)]
@@ -259,16 +312,17 @@ def _stresses(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Ite
             continue
         own.append(borne[:, number.index(("link", link)) - len(number)])
         chosen = {int(i) for one in own for i in np.argsort(one)[-TRIED:]}
-        answers = sharing_answers(case, "l", link, forces, loads)
+        answers = sharing_answers(case, load_case, link, forces, loads)
         every = HandStates(case, link, answers.every).stress
-        acting = [link_loads("l", link, case.body(link), pins.reactions(v[i]), loads) for i in sorted(chosen)]
+        body = case.body(link)
+        acting = [link_loads(load_case, link, body, pins.reactions(v[i]), loads) for i in sorted(chosen)]
         grown = [on_tilting_pins(case, link, on_plates(case, link, one)) for one in acting]
         of_draws = HandStates(case, link, grown).stress
         growth = answers.stress(every[0], every[1:])
-        yield from _beyond(f"stress of {link}", growth.low * every[0], growth.high * every[0], of_draws)
+        yield Drawn.of_all(f"stress of {link}", growth.low * every[0], growth.high * every[0], of_draws)
 
 
-def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Outside]:
+def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Iterator[Drawn]:
     """Displacement of the point, where all holes are stated: of others it holds running fits, not the loosest holes."""
     frame = statics.forces["l"].frame
     assert frame is not None
@@ -281,10 +335,10 @@ def _points(case: Case, statics: CaseStatics, pins: PinStates, v: Real) -> Itera
     for one in check_case(case, fidelity="beam", threads=1).load_cases["l"].checks:
         if one.quantity is Quantity.DISPLACEMENT:
             moved = np.linalg.norm(plain + v @ by_unit, axis=1)
-            yield from _beyond("displacement", one.value.low, one.value.high, moved)
+            yield Drawn.of_all("displacement", one.value.low, one.value.high, moved)
 
 
-def vibrating(data: Mapping[str, Any], seed: int = 0) -> list[Outside]:
+def vibrating(data: Mapping[str, Any], seed: int = 0) -> list[Drawn]:
     """Draw clearances of a linkage, state them, and return the band of its lowest frequency where a draw leaves it.
 
     Parameters
@@ -295,7 +349,7 @@ def vibrating(data: Mapping[str, Any], seed: int = 0) -> list[Outside]:
 
     Returns
     -------
-    list of Outside
+    list of Drawn
     """
     case = validate(dict(data))
     pins = solve_case_statics(case).forces["l"].pins
@@ -315,7 +369,8 @@ def vibrating(data: Mapping[str, Any], seed: int = 0) -> list[Outside]:
             joints[joint]["clearance"][link] = f"{2.0 * float(radii[2 * number])!r} mm"
         rims = _modes(validate({**data, "joints": joints})).rims
         drawn.append(rims.frequency.value if rims is not None and rims.frequency is not None else 0.0)
-    return list(_beyond("frequency", band.low, band.high, np.array(drawn)))
+    found = Drawn.of_all("frequency", band.low, band.high, np.array(drawn))
+    return [found] if found.beyond else []
 
 
 def _modes(case: Case) -> LinkageModes:
@@ -325,19 +380,55 @@ def _modes(case: Case) -> LinkageModes:
     return on_rims(case, linkage_modes(case, "l", frame, masses), masses)
 
 
+def built_in(name: str, count: int) -> tuple[list[Drawn], int]:
+    """Draw clearances of a built-in case from what it states of its holes.
+
+    Parameters
+    ----------
+    name : str
+    count : int
+        Of draws.
+
+    Returns
+    -------
+    list of Drawn, int
+        The bands that draws leave, or whose ends lie more than ``BY_COUPLES`` apart; and how many there are of all.
+    """
+    case = read_case(name)
+    statics, found = solve_case_statics(case, name), list[Drawn]()
+    for load_case, forces in statics.forces.items():
+        if forces.pins is not None and len(forces.pins.radii.value):
+            v = forces.pins.solved(shares(forces.pins, count, 0)).v
+            found += [replace(one, of=f"{load_case}: {one.of}") for one in compared(statics, load_case, v)]
+    return [one for one in found if one.beyond or 0.0 < one.low * BY_COUPLES < one.high], len(found)
+
+
+def _kept(found: Sequence[Drawn]) -> list[dict[str, Any]]:
+    return [{**vars(one), "excess": one.excess, "left": one.left} for one in found]
+
+
 def main() -> None:
     """Draw, tell what lies outside, and keep it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, number in (("linkages", 20), ("draws", 10_000), ("first", 0)):
         parser.add_argument(f"--{name}", type=int, default=number)
-    asked, kept = parser.parse_args(), {}
+    parser.add_argument("--cases", nargs="*", default=built_in_cases())
+    asked, kept, cases = parser.parse_args(), {}, {}
     for seed in range(asked.first, asked.first + asked.linkages):
         case = linkage(seed)
         found = [*outside(case, asked.draws, seed), *vibrating(tables(seed), seed)]
-        kept[seed] = {"links": len(case.links), "draws": asked.draws, "outside": [vars(one) for one in found]}
-        told = "; ".join(f"{one.of}: {one.draws} by up to {one.excess:.2%}" for one in found)
+        kept[seed] = {"links": len(case.links), "draws": asked.draws, "outside": _kept(found)}
+        told = "; ".join(f"{one.of}: {one.beyond} by up to {one.excess:.2%}" for one in found)
         print(f"linkage {seed}, {len(case.links)} links: {told or 'none outside'}", flush=True)
-    save("draws", {"linkages": kept})
+    for name in asked.cases:
+        found, bands = built_in(name, asked.draws)
+        if not bands:
+            continue
+        cases[name] = {"draws": asked.draws, "bands": bands, "wide": _kept(found)}
+        print(f"{name}: {bands} bands, draws leave {sum(one.beyond > 0 for one in found)}", flush=True)
+        for one in found:
+            print(f"  {one.of}: band 1 to {one.high / one.low:.2f}, draws 1 to {one.most / one.least:.2f}", flush=True)
+    save("draws", {"linkages": kept, "cases": cases})
 
 
 if __name__ == "__main__":
