@@ -278,7 +278,7 @@ def compared(statics: CaseStatics, load_case: str, v: Real) -> Iterator[Drawn]:
     at_zero = _wrenches(pins, names, np.zeros(v.shape[1]))
     by_unit = np.array([_wrenches(pins, names, unit) - at_zero for unit in np.eye(v.shape[1])])
     drawn = at_zero + np.einsum("nv,vjk->njk", v, by_unit)
-    thrust = thrusts(forces)
+    thrust, by_joint = thrusts(forces), {name: drawn[:, j] for j, name in enumerate(names)}
     largest = max(
         float(np.abs(one.joints[name].wrench[:3]).max())
         for one in (forces.reactions, *forces.sharings)
@@ -288,8 +288,8 @@ def compared(statics: CaseStatics, load_case: str, v: Real) -> Iterator[Drawn]:
         if name in thrust and thrust[name].high > 1e-4 * largest:
             yield Drawn.of_all(f"thrust at {name}", thrust[name].low, thrust[name].high, np.abs(drawn[:, j, 2]))
         if case.linkage.rise(name) != 0.0 and case.joints[name].pivots:
-            band = shared_stress(case, name, forces.reactions.joints[name], forces).equivalent
-            each = np.array([one.equivalent.value for one in stresses_between(case, name, drawn[:, j])])
+            band = shared_stress(case, name, forces.reactions.joints, forces).equivalent
+            each = np.array([one.equivalent.value for one in stresses_between(case, name, by_joint)])
             yield Drawn.of_all(f"pin at {name}", band.low, band.high, each)
     yield from _stresses(statics, load_case, v)
 

@@ -19,7 +19,7 @@ from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.links.fidelity import DecidedLink
 from alula.fea.links.link_by_hand import slenderest
 from alula.fea.outcomes.found import Found
-from alula.fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
+from alula.fea.outcomes.pins import PinStress, pin_growth, shared_stress, twist_of, twisted
 from alula.fea.outcomes.result import LinkResult, LoadCaseResult
 from alula.fea.outcomes.unloaded import undecided
 from alula.fea.standing.case_statics import with_ends
@@ -62,7 +62,8 @@ def judged(
     moved = with_known_stiffness(case, hand.moved, forces, links, hand.cut)
     reactions = moved.reactions or statics.reactions[load_case]
     pins = _pins(case, reactions, hand.shared_forces)
-    pinned = {x: hand.uneven.of_pin(x) for x in case.joints}  # ``pins`` and bearing hold the sharing of couples
+    # ``pins`` and bearing hold the sharing of couples.
+    pinned = {x: pin_growth(case, x, reactions.joints, hand.uneven.of_pin) for x in pins}
     linkage = linkage_numbers(case, load_case, moved, forces, links, hand.free)
     columns = {x: slenderest(case, x, hand.columns(x)) for x in hand.plates}
     buckling = (
@@ -129,5 +130,5 @@ def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, Pi
     for joint in asked_of(case, PinCheck):
         reaction = reactions.joints[joint]
         twist = twist_of(case, joint, float(reaction.wrench[5]), float(reactions.drive_torque))
-        found[joint] = twisted(case, joint, shared_stress(case, joint, reaction, forces), twist)
+        found[joint] = twisted(case, joint, shared_stress(case, joint, reactions.joints, forces), twist)
     return found

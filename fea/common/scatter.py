@@ -100,6 +100,31 @@ class Scatter:
         )
 
 
+def of_sum(parts: Iterable[tuple[float, Scatter]], whole: float) -> Scatter:
+    """Return the scatter of the size of a sum of vectors of which each may be longer or shorter by itself.
+
+    By the triangle inequality the sum differs by no more than its parts together, and these may stand against it.
+
+    Parameters
+    ----------
+    parts : iterable of (float, Scatter)
+        Sizes of the vectors, and what each may be over what it is.
+    whole : float
+        Size of the sum; above 0.
+
+    Returns
+    -------
+    Scatter
+        Of a single part its own.
+    """
+    (first, *others) = known = tuple(parts)
+    if not others:
+        return first[1]
+    differs = sum(size * max(one.high - 1.0, 1.0 - one.low) for size, one in known) / whole
+    sources = distinct(*(one.told for _, one in known))
+    return Scatter(low=max(1.0 - differs, 0.0), high=1.0 + differs, sources=sources)
+
+
 def _product(end: float, factor: float) -> float:
     """Return an end of a band times a factor; zero and infinity stay as they are."""
     return end if end in (0.0, math.inf) else end * factor

@@ -23,6 +23,7 @@ from alula.geometry.linkage.pose import Pose
 from alula.geometry.parts.part import Section
 from alula.loads.case.case import Case
 from alula.loads.case.forks import in_holes
+from alula.loads.case.layers import Eye, pin_stretches
 from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
 from alula.loads.records.conditions import at_temperature
 from alula.loads.states.actions import lasting
@@ -46,7 +47,6 @@ YIELDS_NOT = 3e3
 tip of a cantilever 0.1 % too far; in small ones it does not give. Measured on a portal frame with clamps of 0.5 % to
 45 % of its links: equilibrium is followed with 2e3 to 2e4, and with 1e5 no more."""
 _SAME_PLACE = 1e-9
-Eye = tuple[str, str]
 """Link and point."""
 
 
@@ -102,8 +102,7 @@ def build_frame(
     builder = _Builder(case, pose, loads, solids or {}, standing)
     supports, ties, guides = builder.supports, [], []
     stiff = bonds if held is None else bonds | {held.joint}
-    by_length = sorted(case.joints, key=lambda name: abs(case.linkage.rise(name)))
-    contacts = {name: builder.contact(name, twists=name not in stiff) for name in by_length}
+    contacts = {name: builder.contact(name, twists=name not in stiff) for name in builder.stretches}
     places = np.array(builder.places)
     for name, joint in case.joints.items():
         ways = ALL_WAYS if name in bonds else joint.bears
@@ -188,6 +187,7 @@ class _Builder:
         self.pin_ends: dict[str, int] = {}
         self.pin_beams: dict[str, int] = {}
         self.pin_eyes: dict[str, tuple[Eye, Eye]] = {}
+        self.stretches = pin_stretches(case)
         self.slack = _SAME_PLACE * case.linkage.longest
         for link in case.linkage.moving:
             own = [load for load in loads if load.link == link]
@@ -219,33 +219,27 @@ class _Builder:
     def contact(self, name: str, *, twists: bool) -> tuple[int | None, int | None]:
         """Return the nodes that a joint brings together, and put its pin between them where its links lie apart.
 
-        The pin is a beam from the mid-plane of the one link to that of the other: of a revolute joint built into the
-        first link; of a pin in a slot, or along a guide, into the second, since the first cannot hold it. Where the pin
-        of a shorter joint goes the same way from that link, it is one pin, which goes on from that joint's other link.
-        ``twists``: false of the pin of the drive's joint, and of a bonded one.
+        The pin is a beam from the mid-plane of the one link to that of the other, or from where that of a shorter joint
+        ends (``alula.loads.case.layers.pin_stretches``). ``twists``: false of the pin of the drive's joint, and of a
+        bonded one.
         """
         first, second = self.pins[name]
         linkage, joint = self.case.linkage, self.case.joints[name]
-        rise = linkage.rise(name)
-        if rise == 0.0 and name not in self.standing:
+        if linkage.rise(name) == 0.0 and name not in self.standing:
             return first, second
-        root, link = (second, joint.links[1]) if joint.slides else (first, joint.links[0])
-        eyes = [(one, linkage.point_of(name, one)) for one in joint.links]
-        eye, opposite = reversed(eyes) if joint.slides else eyes
-        far, up = 0.0, -rise if joint.slides else rise
-        for shorter, (start, until) in self.pin_eyes.items() if joint.pivots and rise != 0.0 else ():
-            reach = linkage.rise(shorter)
-            if start == eye and far < reach / up < 1.0 and linkage.joints[shorter].pivots:
-                root, eye, far = self.pin_ends[shorter], until, reach / up
+        eye, opposite = self.pin_eyes[name] = self.stretches[name]
+        link, root = next((x, node) for x, node in zip(joint.links, (first, second), strict=True) if x != opposite[0])
+        up = linkage.heights.get(opposite[0], 0.0) - linkage.heights.get(eye[0], 0.0)
+        if eye[0] != link:
+            root = next(self.pin_ends[other] for other, (_, end) in self.pin_eyes.items() if end == eye)
         if root is None:
             root = self._node(link, *self.case.links[link].points[linkage.point_of(name, link)], name)
             self.supports.append(Support(node=root))
-        self.pin_eyes[name] = eye, opposite
-        self.places.append(self.places[root] + np.array([0.0, 0.0, (1.0 - far) * up]))
+        self.places.append(self.places[root] + np.array([0.0, 0.0, up]))
         self.names.append(f"the pin at {name}")
         self.pin_ends[name] = end = len(self.places) - 1
         self.pin_beams[name] = len(self.elements)
-        if rise == 0.0 or joint.pin_diameter is None or not joint.kind.has_pin:
+        if linkage.rise(name) == 0.0 or joint.pin_diameter is None or not joint.kind.has_pin:
             self._stiff(root, end, z_axis=ALONG_X)
         else:
             material = at_temperature(self.case.all_materials[joint.pin_material], self.case.conditions)
@@ -255,7 +249,7 @@ class _Builder:
             self.elements.append(
                 FrameElement(nodes=(root, end), section=section, young=young, poisson=poisson, z_axis=ALONG_X)
             )
-        return (first, end) if joint.slides else (end, second)
+        return (first, end) if opposite[0] == joint.links[0] else (end, second)
 
     def _contacts(self, link: str) -> dict[str, tuple[float, float]]:
         """Joint -> place of its pin in the frame of a link that carries the slot."""

@@ -153,6 +153,19 @@ class LinkageFrame:
         """Of the moving links in the plane: the same for all solutions of the frame."""
         return assemble(self.pose.placement, self.held, self.loads)
 
+    def meets_first(self, name: str) -> bool:
+        """Return whether the pin of a joint between layers ends at its first link, which it is not built into.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        bool
+        """
+        return self.pin_eyes[name][1][0] == self.pose.linkage.joints[name].links[0]
+
     def _arm(self, name: str, shape: Real) -> Real:
         """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""
         linkage, arm = self.pose.linkage, travelled(self.pose.placement, name)
@@ -229,7 +242,7 @@ def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> d
     for name, end in frame.pin_ends.items():
         held_by, wrench = frame.pins[name][1], -left[end]
         found[name] = wrench
-        if linkage.joints[name].slides:
+        if frame.meets_first(name):
             held_by = frame.pins[name][0]
             found[name] = shifted(-wrench, np.array([0.0, 0.0, -linkage.rise(name)]))
         if held_by is not None:

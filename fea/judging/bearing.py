@@ -7,7 +7,7 @@ for which the ultimate tensile strength of the card stands; that in bearing is r
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from alula.fea.asked.asked import Asked
 from alula.fea.beam.cut_free import seat
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
@@ -24,16 +24,18 @@ from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
+from alula.loads.records.applied import shifted
 from alula.loads.records.bearing import bearing_stress
 from alula.loads.records.contact import half_angle, pressure
+from alula.loads.statics.joint_reaction import JointReaction
 
 Real = NDArray[np.float64]
 
 WITHOUT = reason("evenly_over_projected_area")
 
 
-def pressing(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
-    """Return the force that, spread evenly along a joint's eye, presses as hard as its pin does.
+def on_links(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
+    """Return what a joint's pin does to each of its links.
 
     Parameters
     ----------
@@ -45,18 +47,74 @@ def pressing(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
     Returns
     -------
     dict of str to ndarray
-        Link -> force (...) [N]: that of the joint, but of a pair twice what its worse plate bears by the lever law.
+        Link -> wrench (..., 6) about its own point.
     """
-    force, rise = wrench[..., :2], case.linkage.rise(joint)
-    size = np.linalg.norm(force, axis=-1)
+    first, second = case.joints[joint].links
+    return {first: shifted(-wrench, np.array([0.0, 0.0, case.linkage.rise(joint)])), second: wrench}
+
+
+def in_eyes(case: Case, joint: str, joints: Mapping[str, JointReaction]) -> dict[str, Real]:
+    """Return what presses in the eyes of a joint's links: all joints that have their pin in the same hole together.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    joints : mapping of str to JointReaction
+        Of all joints.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Link -> wrench (..., 6) about its point [N, N mm]; of a slot that of its own pin alone.
+    """
     found = {}
-    for link, level in zip(case.joints[joint].links, (rise, 0.0), strict=True):
-        found[link], distance = size, apart(case, link)
-        if distance is not None:
-            along = np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1) + level * force  # moment of the force along z
-            aside = 2.0 * along / distance
-            found[link] = np.maximum(*(np.linalg.norm(force + side * aside, axis=-1) for side in (1.0, -1.0)))
+    for link, own in on_links(case, joint, joints[joint].wrench).items():
+        others = [name for name in beside(case, joint, link) if name != joint]
+        found[link] = own + sum(on_links(case, name, joints[name].wrench)[link] for name in others)
     return found
+
+
+def beside(case: Case, joint: str, link: str) -> tuple[str, ...]:
+    """Return the joints whose pin stands in the hole that a joint has in a link, itself among them.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+
+    Returns
+    -------
+    tuple of str
+    """
+    linkage = case.linkage
+    if link not in case.joints[joint].bored:
+        return (joint,)
+    point = linkage.point_of(joint, link)
+    every = (name for name in linkage.joints_of(link) if link in case.joints[name].bored)
+    return tuple(name for name in every if linkage.point_of(name, link) == point)
+
+
+def pressing(case: Case, link: str, wrench: Real) -> Real:
+    """Return the force that, spread evenly along an eye of a link, presses as hard as its pin does.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    wrench : ndarray, shape (..., 6)
+        What the pin does to the link about its point [N, N mm].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        That of the wrench, but of a pair of plates twice what its worse plate bears by the lever law [N].
+    """
+    force, distance = wrench[..., :2], apart(case, link)
+    if distance is None:
+        return np.asarray(np.linalg.norm(force, axis=-1))
+    aside = 2.0 * np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1) / distance  # moment of the force along z
+    return np.asarray(np.maximum(*(np.linalg.norm(force + side * aside, axis=-1) for side in (1.0, -1.0))))
 
 
 def sharing(case: Case, joint: str, link: str, wrenches: Sequence[Real]) -> Scatter:
@@ -74,12 +132,14 @@ def sharing(case: Case, joint: str, link: str, wrenches: Sequence[Real]) -> Scat
     Scatter
         More than 1 only of pairs of plates, whose plates bear couples.
     """
-    stands, *others = (float(pressing(case, joint, wrench)[link]) for wrench in wrenches)
+    stands, *others = (float(pressing(case, link, on_links(case, joint, wrench)[link])) for wrench in wrenches)
     _, most = sought([stands, *others])
     return Scatter(high=most / stands, sources=COUPLES) if most > stands > 0.0 else Scatter()
 
 
-def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], load: Scatter) -> tuple[str, Band]:
+def weakest_eye(
+    case: Case, name: str, joint: str, ways: Sequence[Mapping[str, Real]], load: Mapping[str, Scatter]
+) -> tuple[str, Band]:
     """Return the link whose eye or slot a joint's pin loads worst, and its safety factor.
 
     Parameters
@@ -88,10 +148,11 @@ def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], loa
     name : str
         Of the check.
     joint : str
-    wrenches : sequence of ndarray, shape (6,)
-        What the first link does to the second, in all ways in which pins may share couples [N, N mm].
-    load : Scatter
-        Of that force. The band holds it and, where the strength is that of the safety factor, the strength's.
+    ways : sequence of mapping of str to ndarray
+        Link -> wrench (6,) in its eye, as ``in_eyes`` has it, in all ways in which pins may share couples.
+    load : mapping of str to Scatter
+        Link -> what that force may be over what it is. The band holds it and, where the strength is that of the safety
+        factor, the strength's.
 
     Returns
     -------
@@ -103,10 +164,10 @@ def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], loa
     CaseError
         For a joint without pin diameter.
     """
-    factors, pressed = {}, [pressing(case, joint, wrench) for wrench in wrenches]
+    factors = {}
     for link, (bears, own) in _borne(case, name, joint).items():
-        force = max(float(one[link]) for one in pressed)
-        factors[link] = own.on(load.on(Band.exact(force, WITHOUT)).inverse(bears))
+        force = max(float(pressing(case, link, way[link])) for way in ways)
+        factors[link] = own.on(load[link].on(Band.exact(force, WITHOUT)).inverse(bears))
     weakest = min(factors, key=lambda link: factors[link].low)
     return weakest, factors[weakest]
 
@@ -162,7 +223,11 @@ def contact_pressure(case: Case, joint: str, link: str, force: float) -> tuple[f
 
 
 def bearing_outcome(
-    case: Case, load_case: str, one: Asked, wrenches: Sequence[Real], growth: Scatter | None = None
+    case: Case,
+    load_case: str,
+    one: Asked,
+    ways: Sequence[Mapping[str, JointReaction]],
+    growth: Callable[[str], Scatter] = lambda joint: Scatter(),
 ) -> CheckOutcome:
     """Return the outcome of one joint: that of its softer or thinner eye.
 
@@ -173,10 +238,10 @@ def bearing_outcome(
         Its name.
     one : Asked
         Of its pin.
-    wrenches : sequence of ndarray, shape (6,)
-        As of ``weakest_eye``.
-    growth : Scatter, optional
-        By which that force grows beside scattered loads (``alula.fea.doubts.load_growth``).
+    ways : sequence of mapping of str to JointReaction
+        Of all joints, in all ways in which pins may share couples, first those that stand.
+    growth : callable
+        Of a joint, to how its force grows beside scattered loads (``alula.fea.doubts.load_growth``).
 
     Returns
     -------
@@ -187,12 +252,13 @@ def bearing_outcome(
     CaseError
         For a joint without pin diameter.
     """
-    load = load_scatter(case, load_case).times(growth or Scatter())
-    joint = one.subject.name
-    eye, factor = weakest_eye(case, one.name, joint, wrenches, load)
+    joint, load = one.subject.name, load_scatter(case, load_case)
+    every = [in_eyes(case, joint, way) for way in ways]
+    grown = {link: load.times(_grown(case, joint, link, ways[0], every[0][link], growth)) for link in every[0]}
+    eye, factor = weakest_eye(case, one.name, joint, every, grown)
     found = one.outcome(load_case, factor)
-    force = max(float(pressing(case, joint, wrench)[eye]) for wrench in wrenches)
-    contact = contact_pressure(case, joint, eye, force * max(load.high, 1.0))
+    force = max(float(pressing(case, eye, way[eye])) for way in every)
+    contact = contact_pressure(case, joint, eye, force * max(grown[eye].high, 1.0))
     why = reason("bearing_on_eye", link=eye, why=found.reason)
     if contact is None:
         return found.because(why)
@@ -201,6 +267,22 @@ def bearing_outcome(
     return found.because(
         reason("bearing_in_contact", why=why, low=low, high=high, yields=high > yields, strength=yields)
     )
+
+
+def _grown(
+    case: Case,
+    joint: str,
+    link: str,
+    joints: Mapping[str, JointReaction],
+    whole: Real,
+    growth: Callable[[str], Scatter],
+) -> Scatter:
+    """By what the force in a link's eye grows, where several joints press there."""
+    names = beside(case, joint, link)
+    size = float(np.linalg.norm(whole[:2]))
+    if not size > 0.0:
+        return growth(joint)
+    return of_sum([(float(np.linalg.norm(joints[name].wrench[:2])), growth(name)) for name in names], size)
 
 
 def judge_bearing(here: Loading, one: Asked) -> Judged:
@@ -216,9 +298,8 @@ def judge_bearing(here: Loading, one: Asked) -> Judged:
     -------
     Judged
     """
-    joint = one.subject.name
-    growth = here.joint_growth(joint)
-    return Judged(outcome=bearing_outcome(here.case, here.load_case, one, here.wrenches(joint), growth))
+    ways = [way.joints for way in here.ways()]
+    return Judged(outcome=bearing_outcome(here.case, here.load_case, one, ways, here.joint_growth))
 
 
 def least_of_bearing(over: OverMotion, one: Asked) -> Real:
@@ -235,10 +316,13 @@ def least_of_bearing(over: OverMotion, one: Asked) -> Real:
     ndarray, shape (n,)
     """
     case, joint = over.case, one.subject.name
-    [way] = over.wrenches(joint)
-    pressed = pressing(case, joint, way)
+    [way] = over.ways()
+    borne = in_eyes(case, joint, way.joints)
     with np.errstate(divide="ignore"):  # without a force there is no end
-        every = [own.low * bears / pressed[link] for link, (bears, own) in _borne(case, one.name, joint).items()]
+        every = [
+            own.low * bears / pressing(case, link, borne[link])
+            for link, (bears, own) in _borne(case, one.name, joint).items()
+        ]
     return np.asarray(np.min(every, axis=0))
 
 

@@ -15,7 +15,7 @@ from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.judging.bearing import pressing
+from alula.fea.judging.bearing import on_links, pressing
 from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.fea.modes.connection_modes import (
     ConnectionFactors,
@@ -66,7 +66,7 @@ def transmitted(case: Case, check: ConnectionCheck, wrench: Real, drive_torque: 
     couples = [np.linalg.norm(across + level * wrench[..., :2], axis=-1) for level in levels]
     return Transmitted(
         torque=np.abs(torque) / plates,
-        force=pressing(case, check.joint, wrench)[link] / plates,
+        force=pressing(case, link, on_links(case, check.joint, wrench)[link]) / plates,
         thrust=np.abs(wrench[..., 2]) / plates,
         couple=np.max(couples, axis=0) * (plates == 1),  # forces on the plates of a pair have it
     )

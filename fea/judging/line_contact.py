@@ -14,7 +14,7 @@ from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter, 
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, distinct, friction_source
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.judging.bearing import pressing
+from alula.fea.judging.bearing import on_links, pressing
 from alula.fea.judging.loading import ByHand, Judged, Loading
 from alula.fea.modes.line_contact import LineContact, hertz_pressure, most_equivalent
 from alula.geometry.materials.material import Material
@@ -44,7 +44,7 @@ def line_load(case: Case, joint: str, wrench: Real) -> Real:
     """
     link, rise = case.joints[joint].slotted, case.linkage.rise(joint)
     assert link is not None
-    length, force = eye_of(case, joint, link).thickness, pressing(case, joint, wrench)[link]
+    length, force = eye_of(case, joint, link).thickness, pressing(case, link, on_links(case, joint, wrench)[link])
     if apart(case, link) is not None:
         return np.asarray(force / length)  # of the worse plate, whose force has the couple
     couple = np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1) + rise * wrench[..., :2]

@@ -28,12 +28,22 @@ from alula.fea.motion.layered import forces_at
 from alula.fea.motion.linkage_history import when
 from alula.fea.motion.loading import loading_over
 from alula.fea.motion.loosened import column_growth
-from alula.fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
+from alula.fea.outcomes.pins import (
+    between_layers,
+    pin_growth,
+    pin_outcome,
+    shared_stress,
+    stress_of,
+    stresses,
+    twist_of,
+    twisted,
+)
 from alula.fea.whole.permanent_set import NOTHING, WITHOUT_YIELD, first_yield
 from alula.geometry.base.model import CaseModel
 from alula.geometry.base.ties import first_largest, first_least
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
+from alula.loads.case.layers import joints_of_pin
 from alula.loads.records.check_spec import (
     FatigueCheck,
     LimitLoadCheck,
@@ -224,21 +234,24 @@ def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked) -> tuple[int, Ch
     a torque goes through the pin, it is that of its own largest stress.
     """
     case, load_case, evaluated, joint = over.case, over.load_case, over.evaluated, one.subject.name
-    solved, growth = moved.forces[load_case], over.pin_growth(joint)
+    solved = moved.forces[load_case]
     reaction, sizes = solved.joints[joint], np.linalg.norm(solved.forces[joint], axis=1)
     turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
     twists = [twist_of(case, joint, *of) for of in zip(reaction.wrench[:, 5], turning, strict=True)]
-    spatial = case.linkage.rise(joint) != 0.0 or bool(reaction.wrench[evaluated][:, 2:5].any())
+    spatial = between_layers(case, joint) or bool(reaction.wrench[evaluated][:, 2:5].any())
     if not spatial and not any(twist.high > 0.0 for twist in twists):
         pose = first_largest(np.where(evaluated, sizes, -np.inf))
-        return pose, pin_outcome(case, load_case, one, stress_of(case, joint, float(sizes[pose])), growth)
-    at_poses = [solved.at(i).joints[joint] for i in range(len(evaluated))]
+        stress = stress_of(case, joint, float(sizes[pose]))
+        return pose, pin_outcome(case, load_case, one, stress, over.pin_growth(joint))
+    wrenches = {name: solved.joints[name].wrench for name in joints_of_pin(case, joint)}
     bent = [
-        twisted(case, joint, stress_at(case, joint, r), twist).equivalent.high if counts else -np.inf
-        for r, twist, counts in zip(at_poses, twists, evaluated, strict=True)
+        twisted(case, joint, stress, twist).equivalent.high if counts else -np.inf
+        for stress, twist, counts in zip(stresses(case, joint, wrenches), twists, evaluated, strict=True)
     ]
     pose = first_largest(np.array(bent))
-    shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
+    reactions = solved.at(pose).joints
+    shared = shared_stress(case, joint, reactions, forces_at(moved, load_case, pose))
+    growth = pin_growth(case, joint, reactions, over.pin_growth)
     return pose, pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
 
 

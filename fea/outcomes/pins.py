@@ -37,7 +37,7 @@ adds to the shear where nothing bends, and at the extreme fibre to the bending b
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -50,7 +50,7 @@ from alula.fea.asked.asked import Asked
 from alula.fea.beam.pin_between import largest_between
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
+from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, UNKNOWN, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
@@ -62,9 +62,12 @@ from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import connected_joints, turned_by_drive
 from alula.loads.case.eyes import other_link
 from alula.loads.case.forks import eye_of, eyes, outer_link
+from alula.loads.case.layers import Eye, joints_of_pin, pin_stretches
 from alula.loads.records.applied import shifted
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.text.caveat import Caveat, Topic
+
+Real = NDArray[np.float64]
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 NO_TORSION = Band.exact(0.0)
@@ -253,7 +256,7 @@ def fork_pin_stress(
     free = (end - start - eye.height) / 2.0
     wrench = np.array([force, 0.0, 0.0, 0.0, moment, 0.0])
     wrench[4] += force * fork.middle
-    most, shear = map(float, largest_between((fork, eye), 0.0, -wrench, wrench))
+    most, shear = map(float, largest_between((fork, eye), (0.0, 0.0), (-wrench, wrench)))
     borne = Band(value=most, low=force * free / 4.0, high=most, sources=SOURCES)
     return _stressed(cheek / 2.0 + free + eye.height / 4.0, borne, (force / 2.0, shear), diameter, poisson)
 
@@ -294,14 +297,15 @@ def _taken(eye: Ring, lever: float) -> tuple[float, float]:
     return max(moments), max(shears)
 
 
-def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
-    """Return the stresses of a joint's pin under its reaction.
+def stress_at(case: Case, joint: str, reactions: Mapping[str, JointReaction]) -> PinStress:
+    """Return the stresses of a joint's pin.
 
     Parameters
     ----------
     case : Case
     joint : str
-    reaction : JointReaction
+    reactions : mapping of str to JointReaction
+        Of all joints, in one state.
 
     Returns
     -------
@@ -312,52 +316,139 @@ def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     CaseError
         For a pin without diameter.
     """
-    wrench, rise = reaction.wrench, case.linkage.rise(joint)
-    if rise == 0.0:
-        return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
-    (found,) = stresses_between(case, joint, wrench[None])
+    own = joints_of_pin(case, joint)
+    (found,) = stresses(case, joint, {name: reactions[name].wrench[None] for name in own})
     return found
 
 
-def stresses_between(case: Case, joint: str, wrenches: NDArray[np.float64]) -> list[PinStress]:
-    """Return the stresses of a pin between layers.
+def stresses(case: Case, joint: str, wrenches: Mapping[str, Real]) -> list[PinStress]:
+    """Return the stresses of a joint's pin in n states.
 
     Parameters
     ----------
     case : Case
     joint : str
-    wrenches : ndarray, shape (n, 6)
-        On the joint's second link [N, N mm].
+    wrenches : mapping of str to ndarray, shape (n, 6)
+        Of all joints that are on the pin, on their second links [N, N mm].
 
     Returns
     -------
     list of PinStress
-        Under each wrench.
 
     Raises
     ------
     CaseError
         For a pin without diameter.
     """
-    (diameter, poisson), rise = _pin_of(case, joint), case.linkage.rise(joint)
-    first = shifted(-wrenches, np.array([0.0, 0.0, rise]))
+    if between_layers(case, joint):
+        return stresses_between(case, joint, wrenches)
+    force, moment = (np.linalg.norm(wrenches[joint][:, part], axis=1) for part in (slice(2), slice(3, 5)))
+    return [stress_of(case, joint, *map(float, of)) for of in zip(force, moment, strict=True)]
+
+
+def between_layers(case: Case, joint: str) -> bool:
+    """Return whether the eyes on a joint's pin, of all joints that it is of, lie at different heights.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+
+    Returns
+    -------
+    bool
+    """
+    return any(case.linkage.rise(name) != 0.0 for name in joints_of_pin(case, joint))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _EyesOnPin:
+    """The eyes of all links on a pin, with what presses in them in n states.
+
+    Attributes
+    ----------
+    rings : tuple of Ring
+    levels : tuple of float
+        Heights of the links' mid-planes [mm].
+    wrenches : tuple of ndarray, shape (n, 6)
+        What the pin does to each link, about its point [N, N mm].
+    within : tuple of 2 float
+        Heights between which the eyes lie that one joint's pin runs between [mm].
+    lever : float
+        How far apart the mid-planes of these two links lie [mm].
+    """
+
+    rings: tuple[Ring, ...]
+    levels: tuple[float, ...]
+    wrenches: tuple[Real, ...]
+    within: tuple[float, float]
+    lever: float
+
+    @classmethod
+    def of(cls, case: Case, joint: str, wrenches: Mapping[str, Real]) -> "_EyesOnPin":
+        linkage = case.linkage
+        rings: dict[Eye, Ring] = {}
+        borne: dict[Eye, Real] = {}
+        for name in joints_of_pin(case, joint):
+            own, rise = wrenches[name], np.array([0.0, 0.0, linkage.rise(name)])
+            links = case.joints[name].links
+            for link, ring, wrench in zip(links, eyes(case, name), (shifted(-own, rise), own), strict=True):
+                eye = link, linkage.point_of(name, link)
+                if eye not in rings or case.links[link].part is not None:
+                    rings[eye] = ring
+                borne[eye] = borne.get(eye, 0.0) + wrench
+        levels = {eye: linkage.heights.get(eye[0], 0.0) for eye in rings}
+        ends = pin_stretches(case)[joint]
+        rims = [levels[eye] + rim for eye in ends for rim in (rings[eye].low, rings[eye].high)]
+        return cls(
+            rings=tuple(rings.values()),
+            levels=tuple(levels.values()),
+            wrenches=tuple(borne[eye] for eye in rings),
+            within=(min(rims), max(rims)),
+            lever=abs(levels[ends[1]] - levels[ends[0]]),
+        )
+
+
+def stresses_between(case: Case, joint: str, wrenches: Mapping[str, Real]) -> list[PinStress]:
+    """Return the stresses of a pin between layers.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+        Where several are on one pin, it is that part of it that runs from the link before on to this joint's.
+    wrenches : mapping of str to ndarray, shape (n, 6)
+        Of all joints that are on the pin, on their second links [N, N mm].
+
+    Returns
+    -------
+    list of PinStress
+        In each state.
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
+    """
+    diameter, poisson = _pin_of(case, joint)
+    on = _EyesOnPin.of(case, joint, wrenches)
     return [
-        _stressed(abs(rise), Band.exact(float(moment)), (float(shear), float(shear)), diameter, poisson)
-        for moment, shear in zip(*largest_between(eyes(case, joint), rise, first, wrenches), strict=True)
+        _stressed(on.lever, Band.exact(float(moment)), (float(shear), float(shear)), diameter, poisson)
+        for moment, shear in zip(*largest_between(on.rings, on.levels, on.wrenches, on.within), strict=True)
     ]
 
 
-def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: JointForces) -> PinStress:
+def shared_stress(case: Case, joint: str, reactions: Mapping[str, JointReaction], forces: JointForces) -> PinStress:
     """Return the stresses of a joint's pin, with all ways in which pins may share the couples between layers.
 
     Parameters
     ----------
     case : Case
     joint : str
-    reaction : JointReaction
-        On the shape that counts.
+    reactions : mapping of str to JointReaction
+        Of all joints, on the shape that counts.
     forces : JointForces
-        In the undeformed pose, where the shares are known; they scale what ``reaction`` gives.
+        In the undeformed pose, where the shares are known; they scale what ``reactions`` give.
 
     Returns
     -------
@@ -369,14 +460,12 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     CaseError
         For a pin without diameter.
     """
-    found = stress_at(case, joint, reaction)
+    found = stress_at(case, joint, reactions)
     if not forces.sharings:
         return found
-    every = [one.joints[joint] for one in (forces.reactions, *forces.sharings)]
-    if case.linkage.rise(joint) == 0.0:
-        plain, *others = [stress_at(case, joint, one) for one in every]
-    else:
-        plain, *others = stresses_between(case, joint, np.array([one.wrench for one in every]))
+    every = [one.joints for one in (forces.reactions, *forces.sharings)]
+    names = joints_of_pin(case, joint)
+    plain, *others = stresses(case, joint, {name: np.array([one[name].wrench for one in every]) for name in names})
 
     def widened(name: str, least: float = 0.0) -> Band:
         own, known = getattr(found, name), [getattr(one, name) for one in (plain, *others)]
@@ -397,24 +486,22 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
 
     _, most = sought([one.shear / (plain.shear or math.inf) for one in (plain, *others)])
     shear = found.shear * most
-    equivalent = widened(
-        "equivalent", crossing(case, joint, [reaction, *(one.joints[joint] for one in forces.sharings)])
-    )
+    equivalent = widened("equivalent", crossing(case, joint, [reactions, *every[1:]]))
     return replace(found, moment=widened("moment"), bending=widened("bending"), shear=shear, equivalent=equivalent)
 
 
-def crossing(case: Case, joint: str, reactions: Sequence[JointReaction]) -> float:
+def crossing(case: Case, joint: str, states: Sequence[Mapping[str, JointReaction]]) -> float:
     """Return the least stress of a pin between layers: that of its force in shear, which crosses between the eyes.
 
-    All of it crosses at once between two eyes that lie side by side. Else, as of a bar between the plates of a pair,
-    its parts cross at several places, at one of them an equal part or more.
+    Between two eyes that lie side by side all crosses that the eyes on one side bear. Else, as of a bar between the
+    plates of a pair, the parts of a force cross at several places, at one of them an equal part or more.
 
     Parameters
     ----------
     case : Case
     joint : str
-    reactions : sequence of JointReaction
-        In all states of the pins.
+    states : sequence of mapping of str to JointReaction
+        Of all joints, in all states of the pins.
 
     Returns
     -------
@@ -426,14 +513,54 @@ def crossing(case: Case, joint: str, reactions: Sequence[JointReaction]) -> floa
     CaseError
         For a pin without diameter.
     """
-    (diameter, poisson), (first, second), rise = _pin_of(case, joint), eyes(case, joint), case.linkage.rise(joint)
-    walls = [(low, high, 0) for low, high in first.walls]
-    walls = sorted([*walls, *((rise + low, rise + high, 1) for low, high in second.walls)])
-    if any(one[1] > other[0] + ROUNDING * first.height for one, other in pairwise(walls)):
+    diameter, poisson = _pin_of(case, joint)
+    names = joints_of_pin(case, joint)
+    on = _EyesOnPin.of(case, joint, {name: np.array([one[name].wrench for one in states]) for name in names})
+    numbered = enumerate(zip(on.rings, on.levels, strict=True))
+    walls = sorted((level + low, level + high, k) for k, (ring, level) in numbered for low, high in ring.walls)
+    if any(one[1] > other[0] + ROUNDING * on.rings[0].height for one, other in pairwise(walls)):
         return 0.0
-    places = sum(one[2] != other[2] for one, other in pairwise(walls))
-    force = min(float(np.hypot(*one.wrench[:2])) for one in reactions)
-    return math.sqrt(3.0) * _shear_stress(force / places, diameter, poisson)
+    between, forces = [one for one in pairwise(walls) if one[0][2] != one[1][2]], [0.0]
+    for one, other in between:
+        below = {k for _, high, k in walls if high <= one[1]}
+        if below.isdisjoint(k for low, _, k in walls if low >= other[0]):
+            if on.within[0] <= one[1] and other[0] <= on.within[1]:
+                sums = np.sum([on.wrenches[k][:, :2] for k in below], axis=0)
+                forces.append(float(np.linalg.norm(sums, axis=1).min()))
+        elif len(on.rings) == 2:
+            forces.append(float(np.linalg.norm(on.wrenches[0][:, :2], axis=1).min()) / len(between))
+    return math.sqrt(3.0) * _shear_stress(max(forces), diameter, poisson)
+
+
+def pin_growth(
+    case: Case, joint: str, reactions: Mapping[str, JointReaction], growth: Callable[[str], Scatter]
+) -> Scatter:
+    """Return by which the stress of a joint's pin grows beside scattered loads.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    reactions : mapping of str to JointReaction
+        Of all joints.
+    growth : callable
+        Of a joint, to how its force grows.
+
+    Returns
+    -------
+    Scatter
+        Where several joints are on one pin, of the sum of what each makes of it.
+    """
+    names = joints_of_pin(case, joint)
+    if len(names) == 1 or not between_layers(case, joint):
+        return growth(joint)
+    wrenches = {name: reactions[name].wrench for name in names}
+    alone = [{name: wrenches[name] * (name in own) for name in names} for own in (names, *((one,) for one in names))]
+    whole, *parts = stresses_between(case, joint, {name: np.array([one[name] for one in alone]) for name in names})
+    if not whole.equivalent.value > 0.0:
+        return growth(joint)
+    sizes = (one.equivalent.value for one in parts)
+    return of_sum(zip(sizes, map(growth, names), strict=True), whole.equivalent.value)
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:

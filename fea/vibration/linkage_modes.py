@@ -353,7 +353,8 @@ def _drive_way(frame: LinkageFrame, path: EquilibriumPath) -> Floats:
     first, second = frame.pins[name]
     slides = frame.pose.linkage.joints[name].slides
     if name in frame.pin_ends:
-        first, second = (first, frame.pin_ends[name]) if slides else (frame.pin_ends[name], second)
+        end = frame.pin_ends[name]
+        first, second = (first, end) if frame.meets_first(name) else (end, second)
     way, axes = np.zeros(chain.count), chain.axes(path.state.rotations)
     along = vector(frame.pose.placement.along(name)) if slides else ALONG_PINS
     for node, sense in ((first, -1.0), (second, 1.0)):

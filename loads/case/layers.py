@@ -1,6 +1,8 @@
 """Layers: how much of the height along the pins links and pins take up, what pins weigh, and what must fit together."""
 
 import math
+from collections import Counter
+from itertools import pairwise
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.joints.holes import HolePlay
@@ -8,6 +10,9 @@ from alula.loads.case.core import CoreCase
 from alula.loads.case.forks import levels, outer_link
 from alula.loads.case.heights import thickness
 from alula.loads.records.carried import CarriedBody
+
+Eye = tuple[str, str]
+"""Link and point."""
 
 
 def slab(case: CoreCase, name: str) -> tuple[float, float]:
@@ -55,6 +60,63 @@ def on_one_axis(case: CoreCase) -> tuple[tuple[str, ...], ...]:
             axis, names = axis | group[0], names + group[1]
         groups.append((axis, (*names, name)))
     return tuple(names for _, names in groups)
+
+
+def joints_of_pin(case: CoreCase, joint: str) -> tuple[str, ...]:
+    """Return the joints that a pin is of.
+
+    Parameters
+    ----------
+    case : CoreCase
+    joint : str
+        One of them.
+
+    Returns
+    -------
+    tuple of str
+        Those beside it that have a pin.
+    """
+    names = next(names for names in on_one_axis(case) if joint in names)
+    return tuple(name for name in names if name == joint or case.joints[name].kind.has_pin)
+
+
+def pin_stretches(case: CoreCase) -> dict[str, tuple[Eye, Eye]]:
+    """Return between which eyes the pin of each joint runs; where several joints are one pin, from link to link.
+
+    A pin is built into one link of its joint: into the first, of several joints into that on which most of them turn,
+    and of one in a slot or along a guide into the second, since the first cannot hold it. Where the pin of a shorter
+    joint goes the same way from that link, it goes on from that joint's other link.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    dict of str to tuple of 2 tuples of 2 str
+        Joint, from the shortest on -> the eye from which its pin goes on, and that where it ends.
+    """
+    linkage, found = case.linkage, dict[str, tuple[Eye, Eye]]()
+    eyes = {name: [(link, linkage.point_of(name, link)) for link in case.joints[name].links] for name in case.joints}
+    turning = Counter(eye for name, own in eyes.items() if case.joints[name].pivots for eye in own)
+
+    def height(eye: Eye) -> float:
+        return linkage.heights.get(eye[0], 0.0)
+
+    for name in sorted(case.joints, key=lambda one: abs(linkage.rise(one))):
+        joint, (start, end) = case.joints[name], eyes[name]
+        if joint.slides or (joint.pivots and turning[end] > turning[start]):
+            start, end = end, start
+        up = height(end) - height(start)
+        for begins, until in (own for other, own in found.items() if joint.pivots and case.joints[other].pivots):
+            if (
+                begins == start
+                and up * (height(until) - height(start)) > 0.0
+                and up * (height(end) - height(until)) > 0.0
+            ):
+                start = until
+        found[name] = start, end
+    return found
 
 
 def pin_masses(case: CoreCase) -> dict[str, CarriedBody]:
@@ -115,6 +177,7 @@ def check_layers(case: CoreCase) -> None:
     case.linkage  # noqa: B018 - its own rules come first
     _check_heads(case)
     _check_shared_holes(case)
+    _check_one_pin(case)
     layered = case.layered
     taken_back = case.layer_spacing == 0.0
     for name, joint in case.joints.items():
@@ -141,6 +204,22 @@ def _check_heads(case: CoreCase) -> None:
                 f"joints.{name}.heads: joint '{without[0]}' is on the same pin and states none, but its links share "
                 "the gap; state heads of both, whose gaps add up, or of neither"
             )
+
+
+def _check_one_pin(case: CoreCase) -> None:
+    """Refuse a pin of several joints of which one passes a link that it does not go on from."""
+    stretches = pin_stretches(case) if case.layered else {}
+    for names in on_one_axis(case) if case.layered else ():
+        own = [name for name in names if case.joints[name].pivots and case.linkage.rise(name) != 0.0]
+        heights = {name: sorted(case.linkage.heights.get(eye[0], 0.0) for eye in stretches[name]) for name in own}
+        ordered = sorted(own, key=lambda name: heights[name])
+        for one, other in pairwise(ordered):
+            if heights[other][0] < heights[one][1]:
+                links = dict.fromkeys(link for name in own for link in case.joints[name].links)
+                raise CaseError(
+                    f"joints.{other}: its pin passes a link of joint '{one}', which is on the same pin, but goes on "
+                    f"from none of its links; join all of {', '.join(links)} there to one of them"
+                )
 
 
 def _check_shared_holes(case: CoreCase) -> None:

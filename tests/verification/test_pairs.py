@@ -14,7 +14,7 @@ from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.fea.common.plates import pair_forces, plates
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.linear import solve_frame
-from alula.fea.judging.bearing import pressing
+from alula.fea.judging.bearing import in_eyes, pressing
 from alula.fea.outcomes.pins import crossing, shared_stress, stress_at, stresses_between
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
@@ -259,7 +259,7 @@ def test_bars_off_the_middle_of_a_pair_between_layers():
         for pin_load in plate.pins:
             assert np.linalg.norm(pin_load.wrench[:2]) == pytest.approx(share * force, rel=1e-3)
             assert np.abs(pin_load.wrench[3:5]).max() < 1e-2 * force
-    pressed = pressing(case, "C", tilts.joints["C"].wrench)
+    pressed = {link: pressing(case, link, one) for link, one in in_eyes(case, "C", tilts.joints).items()}
     assert pressed["coupler"] == pytest.approx(2.0 * (0.5 + off / span) * force, rel=1e-3)
     assert pressed["rocker"] == pytest.approx(force)
     assert statics.links["coupler"].von_mises_max.high >= (0.5 + off / span) * force / (16.0 * 6.0) * (1.0 - 1e-3)
@@ -270,18 +270,18 @@ def test_bars_off_the_middle_of_a_pair_between_layers():
     middle = span / 2.0 + 3.0 - off
     pressure += force / 6.0 * (np.abs(z - middle) < 3.0)
     bending = np.abs(np.cumsum(np.cumsum(pressure)) * step**2).max()
-    assert stress_at(case, "C", tilts.joints["C"]).moment.value == pytest.approx(bending, rel=0.02)
+    assert stress_at(case, "C", tilts.joints).moment.value == pytest.approx(bending, rel=0.02)
 
 
 def test_between_the_plates_of_a_pair_no_place_of_the_pin_need_bear_the_whole_force():
     """Half of it crosses each gap: a short thick pin bears less than the whole in shear, in every state."""
     case = off_the_middle(0.05, apart="12.2 mm")
     forces = solve_case_statics(case).forces["lift"]
-    found, every = shared_stress(case, "C", forces.reactions.joints["C"], forces), (forces.reactions, *forces.sharings)
-    states = stresses_between(case, "C", np.array([one.joints["C"].wrench for one in every]))
+    found, every = shared_stress(case, "C", forces.reactions.joints, forces), (forces.reactions, *forces.sharings)
+    states = stresses_between(case, "C", {"C": np.array([one.joints["C"].wrench for one in every])})
     assert found.equivalent.low < min(one.equivalent.value for one in states)
     least = np.sqrt(3.0) * min(one.shear for one in states)
-    assert 0.9 * least < crossing(case, "C", [forces.reactions.joints["C"]]) <= least
+    assert 0.9 * least < crossing(case, "C", [forces.reactions.joints]) <= least
 
 
 @pytest.mark.parametrize(

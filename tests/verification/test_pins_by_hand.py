@@ -11,22 +11,32 @@ where θ2 turns the pin as M2 bends it and θ1 against M1. (Timoshenko, Strength
 hole of length t bears up to F t/2 without any tilt, beyond it more only where the pin has tilted by c/t.
 """
 
+import itertools
 import math
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from tilting_pins import checked
 
+from alula.fea.asked.asked import asked
 from alula.fea.check.run import check_case
+from alula.fea.common.scatter import Scatter
 from alula.fea.common.sought import sought
-from alula.fea.common.verdict import Quantity
+from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.verdict import Quantity, Subject
+from alula.fea.judging.bearing import bearing_outcome, in_eyes, pressing
+from alula.fea.outcomes.pins import pin_growth, stress_at
 from alula.fea.pins.clearances import loose_holes
 from alula.fea.pins.states import PinStates
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import JointForces
+from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
+from alula.loads.case.layers import pin_stretches
+from alula.loads.records.check_spec import BearingCheck
 from alula.loads.statics.statics import Reactions
 
 HIGH, SOFT = 10.0, 1000.0
@@ -255,6 +265,7 @@ def three(
     heads: dict[str, dict[str, str]] | None = None,
     silent: str = "",
     plain: str | None = None,
+    checks: dict[str, dict[str, str]] | None = None,
 ):
     """A crank between two couplers on one pin, each with a rocker of its own; forces along both couplers [N].
 
@@ -281,12 +292,14 @@ def three(
     data["load_cases"]["l"]["forces"] = [
         {"link": link, "at": "M", "force": [f"{force} N", "0 N"]} for link, force in forces.items()
     ]
-    return checked(data)
+    return checked(data | {"checks": checks or {}})
 
 
 ONE_PIN = [
     {"A": ["lower", "crank"], "A2": ["lower", "upper"]},  # from the lowest to the highest
     {"A": ["crank", "lower"], "A2": ["crank", "upper"]},  # from the middle to both sides
+    {"A": ["crank", "lower"], "A2": ["upper", "lower"]},  # listed against each other
+    {"A": ["lower", "crank"], "A2": ["crank", "upper"]},  # from one to the next
 ]
 
 
@@ -300,6 +313,88 @@ def borne_by(case: Case, state: Reactions | None = None) -> dict[str, float]:
         found[second] += wrench[4]
         found[first] -= wrench[4] + case.linkage.rise(name) * wrench[0]
     return found
+
+
+def bent(case: Case) -> dict[str, tuple[float, float]]:
+    """Largest moment and shear of the pin between the lowest two of the three links, and between the upper two.
+
+    By sums over thin slices of what presses along the three eyes, even and linear, forces along x.
+    """
+    reactions, step = forces_of(case).reactions.joints, 1e-3
+    force = dict.fromkeys(("lower", "crank", "upper"), 0.0)
+    for name in ("A", "A2"):
+        first, second = case.joints[name].links
+        force[second] += reactions[name].wrench[0]
+        force[first] -= reactions[name].wrench[0]
+    z = np.arange(-HIGH - 6.0, HIGH + 6.0, step) + step / 2.0
+    pressure = np.zeros_like(z)
+    for (link, couple), (middle, length) in zip(
+        borne_by(case).items(), ((-HIGH, 12.0), (0.0, 6.0), (HIGH, 12.0)), strict=True
+    ):
+        here = np.abs(z - middle) < length / 2.0
+        pressure -= here * (force[link] / length + 12.0 * couple * (z - middle) / length**3)
+    shear = np.cumsum(pressure) * step
+    moment = np.cumsum(shear) * step
+    parts = {"below": z < 3.0, "above": z > -3.0}
+    return {side: (np.abs(moment[own]).max(), np.abs(shear[own]).max()) for side, own in parts.items()}
+
+
+@pytest.mark.parametrize("joints", ONE_PIN)
+@pytest.mark.parametrize("forces", [(20.0, 20.0), (-20.0, 20.0), (5.0, 30.0)])
+def test_what_bends_a_pin_of_three_links_is_what_all_of_them_press(joints, forces):
+    """Each joint by itself would put the crank's eye under one force alone: up to 2.4 times off."""
+    case = three(joints, {"crank": "0.02 mm"}, lower=forces[0], upper=forces[1])
+    expected, reactions = bent(case), forces_of(case).reactions.joints
+    for name, stretch in pin_stretches(case).items():
+        if name not in joints:
+            continue
+        side = "below" if any(link == "lower" for link, _ in stretch) else "above"
+        found = stress_at(case, name, reactions)
+        sheared = found.shear / (3.66 / 2.66 * 4.0 / (math.pi * 9.0))  # Love's, of Poisson's ratio 0.33
+        assert (found.moment.value, sheared) == pytest.approx(expected[side], rel=5e-3)
+
+
+@pytest.mark.parametrize("joints", ONE_PIN)
+@pytest.mark.parametrize(("lower", "crank"), [(20.0, 40.0), (-20.0, 0.0), (-5.0, 15.0)])
+def test_an_eye_bears_what_all_joints_of_its_pin_press(joints, lower, crank):
+    case = three(joints, {"crank": "0.02 mm"}, lower=lower)
+    reactions = forces_of(case).reactions.joints
+    every = {link: one for name in joints for link, one in in_eyes(case, name, reactions).items()}
+    borne = {link: float(pressing(case, link, one)) for link, one in every.items()}
+    assert borne == pytest.approx({"lower": abs(lower), "crank": crank, "upper": 20.0}, abs=0.01)
+
+
+@pytest.mark.parametrize("lower", [20.0, -5.0])
+def test_the_forces_of_all_joints_of_a_pin_may_grow_on_it(lower):
+    """That of A by 10 % and that of A2 by 20 %, each by itself or both: on the pin, and in the crank's eye."""
+    case = three(ONE_PIN[1], {"crank": "0.02 mm"}, lower=lower, checks={"eyes": {"type": "bearing"}})
+    reactions, source = forces_of(case).reactions.joints, (Source(kind=SourceKind.PLAY),)
+    by = {"A": Scatter(high=1.1, sources=source), "A2": Scatter(high=1.2, sources=source)}
+    [eye] = asked(case, BearingCheck, subject=Subject.pin("A"))
+    band = bearing_outcome(case, "l", eye, [reactions], lambda name: by.get(name, Scatter())).value
+    for factors in itertools.product((1.0, 1.1), (1.0, 1.2)):
+        grown = {
+            name: replace(reactions[name], wrench=reactions[name].wrench * factor)
+            for name, factor in zip(ONE_PIN[1], factors, strict=True)
+        }
+        for name in ONE_PIN[1]:
+            stress, plain = (stress_at(case, name, of).equivalent.value for of in (grown, reactions))
+            found = pin_growth(case, name, reactions, by.__getitem__)
+            assert found.low * plain <= stress <= found.high * plain * (1.0 + 1e-9)
+        borne = float(pressing(case, "crank", in_eyes(case, "A", grown)["crank"]))
+        assert band.low <= 240.0 / (borne / (3.0 * 6.0)) * (1.0 + 1e-9)
+
+
+def test_a_pin_that_passes_a_link_by_is_refused():
+    data = lap({})
+    points = data["links"]["coupler"]["points"]
+    for k, name in enumerate(("one", "two")):
+        data["links"][name] = {"part": "coupler", "z": f"{30.0 + 20.0 * k} mm", "points": points}
+    for name, pair in (("A", ["crank", "one"]), ("A2", ["coupler", "two"]), ("A3", ["coupler", "one"])):
+        data["joints"][name] = {"links": pair, "points": ["A", "A"], "pin_diameter": "3 mm", "pin_material": "soft"}
+    said = r"^joints\.A3: its pin passes a link of joint 'A', .* join all of crank, one, coupler, two there to one of"
+    with pytest.raises(CaseError, match=said):
+        checked(data)
 
 
 @pytest.mark.parametrize("joints", ONE_PIN)

@@ -46,8 +46,8 @@ def test_bands_hold_all_ways_of_sharing_beside_tight_pins():
         assert max(every) <= growth.high * plain
     told = thrusts(forces, tight)
     for joint in case.joints:
-        band = shared_stress(case, joint, tight.joints[joint], hand.shared_forces).equivalent
-        every = [one.equivalent.value for one in stresses_between(case, joint, _wrenches(joint, ways))]
+        band = shared_stress(case, joint, tight.joints, hand.shared_forces).equivalent
+        every = [one.equivalent.value for one in stresses_between(case, joint, {joint: _wrenches(joint, ways)})]
         assert band.low <= min(every) * (1.0 + 1e-9)
         assert max(every) <= band.high * (1.0 + 1e-9)
         thrust = np.abs(_wrenches(joint, ways)[:, 2])

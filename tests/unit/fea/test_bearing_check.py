@@ -90,7 +90,13 @@ def test_an_eye_bears_the_largest_force_of_all_ways_of_sharing(order):
     wrenches = np.zeros((3, 6))
     wrenches[:, :2] = (2.0, 0.0), (3.0, 4.0), (0.0, -4.0)
     scatter = Scatter(low=0.9, high=1.2, sources=(Source(kind=SourceKind.LOAD),))
-    eye, factor = weakest_eye(case, "bearing", "B", wrenches[list(order)], scatter)
+    eye, factor = weakest_eye(
+        case,
+        "bearing",
+        "B",
+        [{"arm": wrenches[k], "strut": -wrenches[k]} for k in order],
+        dict.fromkeys(("arm", "strut"), scatter),
+    )
     assert eye == "arm"
     assert (factor.value, factor.low) == pytest.approx((52.0 / (5.0 / 6.0), 52.0 / (6.0 / 6.0)))
 

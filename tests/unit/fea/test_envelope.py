@@ -382,11 +382,10 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
         case = edited(path, [*checks, f'pose.angle="{angles["crank"]} deg"', *near])
         reactions = solve_case_statics(case).reactions["push"]
         for joint in ("B", "O4"):
-            stress = stress_at(case, joint, reactions.joints[joint]).equivalent
+            stress = stress_at(case, joint, reactions.joints).equivalent
             least["shear", f"pin {joint}"].append(stress.inverse(case.pin_material(joint).allowable))
-            wrench = reactions.joints[joint].wrench
             [eye] = asked(case, BearingCheck, subject=Subject.pin(joint))
-            outcome = bearing_outcome(case, "push", eye, [wrench])
+            outcome = bearing_outcome(case, "push", eye, [reactions.joints])
             least["eyes", outcome.link].append(outcome.value)
     for key, bands in least.items():
         pose = int(np.argmin([band.value for band in bands]))
@@ -421,7 +420,8 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
 
 def pose_of_bearing(monkeypatch, pressed, bears, evaluated):
     """Return the pose at which two eyes are judged that are pressed so, and bear so much."""
-    monkeypatch.setattr(bearing, "pressing", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
+    monkeypatch.setattr(bearing, "in_eyes", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
+    monkeypatch.setattr(bearing, "pressing", lambda case, link, force: force)
     monkeypatch.setattr(bearing, "_borne", lambda *_: {eye: (x, Scatter()) for eye, x in zip("ab", bears, strict=True)})
     told, joint = [], SimpleNamespace(wrench=np.zeros((4, 6)))
     judge = SimpleNamespace(least=BY_HAND[BearingCheck].least, judge=lambda here, one: told.append(here) or one)

@@ -158,7 +158,10 @@ def test_a_short_pin_shears_before_it_bends():
 def test_the_eyes_of_a_joint_are_those_of_its_links():
     assert [hole.thickness for hole in eyes(read_case(WING, [PLANAR]), "B")] == [7.0, 7.0]
     # The ground has no part: its eye is taken as thick as that of AE.
-    assert stress_at(edited(WING, [PLANAR, 'joints.A.pin_gap="0.4 mm"']), "A", reaction(1, 0, 0, 0, 0, 0)).lever == 7.4
+    assert (
+        stress_at(edited(WING, [PLANAR, 'joints.A.pin_gap="0.4 mm"']), "A", {"A": reaction(1, 0, 0, 0, 0, 0)}).lever
+        == 7.4
+    )
     two = [
         'parts.thick={shape="tube",material="pvc-u",outer_diameter="5 mm",inner_diameter="2.5 mm",'
         'eye_diameter="8 mm",eye_thickness="9 mm",fillet_radius="0.8 mm"}',
@@ -169,11 +172,14 @@ def test_the_eyes_of_a_joint_are_those_of_its_links():
 
 def test_moments_out_of_the_plane_add():
     case = read_case(WING, [PLANAR])
-    plain, turned = stress_at(case, "A", reaction(3, 4, 0, 0, 0, 99)), stress_at(case, "A", reaction(3, 4, 9, 6, 8, 0))
+    plain, turned, more = (
+        stress_at(case, "A", {"A": reaction(*wrench)})
+        for wrench in ((3, 4, 0, 0, 0, 99), (3, 4, 9, 6, 8, 0), (3, 4, 9, 60, 80, 0))
+    )
     assert turned.moment.value == pytest.approx(plain.moment.value + 10.0)
     # The eyes' couple makes up to 5 N x 3.5 mm in the middle, which may take off all of these 10 N mm, not all of 100.
     assert turned.moment.low == plain.moment.low == 0.0
-    assert stress_at(case, "A", reaction(3, 4, 9, 60, 80, 0)).moment.low == pytest.approx(100.0 - 17.5)
+    assert more.moment.low == pytest.approx(100.0 - 17.5)
 
 
 def test_the_wings_pins_pass_and_thin_ones_fail():
@@ -254,22 +260,24 @@ def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_sh
     sizes = [0.5, 1.2, 0.8]
     sizes[worst] = 3.0
 
-    def at(_, joint, size):
+    def at(size):
         bands = {name: Band.exact(10.0 * size) for name in ("moment", "bending", "equivalent")}
         return PinStress(lever=1.0, shear=size, **bands)
 
     def ways(size):
         return SimpleNamespace(joints={"B": SimpleNamespace(wrench=size)})
 
-    monkeypatch.setattr("alula.fea.outcomes.pins.stress_at", at)
-    monkeypatch.setattr(
-        "alula.fea.outcomes.pins.stresses_between", lambda case, joint, every: [at(case, joint, one) for one in every]
-    )
     least = 15.0
-    monkeypatch.setattr("alula.fea.outcomes.pins.crossing", lambda *_: least)
-    case = SimpleNamespace(linkage=SimpleNamespace(rise=lambda joint: 2.0))
+    for name, instead in (
+        ("stress_at", lambda case, joint, of: at(of[joint].wrench)),
+        ("stresses", lambda case, joint, every: [at(one) for one in every[joint]]),
+        ("crossing", lambda *_: least),
+        ("between_layers", lambda *_: True),
+        ("joints_of_pin", lambda case, joint: (joint,)),
+    ):
+        monkeypatch.setattr(f"alula.fea.outcomes.pins.{name}", instead)
     forces = SimpleNamespace(reactions=ways(2.0), sharings=[ways(2.0 * size) for size in sizes])
-    found = shared_stress(case, "B", 4.0, forces)
+    found = shared_stress(None, "B", ways(4.0).joints, forces)
     beyond = LEFT * (3.0 - min(sizes))
     assert found.shear == pytest.approx(4.0 * (3.0 + beyond))
     for name in ("moment", "bending", "equivalent"):

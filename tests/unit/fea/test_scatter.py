@@ -16,7 +16,7 @@ from solved import by_hand
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, compliance_scatter, strength_scatter
+from alula.fea.common.scatter import Scatter, compliance_scatter, of_sum, strength_scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Verdict
 from alula.fea.doubts import load_growth
@@ -280,3 +280,14 @@ def test_what_running_pins_make_of_couples_is_no_growth():
     assert most < 1.01
     assert bands
     assert max(widths, default=1.0) < most
+
+
+def test_what_is_left_of_two_forces_against_each_other_differs_by_what_both_do():
+    """10 N of which 10 % more may act, against 6 N that may lack 20 %: 4 N and up to 2.2 N more or less."""
+    loads, play = (Source(kind=kind) for kind in (SourceKind.LOAD, SourceKind.PLAY))
+    one, other = Scatter(high=1.1, sources=(loads,)), Scatter(low=0.8, sources=(play,))
+    left = of_sum([(10.0, one), (6.0, other)], 4.0)
+    assert (left.low, left.high) == pytest.approx((1.0 - 2.2 / 4.0, 1.0 + 2.2 / 4.0))
+    assert {source.kind for source in left.sources} == {SourceKind.LOAD, SourceKind.PLAY}
+    assert of_sum([(10.0, one), (6.0, other)], 1.0).low == 0.0
+    assert of_sum([(10.0, one)], 10.0) is one
