@@ -37,7 +37,7 @@ adds to the shear where nothing bends, and at the extreme fibre to the bending b
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -62,7 +62,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import connected_joints, turned_by_drive
 from alula.loads.case.eyes import other_link
 from alula.loads.case.forks import eye_of, eyes, outer_link
-from alula.loads.case.layers import Eye, joints_of_pin, pin_stretches
+from alula.loads.case.layers import Eye, joints_of_pin, on_one_axis, pin_stretches
 from alula.loads.records.applied import shifted
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.text.caveat import Caveat, Topic
@@ -144,6 +144,26 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
     if not judged and case.torque_transfer != "bore-shear" and not case.linkage.joints[drive.joint].fixed:
         why = reason("torque_by_flat_faces")
         yield Caveat(topic=Topic.SHAFT, what=reason("drive_shaft", joint=drive.joint), why=why)
+
+
+def shared_pin_caveats(case: Case, judged: Collection[str]) -> Iterator[Caveat]:
+    """Yield the pins of several joints whose links have no order along them: each joint is judged as if by itself.
+
+    Parameters
+    ----------
+    case : Case
+    judged : collection of str
+        Joints whose pins a check judges.
+
+    Yields
+    ------
+    Caveat
+    """
+    for names in on_one_axis(case):
+        own = [name for name in names if name in judged]
+        if len(joints_of_pin(case, names[0])) > 1 and own and not between_layers(case, names[0]):
+            what = reason("bending_of_shared_pin", joints=list(names))
+            yield Caveat(topic=Topic.PINS, what=what, why=reason("no_order_along_pin"))
 
 
 def twisted(case: Case, joint: str, stress: PinStress, twist: Band) -> PinStress:

@@ -11,7 +11,7 @@ from alula.fea.asked.lasting import creep_caveats, fatigue_caveats
 from alula.fea.buckling.wall import wall_caveats
 from alula.fea.common.reason import Reason, reason, together
 from alula.fea.outcomes.limits import layer_caveats, limit_caveats
-from alula.fea.outcomes.pins import shaft_caveats
+from alula.fea.outcomes.pins import shaft_caveats, shared_pin_caveats
 from alula.geometry.materials.plausible import untold, unusual
 from alula.loads.case.break_rules import eye_caveats
 from alula.loads.case.case import Case
@@ -62,6 +62,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: Reason | None = 
         *drive_caveats(case),
         *joint_caveats(case),
         *shaft_caveats(case),
+        *shared_pin_caveats(case, asked_of(case, PinCheck)),
         *collision_caveats(case),
         *_pins(case),
         *wall_caveats(case),

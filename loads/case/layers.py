@@ -93,7 +93,7 @@ def pin_stretches(case: CoreCase) -> dict[str, tuple[Eye, Eye]]:
 
     Returns
     -------
-    dict of str to tuple of 2 tuples of 2 str
+    dict of str to tuple of 2 Eye
         Joint, from the shortest on -> the eye from which its pin goes on, and that where it ends.
     """
     linkage, found = case.linkage, dict[str, tuple[Eye, Eye]]()
