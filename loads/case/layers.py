@@ -214,7 +214,7 @@ def _check_one_pin(case: CoreCase) -> None:
         heights = {name: sorted(case.linkage.heights.get(eye[0], 0.0) for eye in stretches[name]) for name in own}
         ordered = sorted(own, key=lambda name: heights[name])
         for one, other in pairwise(ordered):
-            if heights[other][0] < heights[one][1]:
+            if heights[other] != heights[one] and heights[other][0] < heights[one][1]:
                 links = dict.fromkeys(link for name in own for link in case.joints[name].links)
                 raise CaseError(
                     f"joints.{other}: its pin passes a link of joint '{one}', which is on the same pin, but goes on "

@@ -360,7 +360,8 @@ def test_what_reverses_on_a_solid_with_pins_does_not_pass(solved):
 
 
 def judged(case, links):
-    here = SimpleNamespace(case=case, load_case="pull", links=links, wrenches=lambda joint: [np.zeros(6)])
+    idle = {name: SimpleNamespace(wrench=np.zeros(6)) for name in case.joints}
+    here = SimpleNamespace(case=case, load_case="pull", links=links, ways=lambda: [SimpleNamespace(joints=idle)])
     [one] = asked(case, FatigueCheck, subject=Subject.link("level"))
     return judge_fatigue(here, one).outcome
 
