@@ -31,7 +31,7 @@ class Aims:
     linear : ndarray, shape (a, v)
         Their first ones.
     ends : BeamEnds
-        e ends, whose stresses are further ones: those whose stress depends on where pins stand.
+        e ends: those whose stress depends on where pins stand. That of each but those within eyes is a further one.
     of_links : ndarray of bool, shape (l, e)
         Ends of each link and of each pin, whose largest stress is to be least.
     """
@@ -43,7 +43,12 @@ class Aims:
     @property
     def count(self) -> int:
         """Of all functions."""
-        return len(self.linear) + sum(self.of_links.shape)
+        return len(self.linear) + self._alone + len(self.of_links)
+
+    @property
+    def _alone(self) -> int:
+        """Of ends whose stress is sought by itself."""
+        return int((~self.ends.within).sum())
 
     def values(self, v: Real) -> Real:
         """Return all functions.
@@ -54,9 +59,10 @@ class Aims:
 
         Returns
         -------
-        ndarray, shape (n, a + e + l)
+        ndarray, shape (n, ``count``)
         """
-        return np.hstack([v @ self.linear.T, self.stresses(v)])
+        each, _ = self._each(v)
+        return np.hstack([v @ self.linear.T, each[:, : self._alone], -self._largest(each)])
 
     def stresses(self, v: Real) -> Real:
         """Return the stress of every end, then what is largest where that of a link or a pin is least.
@@ -86,7 +92,7 @@ class Aims:
         -------
         ndarray, shape (n, v)
         """
-        found, (first, count) = np.empty_like(v), (len(self.linear), self.of_links.shape[1])
+        found, (first, count) = np.empty_like(v), (len(self.linear), self._alone)
         linear = which < first
         found[linear] = self.linear[which[linear]]
         which, own = which[~linear] - first, v[~linear]

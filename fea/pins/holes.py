@@ -10,7 +10,8 @@ the slope of the frame's energy with respect to v (Przemieniecki, Theory of Matr
 structural modification by the force method).
 """
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -29,6 +30,8 @@ from alula.loads.case.forks import eye_of
 from alula.loads.case.heights import thickness
 
 Real = NDArray[np.float64]
+WITHIN = (0.5, 0.75)
+"""Shares of the way through an eye, from where a pin ends, at which its moment counts beside that at the face."""
 NOTHING = 1e-9
 """Share of what a pin by itself bears below which there is nothing but by rounding."""
 
@@ -52,6 +55,22 @@ class Hole:
     high: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class Face:
+    """Where an eye at an end of a pin's beam ends, of the way from its start to its stop.
+
+    Attributes
+    ----------
+    near : float
+        On the beam, from 0 to 1.
+    far : float
+        Where the pin ends; NaN where it goes on, and of an eye of several walls.
+    """
+
+    near: float
+    far: float
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BeamEnds:
     """What bears on sections at both ends of all stretches of links' beams, and of pins between eyes: plain stresses.
@@ -69,6 +88,8 @@ class BeamEnds:
         The same by the variables; 0 where there is nothing but by rounding.
     round : ndarray of bool, shape (e,)
         Where the section has no corners.
+    within : ndarray of bool, shape (e,)
+        Where it is no end but a place within the eye in which a pin ends; these stand last.
     """
 
     owners: tuple[tuple[str, str], ...]
@@ -77,6 +98,7 @@ class BeamEnds:
     tight: Real
     by_rims: Real
     round: NDArray[np.bool_]
+    within: NDArray[np.bool_]
 
     def of(self, ends: NDArray[np.int64]) -> "BeamEnds":
         """Return some of the ends.
@@ -97,6 +119,7 @@ class BeamEnds:
             tight=self.tight[ends],
             by_rims=self.by_rims[ends],
             round=self.round[ends],
+            within=self.within[ends],
         )
 
     def parts(self, natural: Real) -> Real:
@@ -159,8 +182,8 @@ class RimFrame:
         Stiffness [N/mm].
     g : ndarray, shape (4 h,)
         Forces at the rims with tight pins [N].
-    faces : mapping of str to tuple of 2 float
-        Joint -> where on its pin's beam, from 0 to 1, the eyes at both ends end; left out where that is not known.
+    faces : mapping of str to tuple of 2 Face
+        Joint -> where the eyes at both ends of its pin's beam end; left out where that is not known.
     """
 
     frame: LinkageFrame
@@ -173,7 +196,7 @@ class RimFrame:
     by_rims: Real
     K: Real
     g: Real
-    faces: Mapping[str, tuple[float, float]]
+    faces: Mapping[str, tuple[Face, Face]]
 
     @cached_property
     def beam_ends(self) -> BeamEnds:
@@ -190,7 +213,7 @@ class RimFrame:
         cls,
         frame: LinkageFrame,
         rims: Mapping[tuple[str, str], tuple[float, float]],
-        faces: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+        faces: Mapping[str, tuple[Face, Face]] = MappingProxyType({}),
     ) -> "RimFrame":
         """Condense a frame to the rims of its holes.
 
@@ -200,7 +223,7 @@ class RimFrame:
             With pins that are tight in both links.
         rims : mapping of (str, str) to tuple of 2 float
             Joint and link -> z of the rims of the hole, from the link's mid-plane [mm]; those left out are tight.
-        faces : mapping of str to tuple of 2 float, optional
+        faces : mapping of str to tuple of 2 Face, optional
             As of the attribute.
 
         Returns
@@ -296,16 +319,21 @@ def _row(frame: LinkageFrame, entries: Mapping[int, float]) -> Real:
 
 
 def _beam_ends(
-    frame: LinkageFrame, solved: FactorisedFrame, opened: Real, faces: Mapping[str, tuple[float, float]]
+    frame: LinkageFrame, solved: FactorisedFrame, opened: Real, faces: Mapping[str, tuple[Face, Face]]
 ) -> BeamEnds:
-    ends = [(i, ("link", beam.link), at) for i, beam in frame.beams.items() for at in (0.0, 1.0)]
-    ends += [(i, ("pin", name), at) for name, i in frame.pin_beams.items() for at in faces.get(name, (0.0, 1.0))]
-    elements, at = np.array([i for i, _, _ in ends], dtype=np.int64), np.array([at for _, _, at in ends])
+    ends = [(i, ("link", beam.link), _at(at)) for i, beam in frame.beams.items() for at in (0.0, 1.0)]
+    unknown = Face(near=0.0, far=np.nan), Face(near=1.0, far=np.nan)
+    known = {name: faces.get(name, unknown) for name in frame.pin_beams}
+    ends += [(i, ("pin", name), _at(face.near)) for name, i in frame.pin_beams.items() for face in known[name]]
+    count = len(ends)
+    inner = [(i, name, face) for name, i in frame.pin_beams.items() for face in known[name] if not np.isnan(face.far)]
+    ends += [(i, ("pin", name), _within(face, share)) for i, name, face in inner for share in WITHIN]
+    elements, moments = np.array([i for i, _, _ in ends], dtype=np.int64), np.array([own for _, _, own in ends])
     sections = [frame.model.elements[i].section for i in elements]
     shares = np.zeros((len(ends), 4, 6))
     shares[:, 0, 0] = shares[:, 3, 5] = 1.0
-    for row, moment in ((1, 1), (2, 3)):  # between those at both ends, which turn the same way, moments go linearly
-        shares[:, row, moment], shares[:, row, moment + 1] = 1.0 - at, -at
+    for row, moment in ((1, 1), (2, 3)):
+        shares[:, row, moment : moment + 2] = moments
     unit = shares * np.array([_unit_stresses(section) for section in sections]).reshape(-1, 4, 1)
     rows = np.arange(6 * len(frame.model.elements), dtype=np.int64)
     tight, by_rims = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
@@ -317,7 +345,22 @@ def _beam_ends(
         tight=_stresses(unit, tight.reshape(-1, 6)[elements]),
         by_rims=_stresses(unit, by_rims.reshape(-1, 6, by_rims.shape[1])[elements]),
         round=np.array([section.round for section in sections], dtype=bool),
+        within=np.arange(len(ends)) >= count,
     )
+
+
+def _at(place: float) -> Real:
+    """Moment (2,) at a place from 0 to 1 by those at both ends, which turn the same way: between them it is linear."""
+    return np.array([1.0 - place, -place])
+
+
+def _within(face: Face, share: float) -> Real:
+    """Moment (2,) within an eye, at a share of the way from where the pin ends, by those at both ends of its beam.
+
+    The eye presses with what is linear along it, so that the moment is a cubic from nothing to that of its face.
+    """
+    shear = (face.near - face.far) * np.array([-1.0, -1.0])  # that of the beam, times the eye's length
+    return (3.0 - 2.0 * share) * share**2 * _at(face.near) - share**2 * (1.0 - share) * shear
 
 
 def _stresses(unit: Real, natural: Real) -> Real:
@@ -379,7 +422,7 @@ def rims_of(case: Case, joint: str, link: str) -> tuple[float, float]:
     return found or (-shortest(case) / 2.0, shortest(case) / 2.0)
 
 
-def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[float, float]]:
+def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[Face, Face]]:
     """Return where the eyes at both ends of pins between layers end.
 
     Parameters
@@ -390,26 +433,43 @@ def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[float, float]]:
 
     Returns
     -------
-    dict of str to tuple of 2 float
+    dict of str to tuple of 2 Face
         As ``RimFrame.faces``, of pins between eyes that are known and lie side by side.
     """
-    found, (starts, stops) = dict[str, tuple[float, float]](), frame.model.all_ends
+    found, (starts, stops) = dict[str, tuple[Face, Face]](), frame.model.all_ends
+    ending = Counter(eye for own in frame.pin_eyes.values() for eye in own)
     for name, i in frame.pin_beams.items():
-        up, rims = float(stops[i][2] - starts[i][2]), [_known_at(case, *eye) for eye in frame.pin_eyes[name]]
+        up, eyes = float(stops[i][2] - starts[i][2]), frame.pin_eyes[name]
+        rims = [_known_at(case, *eye) for eye in eyes]
         if case.linkage.rise(name) == 0.0 or None in rims:
             continue
-        (_, above), (below, _) = (rim if up > 0.0 else (-rim[1], -rim[0]) for rim in rims if rim)
-        ends = above / abs(up), 1.0 + below / abs(up)
-        if 0.0 <= ends[0] <= ends[1] <= 1.0:
-            found[name] = ends
+        (below, near), (other, above) = (
+            (rim[0] / up, rim[1] / up) if up > 0.0 else (rim[1] / up, rim[0] / up) for rim in rims if rim
+        )
+        ends = [ending[eye] == 1 and len(_walls(case, *eye)) == 1 for eye in eyes]
+        if 0.0 <= near <= 1.0 + other <= 1.0:
+            found[name] = (
+                Face(near=near, far=below if ends[0] else np.nan),
+                Face(near=1.0 + other, far=1.0 + above if ends[1] else np.nan),
+            )
     return found
+
+
+def _walls(case: Case, link: str, point: str) -> Sequence[tuple[float, float]]:
+    """Return the walls of the hole at a point of a link; one where no part tells."""
+    if case.links[link].part is None:
+        return ((0.0, 0.0),)
+    return eye_of(case, _joint_at(case, link, point), link).walls
+
+
+def _joint_at(case: Case, link: str, point: str) -> str:
+    linkage = case.linkage
+    return next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point)
 
 
 def _known_at(case: Case, link: str, point: str) -> tuple[float, float] | None:
     """Return the rims of the hole at a point of a link, as ``known_hole`` does."""
-    linkage = case.linkage
-    [joint, *_] = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
-    return known_hole(case, joint, link)
+    return known_hole(case, _joint_at(case, link, point), link)
 
 
 def shortest(case: Case) -> float:

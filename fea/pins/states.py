@@ -31,7 +31,7 @@ Index = NDArray[np.int64]
 LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
 """Shares of all that is open at which the search starts, beside the values. These states are kept whether or not some
 couple is largest in them."""
-DRAWS = 1200
+DRAWS = 300
 """Further states at which the search starts, drawn at random, most clearances at an end or near the lower one."""
 STAGES = ((1e-3, 4, 1e-3), (1e-4, 2, 1e-4))
 """Of the search, one after the other: the residual at which its states end, from how many of the largest ones each
@@ -231,10 +231,12 @@ class PinStates:
         if not len(value) or not aims.count:
             return value[None]
         alike = np.outer(LEVELS, np.ones(len(value)))
-        further, stages = (_drawn(DRAWS, len(value)), STAGES) if self.like is None else (self.like.extremes, STAGES[1:])
-        starts = np.vstack([value, alike, further])
-        for close, paths, near in stages:
-            starts = self._followed(starts, aims, close, paths, near)
+        if self.like is None:
+            starts = self._followed(np.vstack([value, alike, _drawn(DRAWS, len(value))]), aims, *STAGES[0])
+            starts = self._beside(starts, aims, STAGES[0][0])
+        else:
+            starts = np.vstack([value, alike, self.like.extremes])
+        starts = self._followed(starts, aims, *STAGES[1])
         reached = aims.values(self._stands(starts, ROUGH)[1].v)
         return np.vstack([value, alike, starts[np.unique(_graded(reached, np.ptp(reached, axis=0)).argmax(axis=0))]])
 
@@ -291,6 +293,16 @@ class PinStates:
         ends = ascend(starts[first], evaluate, near * spread[aim])
         largest = _graded(np.vstack(reached), spread).argmax(axis=0)
         return _distinct(np.vstack([np.vstack(met)[np.unique(largest)], ends]))[0]
+
+    def _beside(self, shares: Real, aims: Aims, close: float) -> Real:
+        """Shares, and those in which some function is largest with each one at either end, one at a time.
+
+        A hole whose rims do not touch has no slope, however much more a narrower one would bear.
+        """
+        best = shares[np.unique(aims.values(self._stands(shares, close)[1].v).argmax(axis=0))]
+        count = best.shape[1]
+        ends = np.where(np.eye(count, dtype=bool), np.array([0.0, 1.0])[:, None, None, None], best[:, None])
+        return _distinct(np.vstack([shares, ends.reshape(-1, count)]))[0]
 
     def _stands(self, shares: Real, close: float) -> tuple[Real, InDiscs]:
         radii = np.maximum(self.radii.of(shares)[0], LEAST_RADIUS)

@@ -118,7 +118,9 @@ def eye_of(case: CoreCase, joint: str, link: str) -> Ring:
 
 
 def eyes(case: CoreCase, joint: str) -> tuple[Ring, Ring]:
-    """Return a joint's holes in its two links; that of a link without part is like that of the other link's plate.
+    """Return a joint's holes in its two links.
+
+    That of a link without part is as long as the thickness that it states, else like that of the other link's plate.
 
     Parameters
     ----------
@@ -141,8 +143,9 @@ def eyes(case: CoreCase, joint: str) -> tuple[Ring, Ring]:
         raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
     if len(found) == 1:
         [link] = found
-        body = case.body(link)
-        found[other_link(case.linkage, joint, link)] = body.ring(body.pin(case.linkage.point_of(joint, link)))
+        body, other = case.body(link), other_link(case.linkage, joint, link)
+        ring, height = body.ring(body.pin(case.linkage.point_of(joint, link))), case.links[other].thickness
+        found[other] = ring if height is None else Ring(diameter=ring.diameter, low=-height / 2.0, high=height / 2.0)
     return found[links[0]], found[links[1]]
 
 

@@ -18,7 +18,10 @@ def standing(seed):
 
 @pytest.mark.parametrize("seed", [1, 11])
 def test_ends_of_beams_bear_what_joint_forces_say(seed):
-    """Of pins that rise, couples about y once had the other sign than those about x."""
+    """Of pins that rise, couples about y once had the other sign than those about x.
+
+    Within an eye, by sums over thin slices of what presses there, even and linear.
+    """
     case, forces = standing(seed)
     rims, angles, signs = forces.pins.rims, case.solve_pose().angles, set()
     parts = rims.beam_ends.tight + rims.beam_ends.by_rims @ forces.pins.value
@@ -35,7 +38,19 @@ def test_ends_of_beams_bear_what_joint_forces_say(seed):
         signs.add(np.sign(rise))
         couples[name] = (wrench[3:5] + rise * np.array([-wrench[1], wrench[0]]), wrench[3:5])
         half = [(case.links[link].thickness or 4.0) / 2.0 / abs(rise) for link in case.joints[name].links]
-        for part, at in zip(found["pin", name], (half[0], 1.0 - half[1]), strict=True):  # at the faces of both eyes
+        faces, within = found["pin", name][:2], found["pin", name][2:]
+        eyes = [(link, case.linkage.point_of(name, link)) for link in case.joints[name].links]
+        for k, (eye, outwards) in enumerate(zip(eyes, (-np.sign(rise), np.sign(rise)), strict=True)):
+            assert sum(eye in own for own in forces.frame.pin_eyes.values()) == 1  # so that the pin ends there
+            length, couple = 2.0 * half[k] * abs(rise), couples[name][k]
+            inwards = (np.arange(4000)[:, None] + 0.5) / 4000.0  # of the eye's length
+            height = outwards * (0.5 - inwards) * length
+            pressure = wrench[:2] / length + 12.0 * height * np.array([couple[1], -couple[0]]) / length**3
+            moment = np.cumsum(np.cumsum(pressure, axis=0), axis=0) * (length / 4000.0) ** 2
+            for part, at in zip(within[2 * k : 2 * k + 2], (1999, 2999), strict=True):
+                bending = 32.0 * np.linalg.norm(moment[at]) / (math.pi * diameter**3)
+                assert math.hypot(*part[1:3]) == pytest.approx(bending, rel=5e-3, abs=1e-3)
+        for part, at in zip(faces, (half[0], 1.0 - half[1]), strict=True):  # at the faces of both eyes
             couple = (1.0 - at) * couples[name][0] + at * couples[name][1]
             assert math.hypot(*part[1:3]) == pytest.approx(32.0 * np.linalg.norm(couple) / (math.pi * diameter**3))
             assert abs(part[0]) == pytest.approx(4.0 * abs(wrench[2]) / (math.pi * diameter**2), abs=1e-9)
