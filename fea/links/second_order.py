@@ -28,7 +28,7 @@ from alula.fea.common.link_loads import LinkLoads
 from alula.fea.links.on_axis import on_axis
 from alula.geometry.bodies.body import no_beam
 from alula.loads.case.case import Case
-from alula.loads.records.applied import LineLoad
+from alula.loads.records.applied import LineLoad, shifted
 
 Real = NDArray[np.float64]
 
@@ -213,9 +213,13 @@ def _bowed(
         extra[last][:3] -= left / (last - first)
     else:
         extra[first][4:] += left[2], -left[1]
-    none = np.zeros(6)
-    pins = [replace(pin, wrench=pin.wrench + extra.pop(float(pin.centre[0]), none)) for pin in loads.pins]
-    rest = [replace(end, wrench=end.wrench + extra.pop(float(end.point[0]), none)) for end in loads.ends]
+
+    def at(place: Real) -> Real:
+        """What acts on the axis beside a pin or a loaded end, about its own place."""
+        return shifted(extra.pop(float(place[0]), np.zeros(6)), -place * [0.0, 1.0, 1.0])
+
+    pins = [replace(pin, wrench=pin.wrench + at(pin.centre)) for pin in loads.pins]
+    rest = [replace(end, wrench=end.wrench + at(end.point)) for end in loads.ends]
     lines = [
         LineLoad(link=loads.link, start=float(a), end=float(b), at_start=q[0], at_end=q[1], axes="link")
         for a, b, q in zip(nodes[:-1], nodes[1:], intensity, strict=True)

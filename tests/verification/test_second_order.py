@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -70,6 +71,26 @@ def test_beam_columns_on_two_pins(n: float) -> None:
     one = loaded((0.0, [P, 0.5, 0, 0, 0, 50.0]), (L, [-P, -0.5, 0, 0, 0, 0]))
     largest = 50.0 / math.sin(k * L) if k * L > math.pi / 2.0 else 50.0
     assert moment(between_stations(one, forces(one), BEND, BEND)) == pytest.approx(largest, rel=2e-4)
+
+
+@pytest.mark.parametrize("n", FACTORS)
+@pytest.mark.parametrize("aside", [12.0, -7.0])
+def test_pins_beside_the_axis_bend_a_beam_column_as_on_it(n: float, aside: float) -> None:
+    """What growth adds across the plane once twisted the beam by that arm, so that its loads did not balance."""
+    P = EULER / n
+    couple = [2.0 * aside, 0.0, 0.3 * P * aside]
+    on_axis = loaded(
+        (0.0, [P, 0, -1.0, *(-x for x in couple)]),
+        (50.0, [-0.3 * P, 0, 2.0, *couple]),
+        (L, [-0.7 * P, 0, -1.0, 0, 0, 0]),
+    )
+    first, middle, last = on_axis.pins
+    beside = replace(middle, centre=np.array([50.0, aside, 0.0]), wrench=middle.wrench * [1, 1, 1, 0, 0, 0])
+    plate = replace(on_axis, pins=(first, beside, last))
+    expected, found = (on_its_pins(one, forces(one), BEND, BEND, (0.0, L)) for one in (on_axis, plate))
+    assert moment(found) == pytest.approx(moment(expected), rel=1e-9)
+    assert moment(found) > 1.05 * moment(plate)
+    assert forces(found).at(25.0) == pytest.approx(forces(expected).at(25.0), rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("n", FACTORS)
