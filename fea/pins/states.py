@@ -271,8 +271,8 @@ class PinStates:
             return self.value[None]
         starts = np.vstack([self.extremes, np.outer(LEVELS, np.ones(len(value)))])
         aims = Nearest(tight=tight, by_rims=self.moves(node))
-        for close, paths, near in STAGES:
-            starts = self._followed(starts, aims, close, paths, near)
+        for close, _, near in STAGES:  # from all of the starts: they are few, and some lead to ends of their own
+            starts = self._followed(starts, aims, close, len(starts), near)
         return np.asarray(self.solved(starts).v)
 
     def _followed(self, starts: Real, aims: Aims | Nearest, close: float, paths: int, near: float) -> Real:
