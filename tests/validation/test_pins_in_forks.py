@@ -151,3 +151,18 @@ def test_how_long_the_element_of_a_pin_is_changes_no_stability(monkeypatch, time
     plain = [*factors()]
     monkeypatch.setattr(build, "ALONG_PINS", times * build.ALONG_PINS)
     assert [*factors()] == pytest.approx(plain, rel=1e-4)
+
+
+def test_how_rigid_the_element_of_a_pin_is_hides_no_couple(monkeypatch):
+    """What counts as none by rounding goes with what bends: pins between layers, or links where no pin does."""
+    force = ("0 N", "-10 N", "2 N")
+
+    def noises():
+        for forks in (True, False):
+            pins = solve_case_statics(with_clearances(HOLES[0], force, forks=forks)).forces["l"].pins
+            yield pins.rims.noise, pins.aims.count
+
+    plain = [*noises()]
+    assert all(count > 0 for _, count in plain)
+    monkeypatch.setattr(build, "RIGID", 1e3 * build.RIGID)
+    assert [*noises()] == plain

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from alula.fea.pins import holes
 from alula.fea.standing.case_statics import solve_case_statics
 from benchmarks import draws
 
@@ -47,6 +48,33 @@ def test_ends_of_beams_bear_what_joint_forces_say(seed):
         across = abs(coupler @ [couple[1], -couple[0]])
         assert abs(part[2]) == pytest.approx(across / modulus, rel=1e-6)
         assert abs(part[3]) == pytest.approx(abs(found["link", "coupler"][0][3]), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "apart"),
+    [
+        (-0.1, 0.3, True),
+        (-0.6, 0.7, False),  # eyes that overlap
+        (-0.1, 1.1, False),  # and beyond the middle of the other
+        (0.1, 0.3, False),  # holes on one side of their links
+        (-0.3, -0.1, False),
+    ],
+)
+def test_a_pin_bends_between_the_faces_that_look_at_each_other(monkeypatch, low, high, apart):
+    """Holes of no two links are alike, and reach further up than down; pins rise and fall."""
+    case, forces = standing(1)
+    frame, height, signs = forces.frame, case.linkage.heights, set()
+    least = min(abs(case.linkage.rise(name)) for name in frame.pin_eyes)
+    rims = {link: (low * least - 0.01 * k, high * least + 0.02 * k) for k, link in enumerate(height)}
+    monkeypatch.setattr(holes, "known_hole", lambda case, joint, link: rims[link])
+    found = holes.faces_of(case, frame)
+    for name, ((one, _), (other, _)) in frame.pin_eyes.items() if apart else ():
+        up = height[other] - height[one]
+        near, far = (rims[one][1], rims[other][0]) if up > 0.0 else (rims[one][0], rims[other][1])
+        assert found[name] == pytest.approx((near / up, 1.0 + far / up))
+        signs.add(np.sign(up))
+    assert signs == ({-1.0, 1.0} if apart else set())
+    assert apart or not found
 
 
 def test_slopes_are_those_of_the_functions():

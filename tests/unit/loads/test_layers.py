@@ -5,11 +5,13 @@ import re
 import pytest
 from edited_cases import PLANAR
 from edited_cases import edited as edited_case
+from tilting_pins import checked, in_one_layer
 
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_case, read_text
+from alula.loads.case.forks import in_holes
 from alula.loads.case.layers import slab
 from alula.loads.states.clearance import clearance
 
@@ -121,3 +123,39 @@ def test_what_does_not_fit_is_refused(changes: list[str], sentence: str) -> None
     with pytest.raises(CaseError) as told:
         edited(changes)
     assert re.search(sentence, str(told.value))
+
+
+@pytest.mark.parametrize(("entry", "of_fork"), [("tight_in", True), ("heads", False)])
+def test_without_layers_a_fork_alone_tells_in_which_links_its_pin_is_tight(entry: str, of_fork: bool) -> None:
+    """Both forks at A and B of four joints may; heads stand outside of a fork, and no joint has them."""
+    taken = {}
+    for name in ("O2", "A", "B", "O4"):
+        data = in_one_layer()
+        links = data["joints"][name]["links"]
+        data["joints"][name][entry] = links if entry == "tight_in" else {"diameter": "6 mm", "gap": "0.1 mm"}
+        try:
+            taken[name] = checked(data).joints[name].tight_in == tuple(links)
+        except CaseError as error:
+            assert str(error).startswith(f"joints.{name}.{entry}: it has a meaning only where links lie in layers")
+    assert taken == (dict.fromkeys("AB", True) if of_fork else {})
+
+
+STATED = {
+    "O2": {"base": "0 mm", "crank": ["0 mm", "0.1 mm"]},  # it may run in one of its holes
+    "A": {"crank": "0 mm", "coupler": "0 mm"},
+    "B": {"coupler": "0.1 mm", "rocker": "0 mm"},
+}
+
+
+@pytest.mark.parametrize(("forks", "stand"), [(False, {"O2", "B"}), (True, {"O2", "A", "B"})])
+def test_without_layers_pins_of_forks_and_those_that_may_run_stand_in_their_holes(forks: bool, stand: set[str]) -> None:
+    """Of O4 nothing is stated. Where a spacing of 0 takes layers back, clearances say how far links move in the plane."""
+    data = in_one_layer(forks=forks)
+    for name, clearance in STATED.items():
+        data["joints"][name]["clearance"] = clearance
+    case = checked(data)
+    assert {name for name in case.joints if in_holes(case, name)} == stand
+    for link in data["links"].values():
+        link["layer"] = 0
+    flat = checked(data | {"layer_spacing": "0 mm"})
+    assert {name for name in flat.joints if in_holes(flat, name)} == ({"A", "B"} if forks else set())
