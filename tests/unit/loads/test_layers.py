@@ -149,10 +149,10 @@ STATED = {
 
 @pytest.mark.parametrize(("forks", "stand"), [(False, {"O2", "B"}), (True, {"O2", "A", "B"})])
 def test_without_layers_pins_of_forks_and_those_that_may_run_stand_in_their_holes(forks: bool, stand: set[str]) -> None:
-    """Of O4 nothing is stated. Where a spacing of 0 takes layers back, clearances say how far links move in the plane."""
+    """Of O4 nothing is stated. Where a spacing of 0 takes layers back, clearances are of play in the plane."""
     data = in_one_layer(forks=forks)
-    for name, clearance in STATED.items():
-        data["joints"][name]["clearance"] = clearance
+    for name, stated in STATED.items():
+        data["joints"][name]["clearance"] = stated
     case = checked(data)
     assert {name for name in case.joints if in_holes(case, name)} == stand
     for link in data["links"].values():
