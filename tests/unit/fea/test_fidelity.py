@@ -117,7 +117,7 @@ def test_what_is_told_of_a_link_that_is_clear_is_the_worst_of_its_loads(light_fi
 
 @pytest.mark.parametrize("light_first", [True, False])
 def test_layers_are_open_by_hand_where_any_limit_is_reached_under_any_loads(light_first):
-    """At the least that scatter makes of it, of the loads' own ranges where other causes have some; else of the task."""
+    """At the least that scatter makes of it, of the ranges of the loads where causes have some."""
     layers = Layers(normal=(0.0, 0.0, 1.0), across=20.0, between=15.0)
     task, hands = two_loads(light_first=light_first, layers=layers)
     most = max(in_worst_direction(one.principal.high, one.von_mises.high, 20.0 / 15.0) for one in hands)
