@@ -26,6 +26,7 @@ from alula.fea.pins.clearances import HoleClearance, loose_holes, radii_of
 from alula.fea.pins.states import PinStates
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import JointForces
+from alula.geometry.joints.fits import RUNNING, fit
 from alula.loads.case.case import Case
 from alula.loads.statics.statics import Reactions
 
@@ -349,17 +350,20 @@ def test_a_hole_that_one_joint_of_a_pin_states_is_so_for_the_other(silent, clear
     assert not len(pins.radii.value)  # nothing is open
 
 
-def test_what_is_open_of_a_hole_is_what_is_stated_of_it():
-    """Of one alone, of two together, and of those of which nothing is stated."""
+@pytest.mark.parametrize("diameter", [3.0, 0.1])
+def test_what_is_open_of_a_hole_is_what_is_stated_of_it(diameter):
+    """Of one alone, of two together; and of what is not stated, a tenth of the pin, or what a running fit may have."""
     data = four_bar(tight={"O2": ["base", "crank"]})
     data["joints"]["A"]["clearance"] = {"crank": ["0.01 mm", "0.05 mm"], "coupler": "0.04 mm"}
     data["joints"]["B"]["clearance"] = ["0.02 mm", "0.1 mm"]
+    data["joints"]["O4"]["pin_diameter"] = f"{diameter} mm"
     pins = forces_of(checked(data)).pins
     assert pins is not None
+    most = pytest.approx(max(0.1 * diameter, fit(RUNNING, diameter).bounds[1]))
     found = {one.holes: (one.low, one.value, one.high) for one in pins.radii.clearances}
-    assert found.pop((("O4", "base"),)) == (0.0, 0.0, pytest.approx(0.3))
+    assert found.pop((("O4", "base"),)) == (0.0, 0.0, most)  # of unknown length
     low, value, high = found.pop((("O4", "rocker"),))
-    assert (low, high) == (0.0, pytest.approx(0.3))
+    assert (low, high) == (0.0, most)
     assert 0.0 < value < 0.05  # a running fit
     assert found == {
         (("A", "crank"),): pytest.approx((0.01, 0.03, 0.05)),

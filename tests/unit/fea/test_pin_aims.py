@@ -87,6 +87,20 @@ def test_slopes_are_those_of_the_functions():
     assert pytest.approx(expected, rel=1e-4, abs=1e-5 * np.abs(expected).max()) == slopes.T
 
 
+def test_couples_and_thrusts_reach_as_far_either_way_as_any_draw_does():
+    """On the ground without a beam, and along all pins; nearly, since a search finds nearly all."""
+    _, forces = standing(1)
+    pins = forces.pins
+    rows = pins.rims.couples @ pins.rims.by_rims
+    rows = rows[np.abs(rows).max(axis=1) > pins.rims.noise]
+    shares = np.random.default_rng(5).integers(2, size=(300, len(pins.radii.value))).astype(float)
+    drawn, told = pins.solved(shares).v @ rows.T, pins.states @ rows.T
+    left = 0.02 * np.ptp(drawn, axis=0)
+    assert len(rows) > 2
+    assert (drawn.max(axis=0) <= told.max(axis=0) + left).all()
+    assert (drawn.min(axis=0) >= told.min(axis=0) - left).all()
+
+
 def test_the_state_in_which_a_link_bears_least_is_told():
     case, forces = standing(1)
     aims, owners = forces.pins.aims, tuple(dict.fromkeys(forces.pins.aims.ends.owners))
