@@ -14,6 +14,7 @@ from alula.fea.beam.piecewise import stacked
 from alula.fea.check import deciding
 from alula.fea.check.run import check_case
 from alula.fea.common.reason import reason
+from alula.fea.common.scatter import Scatter
 from alula.fea.links.fidelity import decide, decided_by_hand, hand_bands
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.refinement import START, Effort
@@ -144,6 +145,23 @@ def test_a_link_keeps_to_the_least_error_that_points_of_any_load_case_want(monke
         for name in wanted
     ]
     assert deciding._wanted(load_cases, {}) == {"crank": 0.1, "rocker": 0.05, "coupler": 0.4}
+
+
+def test_permanent_set_is_read_at_the_stated_load_whatever_else_it_may_be(monkeypatch):
+    """Growth near buckling may put all that a load may be above what is stated, and strength below it."""
+    ends = {
+        "crank": Scatter(low=1.2, high=1.5),
+        "rocker": Scatter(low=0.6, high=0.8),
+        "coupler": Scatter(low=0.9, high=1.1),
+    }
+    monkeypatch.setattr(deciding, "asks", lambda *_: True)
+    monkeypatch.setattr(deciding, "adds_to_set", lambda *_: True)
+    monkeypatch.setattr(deciding, "ends_of_load", lambda case, link, *_: ends[link])
+    one = SimpleNamespace(case=None, load_case="l", doubts_on=lambda *_: (None, None))
+    here = SimpleNamespace(case=None, load_cases=[one])
+    found = deciding.Deciding._set_factors(here, {"l": dict.fromkeys(ends)}, {"l": {}})
+    expected = {"crank": (1.0, 1.5), "rocker": (0.6, 1.0), "coupler": (0.9, 1.1)}
+    assert found == {("l", link): factors for link, factors in expected.items()}
 
 
 def test_where_solids_may_hold_the_linkage_a_solid_settles_doubts_too(monkeypatch):
