@@ -11,7 +11,7 @@ from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_case, read_text
-from alula.loads.case.forks import in_holes
+from alula.loads.case.forks import in_holes, outer_link
 from alula.loads.case.layers import slab
 from alula.loads.states.clearance import clearance
 
@@ -158,3 +158,18 @@ def test_without_layers_pins_of_forks_and_those_that_may_run_stand_in_their_hole
         link["layer"] = 0
     flat = checked(data | {"layer_spacing": "0 mm"})
     assert {name for name in flat.joints if in_holes(flat, name)} == ({"A", "B"} if forks else set())
+
+
+@pytest.mark.parametrize("links", [["coupler", "rocker"], ["rocker", "coupler"]])
+@pytest.mark.parametrize("kind", ["forks", "pairs"])
+def test_of_two_forks_or_pairs_at_a_joint_the_wider_is_the_outer_one(kind: str, links: list[str]) -> None:
+    """The rocker's of 4 mm lies in the coupler's, which is that of 5 mm between its cheeks or plates."""
+    data = in_one_layer(forks=kind == "forks")
+    if kind == "forks":
+        data["links"]["rocker"]["eyes"] = {"B": {"fork": "1.5 mm", "fork_depth": "16 mm", "fork_radius": "0.4 mm"}}
+    else:
+        data["parts"]["thin"] = data["parts"]["bar"] | {"thickness": "1.5 mm"}
+        data["links"]["rocker"] |= {"part": "thin", "count": 2, "apart": "2.5 mm"}
+        data["links"]["coupler"] |= {"count": 2, "apart": "9 mm"}
+    data["joints"]["B"]["links"] = links
+    assert outer_link(checked(data), "B") == "coupler"
