@@ -148,6 +148,9 @@ def test_least_is_left_where_deflection_and_play_together_take_most(order):
     assert gaps.least.place == (1.0, 2.0)
     left = gaps.least.left
     assert (left.low, left.value, left.high) == pytest.approx((1.0 - 0.24 - 0.6, 1.0 - 0.2, 1.0 - 0.18 + 0.6))
+    assert gaps._opens(gaps._freed)
+    more = [one + extra for one, extra in zip(gaps._freed, np.array([0.0, 0.25])[list(order)], strict=True)]
+    assert not gaps._opens(more)  # a remedy has to keep both open
 
 
 @pytest.mark.parametrize("tilt", [0.015, 0.003])
