@@ -192,6 +192,23 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
         assert tied.columns["arm"] == found.columns["arm"]
 
 
+def test_the_worst_offsets_lie_along_all_slopes_and_against_them(monkeypatch) -> None:
+    """Each joint at the rim of its play; one way is left out where the linkage cannot be assembled there."""
+    monkeypatch.setattr(doubt_of_play, "_reactions", lambda play, forces, here: here)
+    slopes = {"B": np.array([3.0, -4.0]), "C": np.zeros(2), "D": np.array([0.0, 2.0])}
+    along = {"B": [0.6, -0.8], "C": [0.0, 0.0], "D": [0.0, 1.0]}
+    for reached in ((1.0, -1.0), (-1.0,)):
+        play = SimpleNamespace(
+            loose=SimpleNamespace(offsets=lambda shares: shares),
+            at=lambda shares, reached=reached: shares if np.sign(shares["D"][1]) in reached else None,
+        )
+        found = [here for _, here in doubt_of_play._worst(play, None, slopes)]
+        for here, sign in zip(found, reached, strict=True):
+            assert {name: (sign * share).tolist() for name, share in here.items()} == {
+                name: pytest.approx(share) for name, share in along.items()
+            }
+
+
 @pytest.mark.parametrize(("ends", "shares"), [((-6.0, -1.0), (0.5, 3.0)), ((-1.0, 6.0), (0.0, 3.0))])
 def test_at_the_joint_of_the_drive_the_torque_counts_beside_the_force(ends, shares) -> None:
     """By its size, whichever way it turns; where play turns it about, from nothing on."""
