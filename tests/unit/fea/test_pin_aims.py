@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from alula.fea.pins import holes
+from alula.fea.pins.states import LEVELS
 from alula.fea.standing.case_statics import solve_case_statics
 from benchmarks import draws
 
@@ -99,6 +100,8 @@ def test_couples_and_thrusts_reach_as_far_either_way_as_any_draw_does():
     assert len(rows) > 2
     assert (drawn.max(axis=0) <= told.max(axis=0) + left).all()
     assert (drawn.min(axis=0) >= told.min(axis=0) - left).all()
+    alike = pins.solved(np.outer(LEVELS, np.ones(shares.shape[1]))).v  # which are told whatever they make of couples
+    assert all(np.abs(pins.states - one).max(axis=1).min() < 1e-9 for one in alike)
 
 
 def test_the_state_in_which_a_link_bears_least_is_told():
