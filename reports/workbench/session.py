@@ -357,7 +357,7 @@ class Session:
 
     def _look(self) -> None:
         """See what another program has done to the file: where nothing is unsaved here, its text is taken over."""
-        document, before = self.opened(), self._disk
+        document, before, saved = self.opened(), self._disk, self.saved
         try:
             text, access = case_text(self.path), None if writable(self.path) else "read-only"
         except (CaseError, OSError) as error:
@@ -373,7 +373,7 @@ class Session:
             elif text == document.text != self._stored or (text == self._stored and before in ("changed", "deleted")):
                 self._stand(text)
             self._disk = access if text == self._stored else "changed"
-        if self._disk != before:
+        if (self._disk, self.saved) != (before, saved):
             self._tell_document()
 
     async def _watched(self) -> None:

@@ -151,3 +151,43 @@ def test_how_long_the_element_of_a_pin_is_changes_no_stability(monkeypatch, time
     plain = [*factors()]
     monkeypatch.setattr(build, "ALONG_PINS", times * build.ALONG_PINS)
     assert [*factors()] == pytest.approx(plain, rel=1e-4)
+
+
+def test_how_rigid_the_element_of_a_pin_is_hides_no_couple(monkeypatch):
+    """What counts as none by rounding goes with what bends: pins between layers, or links where no pin does."""
+    force = ("0 N", "-10 N", "2 N")
+
+    def noises():
+        for forks in (True, False):
+            pins = solve_case_statics(with_clearances(HOLES[0], force, forks=forks)).forces["l"].pins
+            yield pins.rims.noise, pins.aims.count
+
+    plain = [*noises()]
+    assert all(count > 0 for _, count in plain)
+    monkeypatch.setattr(build, "RIGID", 1e3 * build.RIGID)
+    assert [*noises()] == plain
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_dyad_without_load_on_the_pin_of_a_fork_changes_no_force(first):
+    """Crank, coupler and rod have one pin in one layer, whichever of its two joints comes first; one hole of three."""
+    force = ("0 N", "-10 N", "2 N")
+    data = in_one_layer()
+    data["load_cases"]["l"]["forces"][0]["force"] = list(force)
+    for joint in data["joints"].values():
+        joint["clearance"] = dict.fromkeys(joint["links"], "0.1 mm")
+    alone = solve_case_statics(checked(data)).forces["l"].reactions.joints
+    data["links"]["base"]["points"]["D"] = ["20 mm", "-60 mm"]
+    for link, points in {"rod": ("A", "C"), "arm": ("D", "C")}.items():
+        data["links"][link] = {"part": "bar", "points": {points[0]: ["0 mm", "0 mm"], points[1]: ["55 mm", "0 mm"]}}
+    data["pose"]["near"] |= {"rod": "-20 deg", "arm": "60 deg"}
+    further = {"A2": ["crank", "rod"], "C": ["rod", "arm"], "D": ["base", "arm"]}
+    dyad = {name: {"links": pair, "pin_diameter": "3 mm", "clearance": WIDE["base"]} for name, pair in further.items()}
+    dyad["A2"] |= {"points": ["A", "A"], "clearance": dict.fromkeys(["crank", "rod"], "0.1 mm")}
+    data["joints"] = dyad | data["joints"] if first else data["joints"] | dyad
+    forces = solve_case_statics(checked(data)).forces["l"]
+    for name, joint in forces.reactions.joints.items():
+        assert joint.wrench == pytest.approx(alone[name].wrench if name in alone else 0.0, abs=1e-3)
+    assert forces.pins is not None
+    [shared] = [set(hole.joints) for hole in forces.pins.rims.holes if len(hole.joints) > 1]
+    assert shared == {"A", "A2"}

@@ -1,15 +1,17 @@
 """The gap that deflection and tilting pins leave between layers: the frame's own axis, rigid links, and verdicts."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from tilting_pins import LOOSE, TIGHT, checked, four_bar, rigid_motion
 
 from alula.fea.check.run import check_case
+from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import CheckOutcome, Quantity, Verdict
 from alula.fea.standing.joint_forces import solved_frame
-from alula.fea.whole.layer_gaps import LayerGaps, Raised, overlaps
+from alula.fea.whole.layer_gaps import LayerGaps, Overlap, Raised, overlaps
 from alula.loads.states.actions import acting_loads
 from alula.loads.states.clearance import assembly
 from alula.reports.sentences import told
@@ -131,11 +133,31 @@ def test_what_would_keep_a_gap_open_does_so_where_it_is_done():
     assert "deflection alone may close it" in told(gap("4.001 mm", play="0.1 mm").reason)
 
 
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_least_is_left_where_deflection_and_play_together_take_most(order):
+    """Of two overlaps: that of the wider gap, at a corner where neither deflection nor play of a joint is largest."""
+    gaps = LayerGaps(case=checked(four_bar()), load_case="l", moved=SimpleNamespace(of_loads=()), assembly=None)
+    places = np.array([[0.0, 0.0], [1.0, 2.0], [3.0, 4.0]])
+    wide = Overlap(lower="crank", upper="coupler", gap=1.0, places=places)
+    near = Overlap(lower="rocker", upper="coupler", gap=0.5, places=places)
+    closed = [np.outer([1.0, 0.9, 1.2], one) for one in ([0.3, 0.2, 0.0], [0.01, 0.02, 0.03])]
+    freed = [np.array([[0.0, 0.3, 0.1], [0.1, 0.3, 0.4]]), np.full((2, 3), 0.01)]
+    told = {"_overlaps": [wide, near], "_closed": closed, "_freed": freed}
+    vars(gaps).update({name: [each[k] for k in order] for name, each in told.items()}, _soft=Scatter())
+    assert gaps.least.names == ("crank", "coupler")
+    assert gaps.least.place == (1.0, 2.0)
+    left = gaps.least.left
+    assert (left.low, left.value, left.high) == pytest.approx((1.0 - 0.24 - 0.6, 1.0 - 0.2, 1.0 - 0.18 + 0.6))
+    assert gaps._opens(gaps._freed)
+    more = [one + extra for one, extra in zip(gaps._freed, np.array([0.0, 0.25])[list(order)], strict=True)]
+    assert not gaps._opens(more)  # a remedy has to keep both open
+
+
 @pytest.mark.parametrize("tilt", [0.015, 0.003])
 def test_heads_keep_links_apart_by_no_more_than_rigid_ones(tilt):
     data, free, rigid = four_bar(play="0.1 mm", tight=TIGHT), [], []
     for joint in data["joints"].values():
-        joint["heads"] = {"diameter": "6 mm", "gap": f"{6.0 * tilt} mm"}
+        joint["heads"] = {"diameter": "6 mm", "gap": ["0 mm", f"{6.0 * tilt} mm"]}  # at the most that it may be
     case = checked(data)
     frame, _ = solved_frame(case, case.solve_pose(), (), case.pinned_drive)
     gaps = LayerGaps(case=case, load_case="l", moved=None, assembly=assembly(case))  # what it becomes is not asked
@@ -150,6 +172,9 @@ def test_heads_keep_links_apart_by_no_more_than_rigid_ones(tilt):
 def test_deflection_that_closes_the_gap_fails_and_goes_with_the_load():
     near, twice = gap("4.5 mm"), gap("4.5 mm", force="-40 N")
     assert 0.5 - twice.value.value == pytest.approx(2.0 * (0.5 - near.value.value), rel=1e-6)
+    for one in (near, twice):  # of what deflection takes, as the modulus may be
+        assert 0.9 * (0.5 - one.value.value) > 0.5 - one.value.high > 0.0
+        assert 1.1 * (0.5 - one.value.value) < 0.5 - one.value.low
     closed = gap("4.0002 mm")
     assert closed.verdict is Verdict.FAIL
     assert closed.value.high < 0.0

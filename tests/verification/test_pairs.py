@@ -205,6 +205,41 @@ def test_two_plates_bend_half_as_far_and_weigh_twice():
     assert rough_masses(cases[0])["arm"] == pytest.approx(2.0 * rough_masses(cases[1])["arm"])
 
 
+def test_the_arm_of_a_pair_bends_half_as_far():
+    """From M to Q, at both of which dyads hang that bear nothing."""
+    moved = []
+    ends = {"M": ("rod", "strut", mm(30, -60)), "Q": ("rod-2", "strut-2", mm(30, 85))}
+    links = {
+        "base": {"ground": True, "points": {"A": mm(0)} | {f"G{at}": place for at, (*_, place) in ends.items()}},
+        "arm": {"part": "plate", "points": {"A": mm(0), "B": mm(60), "M": mm(30), "Q": mm(30, 25)}, "arms": {"Q": "M"}},
+    }
+    joints = {"A": ["base", "arm"]}
+    for at, (rod, strut, _) in ends.items():
+        links[rod] = {"part": "bar", "points": {at: mm(0), f"R{at}": mm(40)}}
+        links[strut] = {"part": "bar", "points": {f"G{at}": mm(0), f"R{at}": mm(40)}}
+        joints |= {at: ["arm", rod], f"R{at}": [rod, strut], f"G{at}": ["base", strut]}
+    near = {"rod": "-45 deg", "strut": "45 deg", "rod-2": "45 deg", "strut-2": "-45 deg"}
+    for plates_of in ({"count": 2, "apart": f"{APART} mm"}, {}):
+        case = validate(
+            {
+                "schema_version": 1,
+                "title": "an arm across two plates",
+                "links": links | {"arm": links["arm"] | plates_of},
+                "joints": {name: {"links": pair, "pin_diameter": f"{PIN} mm"} for name, pair in joints.items()},
+                "pose": {"coordinate": "arm", "angle": "0 deg", "near": near},
+                "drive": {"link": "arm", "joint": "A"},
+                "parts": {"plate": BAR | {"thickness": f"{PLATE} mm"}, "bar": BAR | {"thickness": f"{EYE} mm"}},
+                "load_cases": {"l": {"forces": [{"link": "arm", "at": "Q", "force": ["40 N", "0 N"]}]}},
+            }
+        )
+        frame = build_frame(case, case.solve_pose(), stated_loads(case, case.load_cases["l"]), held=case.pinned_drive)
+        foot, tip = solve_frame(frame.model).displacements[[frame.points["arm", name] for name in "MQ"]]
+        moved.append((foot, tip, tip[:2] - foot[:2] - 25.0 * foot[5] * np.array([-1.0, 0.0])))
+    for pair, plate in zip(*moved, strict=True):
+        assert pair == pytest.approx(plate / 2.0, abs=1e-9)
+    assert abs(moved[1][2][0]) > 1e-3  # the arm itself bends
+
+
 def test_what_a_pair_carries_weighs_once():
     case = pulled(load_case={"own_weight": False}, top={"carried": [{"link": "arm", "mass": "20 g", "at": "B"}]})
     bare = part_mass(pulled(arm={"count": 1, "apart": None}), "arm").mass

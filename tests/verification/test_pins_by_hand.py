@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tilting_pins import checked
+from tilting_pins import checked, four_bar
 
 from alula.fea.asked.asked import asked
 from alula.fea.check.run import check_case
@@ -29,11 +29,12 @@ from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject
 from alula.fea.judging.bearing import bearing_outcome, in_eyes, pressing
 from alula.fea.outcomes.pins import pin_growth, stress_at
-from alula.fea.pins.clearances import loose_holes
+from alula.fea.pins.clearances import HoleClearance, loose_holes, radii_of
 from alula.fea.pins.states import PinStates
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import JointForces
 from alula.geometry.base.errors import CaseError
+from alula.geometry.joints.fits import RUNNING, fit
 from alula.loads.case.case import Case
 from alula.loads.case.layers import pin_stretches
 from alula.loads.records.check_spec import BearingCheck
@@ -432,15 +433,51 @@ def test_pulled_against_each_other_the_middle_link_bears_what_its_tilt_leaves(jo
     assert sum(found.values()) == pytest.approx(math.copysign(2.0 * 20.0 * HIGH, sum(found.values())), rel=5e-3)
 
 
+@pytest.mark.parametrize("clearances", [{"crank": "0.2 mm"}, {"crank": "0 mm", "upper": "0.1 mm", "lower": "0.2 mm"}])
 @pytest.mark.parametrize("silent", ["A", "A2"])
-def test_a_hole_that_one_joint_of_a_pin_states_is_so_for_the_other(silent):
+def test_a_hole_that_one_joint_of_a_pin_states_is_so_for_the_other(silent, clearances):
     """The crank's hole is one: where the other joint of the pin says nothing of it, it is no running fit."""
-    both, one = (three(ONE_PIN[1], {"crank": "0.2 mm"}, lower=-20.0, silent=name) for name in ("", silent))
+    both, one = (three(ONE_PIN[1], clearances, lower=-20.0, silent=name) for name in ("", silent))
     assert borne_by(one) == pytest.approx(borne_by(both), rel=1e-6)
     assert loose_holes(one, silent) == loose_holes(both, silent)
     pins = forces_of(one).pins
     assert pins is not None
     assert not len(pins.radii.value)  # nothing is open
+
+
+@pytest.mark.parametrize("diameter", [3.0, 0.1])
+def test_what_is_open_of_a_hole_is_what_is_stated_of_it(diameter):
+    """Of one alone, of two together; and of what is not stated, a tenth of the pin, or what a running fit may have."""
+    data = four_bar(tight={"O2": ["base", "crank"]})
+    data["joints"]["A"]["clearance"] = {"crank": ["0.01 mm", "0.05 mm"], "coupler": "0.04 mm"}
+    data["joints"]["B"]["clearance"] = ["0.02 mm", "0.1 mm"]
+    data["joints"]["O4"]["pin_diameter"] = f"{diameter} mm"
+    pins = forces_of(checked(data)).pins
+    assert pins is not None
+    most = pytest.approx(max(0.1 * diameter, fit(RUNNING, diameter).bounds[1]))
+    found = {one.holes: (one.low, one.value, one.high) for one in pins.radii.clearances}
+    assert found.pop((("O4", "base"),)) == (0.0, 0.0, most)  # of unknown length
+    low, value, high = found.pop((("O4", "rocker"),))
+    assert (low, high) == (0.0, most)
+    assert 0.0 < value < 0.05  # a running fit
+    assert found == {
+        (("A", "crank"),): pytest.approx((0.01, 0.03, 0.05)),
+        (("A", "coupler"),): pytest.approx((0.04, 0.04, 0.04)),
+        (("B", "coupler"), ("B", "rocker")): pytest.approx((0.02, 0.06, 0.1)),
+    }
+
+
+def test_of_a_clearance_of_two_holes_the_known_one_leaves_the_rest():
+    """Least less largest, and largest less least: 0.1 to 0.2 less 0.02 to 0.05."""
+    known = HoleClearance(holes=(("A2", "crank"),), low=0.02, value=0.03, high=0.05)
+    both = HoleClearance(holes=(("A", "crank"), ("A", "lower")), low=0.1, value=0.15, high=0.2)
+    for stated in ([known, both], [both, known]):
+        radii = radii_of(stated, [[("A", "crank"), ("A2", "crank")], [("A", "lower")]])
+        found = {one.holes: (one.low, one.value, one.high) for one in radii.clearances}
+        assert found == {
+            (("A2", "crank"),): (0.02, 0.03, 0.05),
+            (("A", "lower"),): pytest.approx((0.05, 0.12, 0.18)),
+        }
 
 
 def test_clearances_of_two_joints_on_one_pin_leave_open_which_holes_have_them():

@@ -118,6 +118,22 @@ def test_pins_of_forks_may_run_although_no_link_lies_in_a_layer(tight):
     assert (found.value.low > 0.5 * found.value.value) == tight
 
 
+def test_a_linkage_with_forks_swings_on_a_stiff_drive_as_on_a_rigid_one():
+    """Where its drive gives it is let go, with the pins of its forks in their holes all the same: one runs, at B."""
+    found = []
+    for drive in ({}, {"stiffness": "1000 N*m/rad"}, {"stiffness": "1 N*m/rad"}):
+        data = in_one_layer(checks={"f": {"type": "frequency", "minimum": 2.0}}, load_cases={"l": TURNING})
+        data["materials"]["m"] |= PLASTIC
+        data["joints"]["A"]["tight_in"], data["joints"]["B"]["tight_in"] = ["crank", "coupler"], "coupler"
+        data["drive"] |= drive
+        outcomes = frequency_outcomes(asked_frequencies(checked(data)))
+        found += [one.value for one in outcomes if one.subject == LINKAGE]
+    rigid, stiff, soft = found
+    assert (stiff.low, stiff.value) == pytest.approx((rigid.low, rigid.value), rel=1e-2, abs=1e-3)
+    assert soft.value < 0.9 * stiff.value
+    assert 0.0 < rigid.low < 0.7 * rigid.value
+
+
 def test_heads_without_a_gap_leave_no_hinge():
     """Faces that touch on both sides hold a link's tilt; with any gap, of which its range may be, it tilts in it."""
     data = four_bar(play="0.1 mm")

@@ -114,3 +114,12 @@ def test_what_is_not_proven_is_no_answer(monkeypatch):
     monkeypatch.setattr(programme, "PACES", ((0.1, 0.995, 3),))
     with pytest.raises(CannotRunError, match="how pins stand in their holes was not found"):
         least_in_discs(K, np.array([0.0 * g, g]), np.full((2, DISCS), 0.1))
+
+
+@pytest.mark.parametrize("far", [0, 1, 2])
+def test_one_state_of_several_that_is_not_proven_is_enough_to_refuse_all(monkeypatch, far):
+    K, g, radii = np.diag([1.0, 2.0]), np.array([1.0, 0.5]), np.array([[0.1], [0.2], [0.3]])
+    assert (least_in_discs(K, g, radii).gap < 1e-6).all()
+    monkeypatch.setattr(programme, "_gap", lambda *_: 1e-3 * np.eye(3)[far])
+    with pytest.raises(CannotRunError, match="how pins stand in their holes was not found"):
+        least_in_discs(K, g, radii)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import eye_link
 import pytest
@@ -12,9 +13,12 @@ from alula.fea.beam.critical_locations import critical_locations, shoulder_facto
 from alula.fea.beam.piecewise import stacked
 from alula.fea.check import deciding
 from alula.fea.check.run import check_case
+from alula.fea.common.reason import reason
+from alula.fea.common.scatter import Scatter
 from alula.fea.links.fidelity import decide, decided_by_hand, hand_bands
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.refinement import START, Effort
+from alula.fea.solid.layers import Layers, in_worst_direction
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.parts.part import HoleRow
 from alula.loads.records.bearing import CONTACT_SHORTFALL
@@ -93,6 +97,71 @@ def test_what_doubts_leave_open_by_hand_is_left_to_a_solid_that_may_decide(ends,
     assert (decided_by_hand(bare, [hand], task.open_ranges)[0] is not None) is by_hand
     less = replace(task, open_ranges={"mixed": OpenRanges(limits={"von_mises": ((39.0, 40.0),)})})  # so of its solid
     assert (decided_by_hand(less, [hand], task.open_ranges)[0] is not None) is (ends[0] > 15.0)
+
+
+def two_loads(*, light_first, **changed):
+    """The task under its loads and under half of them, and what is known of both by hand."""
+    task = replace(eye_link.task(60.0), **changed)
+    [heavy] = task.loads
+    light = replace(heavy, name="light", pins=tuple(replace(pin, wrench=pin.wrench / 2.0) for pin in heavy.pins))
+    task = replace(task, loads=(light, heavy) if light_first else (heavy, light))
+    return task, [hand_bands(task, one, eye_link.beam(replace(task, loads=(one,)))) for one in task.loads]
+
+
+@pytest.mark.parametrize("light_first", [True, False])
+def test_what_is_told_of_a_link_that_is_clear_is_the_worst_of_its_loads(light_first):
+    task, hands = two_loads(light_first=light_first)
+    worst = hands[1 if light_first else 0].von_mises
+    decision, _ = decided_by_hand(task, hands)
+    assert decision.why["ends"] == (worst.low, worst.high)
+
+
+@pytest.mark.parametrize("light_first", [True, False])
+def test_layers_are_open_by_hand_where_any_limit_is_reached_under_any_loads(light_first):
+    """At the least that scatter makes of it, of the ranges of the loads where causes have some."""
+    layers = Layers(normal=(0.0, 0.0, 1.0), across=20.0, between=15.0)
+    task, hands = two_loads(light_first=light_first, layers=layers)
+    most = max(in_worst_direction(one.principal.high, one.von_mises.high, 20.0 / 15.0) for one in hands)
+    low, near, far = (0.6 * most, 1.1 * most), (0.9 * most, 1.1 * most), (1.1 * most, 1.2 * most)
+
+    def is_open(limits, ranges=None, of=task):
+        every = {name: OpenRanges(limits={"layers": one}) for name, one in (ranges or {}).items()}
+        decision, why = decided_by_hand(replace(of, layer_limits=limits), hands, every)
+        assert decision or why == reason("layers_open_by_hand")
+        return decision is None
+
+    assert [is_open(one) for one in ((far,), (far, near), (near, far), (low,))] == [False, True, True, True]
+    assert [is_open((far,), {"mixed": (one,)}) for one in (far, near)] == [False, True]
+    assert not is_open((near,), {"mixed": (far,)})  # the lighter loads stay clear of what the task says
+    assert is_open((far,), of=replace(task, layers=replace(layers, between=None)))
+
+
+def test_a_link_keeps_to_the_least_error_that_points_of_any_load_case_want(monkeypatch):
+    wanted = {"a": {"crank": 0.1, "rocker": 0.3}, "b": {"crank": 0.2, "rocker": 0.05}, "c": {"coupler": 0.4}}
+    monkeypatch.setattr(deciding, "asked", lambda *_, **__: [True])
+    monkeypatch.setattr(deciding, "meshes_to_refine", lambda case, name, *_: wanted[name])
+    load_cases = [
+        SimpleNamespace(case=None, load_case=name, moved=None, links=lambda _: None, free=None, forces=None)
+        for name in wanted
+    ]
+    assert deciding._wanted(load_cases, {}) == {"crank": 0.1, "rocker": 0.05, "coupler": 0.4}
+
+
+def test_permanent_set_is_read_at_the_stated_load_whatever_else_it_may_be(monkeypatch):
+    """Growth near buckling may put all that a load may be above what is stated, and strength below it."""
+    ends = {
+        "crank": Scatter(low=1.2, high=1.5),
+        "rocker": Scatter(low=0.6, high=0.8),
+        "coupler": Scatter(low=0.9, high=1.1),
+    }
+    monkeypatch.setattr(deciding, "asks", lambda *_: True)
+    monkeypatch.setattr(deciding, "adds_to_set", lambda *_: True)
+    monkeypatch.setattr(deciding, "ends_of_load", lambda case, link, *_: ends[link])
+    one = SimpleNamespace(case=None, load_case="l", doubts_on=lambda *_: (None, None))
+    here = SimpleNamespace(case=None, load_cases=[one])
+    found = deciding.Deciding._set_factors(here, {"l": dict.fromkeys(ends)}, {"l": {}})
+    expected = {"crank": (1.0, 1.5), "rocker": (0.6, 1.0), "coupler": (0.9, 1.1)}
+    assert found == {("l", link): factors for link, factors in expected.items()}
 
 
 def test_where_solids_may_hold_the_linkage_a_solid_settles_doubts_too(monkeypatch):

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from alula.fea.pins import holes
+from alula.fea.pins.states import LEVELS
 from alula.fea.standing.case_statics import solve_case_statics
 from benchmarks import draws
 
@@ -64,6 +66,33 @@ def test_ends_of_beams_bear_what_joint_forces_say(seed):
         assert abs(part[3]) == pytest.approx(abs(found["link", "coupler"][0][3]), rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "apart"),
+    [
+        (-0.1, 0.3, True),
+        (-0.6, 0.7, False),  # eyes that overlap
+        (-0.1, 1.1, False),  # and beyond the middle of the other
+        (0.1, 0.3, False),  # holes on one side of their links
+        (-0.3, -0.1, False),
+    ],
+)
+def test_a_pin_bends_between_the_faces_that_look_at_each_other(monkeypatch, low, high, apart):
+    """Holes of no two links are alike, and reach further up than down; pins rise and fall."""
+    case, forces = standing(1)
+    frame, height, signs = forces.frame, case.linkage.heights, set()
+    least = min(abs(case.linkage.rise(name)) for name in frame.pin_eyes)
+    rims = {link: (low * least - 0.01 * k, high * least + 0.02 * k) for k, link in enumerate(height)}
+    monkeypatch.setattr(holes, "known_hole", lambda case, joint, link: rims[link])
+    found = holes.faces_of(case, frame)
+    for name, ((one, _), (other, _)) in frame.pin_eyes.items() if apart else ():
+        up = height[other] - height[one]
+        near, far = (rims[one][1], rims[other][0]) if up > 0.0 else (rims[one][0], rims[other][1])
+        assert found[name] == pytest.approx((near / up, 1.0 + far / up))
+        signs.add(np.sign(up))
+    assert signs == ({-1.0, 1.0} if apart else set())
+    assert apart or not found
+
+
 def test_slopes_are_those_of_the_functions():
     _, forces = standing(11)
     aims, v = forces.pins.aims, np.random.default_rng(0).normal(scale=0.01, size=(1, len(forces.pins.value)))
@@ -72,6 +101,22 @@ def test_slopes_are_those_of_the_functions():
     step = 1e-7 * np.eye(v.shape[1])
     expected = (aims.values(v + step) - aims.values(v - step)) / 2e-7
     assert pytest.approx(expected, rel=1e-4, abs=1e-5 * np.abs(expected).max()) == slopes.T
+
+
+def test_couples_and_thrusts_reach_as_far_either_way_as_any_draw_does():
+    """On the ground without a beam, and along all pins; nearly, since a search finds nearly all."""
+    _, forces = standing(1)
+    pins = forces.pins
+    rows = pins.rims.couples @ pins.rims.by_rims
+    rows = rows[np.abs(rows).max(axis=1) > pins.rims.noise]
+    shares = np.random.default_rng(5).integers(2, size=(300, len(pins.radii.value))).astype(float)
+    drawn, told = pins.solved(shares).v @ rows.T, pins.states @ rows.T
+    left = 0.02 * np.ptp(drawn, axis=0)
+    assert len(rows) > 2
+    assert (drawn.max(axis=0) <= told.max(axis=0) + left).all()
+    assert (drawn.min(axis=0) >= told.min(axis=0) - left).all()
+    alike = pins.solved(np.outer(LEVELS, np.ones(shares.shape[1]))).v  # which are told whatever they make of couples
+    assert all(np.abs(pins.states - one).max(axis=1).min() < 1e-9 for one in alike)
 
 
 def test_the_state_in_which_a_link_bears_least_is_told():

@@ -13,7 +13,7 @@ from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.sought import LEFT
 from alula.fea.common.verdict import Verdict
-from alula.fea.outcomes.pins import PinStress, pin_stress, shared_stress, stress_at
+from alula.fea.outcomes.pins import PinStress, crossing, pin_stress, shared_stress, stress_at
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import Ring
 from alula.geometry.materials.material import library
@@ -249,6 +249,15 @@ def test_a_thicker_pin_of_drawn_wire_is_weaker(diameter, least):
 def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():
     with pytest.raises(CaseError, match=r"^joints\.A\.pin_diameter: 12 mm is thicker than .*; set at most 11\.1\d* mm"):
         library()["steel-wire"].drawn("joints.A.pin_diameter", 12.0)
+
+
+@pytest.mark.parametrize("forces", [(10.0, 30.0, 20.0), (30.0, 20.0, 10.0)])
+def test_between_eyes_the_least_force_of_all_states_crosses_at_least(forces):
+    case = read_case(WING)
+    every = [reaction(0.6 * force, 0.8 * force, 0, 0, 0, 0) for force in forces]
+    least = crossing(case, "A", [reaction(6, 8, 0, 0, 0, 0)])
+    assert crossing(case, "A", every) == pytest.approx(least)
+    assert least > 0.0
 
 
 @pytest.mark.parametrize("worst", [0, 1, 2])

@@ -16,6 +16,7 @@ from alula.fea.common.verdict import Verdict
 from alula.fea.doubts import play_doubt as doubt_of_play
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.loads.case.case_file import validate
+from alula.loads.states.play import Span
 from alula.reports.sections.play import play_record
 from alula.reports.sentences import told as in_words
 
@@ -182,3 +183,37 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
     assert (stress.low, stress.high) == pytest.approx((0.25, 1.9))
     assert (displacement.low, displacement.high) == pytest.approx((0.3, 1.7))
     assert (found.columns["arm"].low, found.columns["arm"].high) == pytest.approx((0.0, 1.0 + math.hypot(1, 3) + 2.0))
+    # Between layers couples go with the force of that pin of the link which play changes most, whichever it is.
+    case.layered, case.linkage = True, SimpleNamespace(joints_of=lambda link: ["B", "C"])
+    for one, other in (("B", "C"), ("C", "B")):
+        play.forces = {one: Span(value=2.0, low=1.8, high=2.2), other: Span(value=1.0, low=0.1, high=3.0)}
+        tied = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
+        assert (tied.stress["arm"].low, tied.stress["arm"].high) == pytest.approx((0.1, 3.0))
+        assert tied.columns["arm"] == found.columns["arm"]
+
+
+def test_the_worst_offsets_lie_along_all_slopes_and_against_them(monkeypatch) -> None:
+    """Each joint at the rim of its play; one way is left out where the linkage cannot be assembled there."""
+    monkeypatch.setattr(doubt_of_play, "_reactions", lambda play, forces, here: here)
+    slopes = {"B": np.array([3.0, -4.0]), "C": np.zeros(2), "D": np.array([0.0, 2.0])}
+    along = {"B": [0.6, -0.8], "C": [0.0, 0.0], "D": [0.0, 1.0]}
+    for reached in ((1.0, -1.0), (-1.0,)):
+        play = SimpleNamespace(
+            loose=SimpleNamespace(offsets=lambda shares: shares),
+            at=lambda shares, reached=reached: shares if np.sign(shares["D"][1]) in reached else None,
+        )
+        found = [here for _, here in doubt_of_play._worst(play, None, slopes)]
+        for here, sign in zip(found, reached, strict=True):
+            assert {name: (sign * share).tolist() for name, share in here.items()} == {
+                name: pytest.approx(share) for name, share in along.items()
+            }
+
+
+@pytest.mark.parametrize(("ends", "shares"), [((-6.0, -1.0), (0.5, 3.0)), ((-1.0, 6.0), (0.0, 3.0))])
+def test_at_the_joint_of_the_drive_the_torque_counts_beside_the_force(ends, shares) -> None:
+    """By its size, whichever way it turns; where play turns it about, from nothing on."""
+    force, torque = Span(value=4.0, low=3.6, high=4.4), Span(value=-2.0, low=ends[0], high=ends[1])
+    play = SimpleNamespace(clearances={"O": 0.1}, forces={"O": force}, effort=torque)
+    alone, driven = (doubt_of_play.play_at_joint(play, "O", driven=one) for one in (False, True))
+    assert (alone.low, alone.high) == pytest.approx((0.9, 1.1))
+    assert (driven.low, driven.high) == pytest.approx(shares)

@@ -34,6 +34,15 @@ def test_a_file_is_written_over_what_it_is_meant_to_be_written_over_alone(tmp_pa
     assert file.read_bytes() == b"after"
 
 
+def test_a_file_that_is_gone_is_not_written_over_what_it_held(tmp_path):
+    file = tmp_path / "one.txt"
+    with pytest.raises(FileExistsError, match="another program has just changed"):
+        write_whole(file, b"after", over=b"before")
+    assert not list(tmp_path.iterdir())
+    write_whole(file, b"after", over=b"")
+    assert file.read_bytes() == b"after"
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="files are exchanged in one step on Linux alone")
 @pytest.mark.parametrize("way", ["in place", "by a new file"])
 def test_what_is_written_between_the_last_look_and_the_exchange_stays(tmp_path, monkeypatch, way):

@@ -5,11 +5,13 @@ import re
 import pytest
 from edited_cases import PLANAR
 from edited_cases import edited as edited_case
+from tilting_pins import checked, in_one_layer
 
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import built_in_cases, read_case, read_text
+from alula.loads.case.forks import in_holes, outer_link
 from alula.loads.case.layers import slab
 from alula.loads.states.clearance import clearance
 
@@ -121,3 +123,53 @@ def test_what_does_not_fit_is_refused(changes: list[str], sentence: str) -> None
     with pytest.raises(CaseError) as told:
         edited(changes)
     assert re.search(sentence, str(told.value))
+
+
+@pytest.mark.parametrize("joint", ["O2", "A", "B", "O4"])
+@pytest.mark.parametrize("entry", ["tight_in", "heads"])
+def test_without_layers_a_fork_alone_tells_in_which_links_its_pin_is_tight(joint: str, entry: str) -> None:
+    """The coupler has two, at A and B; heads stand outside of a fork, and no joint has them."""
+    data = in_one_layer()
+    links = data["joints"][joint]["links"]
+    data["joints"][joint][entry] = links if entry == "tight_in" else {"diameter": "6 mm", "gap": "0.1 mm"}
+    if entry == "tight_in" and joint in "AB":
+        assert checked(data).joints[joint].tight_in == tuple(links)
+        return
+    with pytest.raises(CaseError, match=rf"^joints\.{joint}\.{entry}: it has a meaning only where links lie in layers"):
+        checked(data)
+
+
+STATED = {
+    "O2": {"base": "0 mm", "crank": ["0 mm", "0.1 mm"]},  # it may run in one of its holes
+    "A": {"crank": "0 mm", "coupler": "0 mm"},
+    "B": {"coupler": "0.1 mm", "rocker": "0 mm"},
+}
+
+
+@pytest.mark.parametrize(("forks", "stand"), [(False, {"O2", "B"}), (True, {"O2", "A", "B"})])
+def test_without_layers_pins_of_forks_and_those_that_may_run_stand_in_their_holes(forks: bool, stand: set[str]) -> None:
+    """Of O4 nothing is stated. Where a spacing of 0 takes layers back, clearances are of play in the plane."""
+    data = in_one_layer(forks=forks)
+    for name, stated in STATED.items():
+        data["joints"][name]["clearance"] = stated
+    case = checked(data)
+    assert {name for name in case.joints if in_holes(case, name)} == stand
+    for link in data["links"].values():
+        link["layer"] = 0
+    flat = checked(data | {"layer_spacing": "0 mm"})
+    assert {name for name in flat.joints if in_holes(flat, name)} == ({"A", "B"} if forks else set())
+
+
+@pytest.mark.parametrize("links", [["coupler", "rocker"], ["rocker", "coupler"]])
+@pytest.mark.parametrize("kind", ["forks", "pairs"])
+def test_of_two_forks_or_pairs_at_a_joint_the_wider_is_the_outer_one(kind: str, links: list[str]) -> None:
+    """The rocker's of 4 mm lies in the coupler's, which is that of 5 mm between its cheeks or plates."""
+    data = in_one_layer(forks=kind == "forks")
+    if kind == "forks":
+        data["links"]["rocker"]["eyes"] = {"B": {"fork": "1.5 mm", "fork_depth": "16 mm", "fork_radius": "0.4 mm"}}
+    else:
+        data["parts"]["thin"] = data["parts"]["bar"] | {"thickness": "1.5 mm"}
+        data["links"]["rocker"] |= {"part": "thin", "count": 2, "apart": "2.5 mm"}
+        data["links"]["coupler"] |= {"count": 2, "apart": "9 mm"}
+    data["joints"]["B"]["links"] = links
+    assert outer_link(checked(data), "B") == "coupler"

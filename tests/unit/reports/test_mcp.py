@@ -1,12 +1,15 @@
 """``alula mcp``: what a program sees that speaks the protocol, by the package's own client."""
 
 import asyncio
+import functools
 import json
 import os
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import tomlkit
@@ -15,6 +18,7 @@ from mcp import Client
 from mcp.client.stdio import StdioServerParameters
 
 import alula
+from alula import server
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import folder_of
 from alula.server import TOOLS, made, serve
@@ -62,6 +66,35 @@ def test_a_tool_is_a_function_of_the_face(home):
         assert not {"progress", "threads"} & tool.input_schema["properties"].keys()
     assert tools[0].input_schema["required"] == ["case"]
     assert {"fidelity", "accuracy", "values"} < tools[0].input_schema["properties"].keys()
+    (drawn,), _ = asked(made(home, 1), ("statics", {"case": CASE, "matrix": True}))
+    assert "[A]" in drawn.structured_content["told"]
+
+
+def test_tables_have_no_number_that_json_has_not(monkeypatch):
+    rows = [{"value": end} for end in (float("-inf"), float("inf"), float("nan"), -3.0)]
+    answer = server._answer(SimpleNamespace(table=lambda: rows))
+    assert [row["value"] for row in answer["table"]] == [None, None, None, -3.0]
+
+
+def test_questions_that_come_at_once_are_answered_one_after_the_other(home, monkeypatch):
+    """The mesher knows one model at a time."""
+    plain, within, most = alula.materials, [], []
+
+    @functools.wraps(plain)
+    def seen(*stated, **named):
+        within.append(stated)
+        most.append(len(within))
+        time.sleep(0.1)
+        within.pop()
+        return plain(*stated, **named)
+
+    async def ask():
+        async with Client(made(home, 1)) as client:
+            return await asyncio.gather(*(client.call_tool("materials", {"name": "steel-s235"}) for _ in range(3)))
+
+    monkeypatch.setattr(alula, "materials", seen)
+    assert not any(answer.is_error for answer in asyncio.run(ask()))
+    assert most == [1, 1, 1]
 
 
 def test_answers_are_those_of_the_face(home):

@@ -128,6 +128,11 @@ def test_what_balances_by_itself_is_drawn_where_it_stands():
     ("there", "instead", "told"),
     [
         ("[drive]", "[drive]", "load_cases: this entry is missing"),
+        (
+            '[links.coupler]\npart = "bar"',
+            "[links.coupler]",
+            "load_cases: this entry is missing",
+        ),  # no weight is asked for
         ('joint = "O2"', 'joint = "O9"', "drive.joint: 'O9'"),
         ('coordinate = "crank"', 'coordinate = "crankk"', "pose.coordinate: 'crankk'"),
         ('points.B = ["120 mm"', 'points.B = ["320 mm"', "pose: the linkage cannot be assembled"),

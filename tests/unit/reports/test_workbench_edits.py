@@ -256,6 +256,18 @@ def test_a_link_is_drawn_onto_a_joint_and_takes_what_its_pin_has() -> None:
         stated(document, "six-bar")
 
 
+@pytest.mark.parametrize(
+    ("tight_in", "taken"), [("rocker", ["link-1"]), (["rocker", "coupler"], ["link-1", "coupler"])]
+)
+def test_a_pin_is_tight_in_the_new_link_as_in_the_one_that_it_stands_for(tight_in: Any, taken: list[str]) -> None:
+    document = opened("six-bar")
+    document.apply([{"op": "remove", "path": ["joints", "B", "fit"]}], None)
+    document.apply([{"op": "set", "path": ["joints", "B", "tight_in"], "value": tight_in}], None)
+    link = {"op": "link", "name": None, "from": {"joint": "B"}, "to": {"ground": [60, 120]}}
+    document.apply([link], read_case("six-bar").solve_pose())
+    assert document.tables()["joints"]["F"]["tight_in"] == taken
+
+
 def test_points_are_joined_and_a_joint_is_split() -> None:
     case, document = read_case("four-bar"), opened("four-bar")
     document.apply([{"op": "remove", "path": ["joints", "B"]}], case.solve_pose())

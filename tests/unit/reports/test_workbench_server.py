@@ -411,6 +411,16 @@ def test_a_change_on_the_disk_while_it_is_saved_is_not_overwritten(bench, case, 
     assert "'theirs'" in bench.document()["text"]
 
 
+def test_what_another_program_writes_alike_counts_as_saved(bench, case):
+    """Whichever of both wrote it; what stood there before does not come back as theirs."""
+    with bench.events() as events:
+        retitled(bench, "alike")
+        text = events.next("document", saved=False)["text"]
+        case.write_bytes(text.encode())
+        told = events.next("document", saved=True)
+        assert (told["text"], told["disk"]) == (text, None)
+
+
 def test_a_change_on_the_disk_right_after_it_is_saved_is_seen(bench, case, monkeypatch):
     """Another program writes before the page has looked at what it saved: its text is taken over."""
     write, theirs = session.write_file, case.read_bytes().replace(b"title = ", b"title = 'theirs' # ")
