@@ -109,11 +109,8 @@ def pin_stretches(case: CoreCase) -> dict[str, tuple[Eye, Eye]]:
             start, end = end, start
         up = height(end) - height(start)
         for begins, until in (own for other, own in found.items() if joint.pivots and case.joints[other].pivots):
-            if (
-                begins == start
-                and up * (height(until) - height(start)) > 0.0
-                and up * (height(end) - height(until)) > 0.0
-            ):
+            reach, left = height(until) - height(start), height(end) - height(until)
+            if begins == start and min(up * reach, up * left) > 0.0:
                 start = until
         found[name] = start, end
     return found

@@ -254,8 +254,8 @@ def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():
 @pytest.mark.parametrize("forces", [(10.0, 30.0, 20.0), (30.0, 20.0, 10.0)])
 def test_between_eyes_the_least_force_of_all_states_crosses_at_least(forces):
     case = read_case(WING)
-    every = [reaction(0.6 * force, 0.8 * force, 0, 0, 0, 0) for force in forces]
-    least = crossing(case, "A", [reaction(6, 8, 0, 0, 0, 0)])
+    every = [{"A": reaction(0.6 * force, 0.8 * force, 0, 0, 0, 0)} for force in forces]
+    least = crossing(case, "A", [{"A": reaction(6, 8, 0, 0, 0, 0)}])
     assert crossing(case, "A", every) == pytest.approx(least)
     assert least > 0.0
 
