@@ -61,7 +61,7 @@ def solid_shares(
         for quantity, one in peaks.items():
             rule = cause.displacement if quantity == "displacement" else cause.stress
             factors = _factors(one.values, one.answers, rule)
-            most = _elsewhere(refined, quantity, cause, one.elsewhere)
+            most = _elsewhere(refined, quantity, cause, one)
             found[-1][quantity] = replace(factors, high=max(factors.high, most))
     return tuple(found)
 
@@ -78,11 +78,14 @@ class _Peaks:
         To which each belongs; 0 as stated.
     elsewhere : float
         The largest with its error, where it is a stress of another answer; else 0.
+    stated : float
+        The largest as stated with its error, by the same estimate; 0 where it is the largest of all.
     """
 
     values: Real
     answers: NDArray[np.int64]
-    elsewhere: float
+    elsewhere: float = 0.0
+    stated: float = 0.0
 
 
 @kept(but=("threads",))
@@ -99,20 +102,29 @@ def _peaks(
         peaks = measure.peaks(quantity)
         for number, told in enumerate(found):
             own = np.flatnonzero(of_cause == number)
-            largest, elsewhere = int(own[np.argmax(peaks.value[own])]), 0.0
+            of_answers = _Peaks(values=peaks.value[own], answers=answers[own])
+            largest = int(own[np.argmax(peaks.value[own])])
             if quantity != "displacement" and answers[largest] > 0:
-                at = int(peaks.node[largest]), float(peaks.value[largest])
-                elsewhere = measure.ends(quantity, largest, *at)[1]
-            told[quantity] = _Peaks(values=peaks.value[own], answers=answers[own], elsewhere=elsewhere)
+                stated = own[answers[own] == 0]
+                first = int(stated[np.argmax(peaks.value[stated])])
+                elsewhere, beside = (
+                    measure.ends(quantity, load, int(peaks.node[load]), float(peaks.value[load]))[1]
+                    for load in (largest, first)
+                )
+                of_answers = replace(of_answers, elsewhere=elsewhere, stated=beside)
+            told[quantity] = of_answers
     return tuple(found)
 
 
-def _elsewhere(refined: RefinedSolid, quantity: PeakQuantity, cause: LinkAnswers, most: float) -> float:
-    """Return a peak of another answer with its error, over the upper end as stated; 0 where that is unknown."""
+def _elsewhere(refined: RefinedSolid, quantity: PeakQuantity, cause: LinkAnswers, peaks: _Peaks) -> float:
+    """Return a peak of another answer with its error, over the upper end as stated; 0 where that is unknown.
+
+    That end is of the link's meshes, or of the finest alone where they have no series of that number.
+    """
     names = {plate.name for plate in cause.stated}
-    precision = zip(refined.precision, refined.solution.cases, strict=True)
-    tops = [one.high(quantity) for one, case in precision if case.load in names]
-    return most / max(tops) if tops and 0.0 < max(tops) < np.inf else 0.0
+    own = [one for one, case in zip(refined.precision, refined.solution.cases, strict=True) if case.load in names]
+    tops = [peaks.stated if getattr(one, quantity) is None else one.high(quantity) for one in own]
+    return peaks.elsewhere / max(tops) if tops and 0.0 < max(tops) < np.inf else 0.0
 
 
 def _factors(values: Real, answers: NDArray[np.int64], rule: Rule) -> Scatter:
