@@ -245,8 +245,8 @@ class LayerGaps:
             every = self._share([each[:0] for each in free], [each.sum(axis=0) for each in free])
             name, rows = "", np.full(len(joints), every)
         share = float(rows.min())
-        less = share > 0.0 and self._opens([self._free(frame, over, rows) for over in self._overlaps])
-        held = not name and self._opens([self._free(frame, over, held=True) for over in self._overlaps])
+        less = share > 0.0 and self._opens([self._free(over, rows) for over in self._overlaps])
+        held = not name and self._opens([self._free(over, held=True) for over in self._overlaps])
         told = together(
             reason("less_play_keeps_gap", joint=name, share=share) if less else None,
             reason("heads_keep_gap") if held else None,
@@ -271,17 +271,19 @@ class LayerGaps:
         left = (over.gap - closed.max(axis=0) for over, closed in zip(self._overlaps, self._closed, strict=True))
         return zip(left, free, strict=True)
 
+    @property
+    def _frame(self) -> LinkageFrame:
+        assert self.moved.frame is not None
+        return self.moved.frame
+
     @cached_property
     def _overlaps(self) -> list[Overlap]:
-        assert self.moved.frame is not None
-        return list(overlaps(self.moved.frame, self.assembly))
+        return list(overlaps(self._frame, self.assembly))
 
     @cached_property
     def _freed(self) -> list[Real]:
         """By what the play of each joint closes every overlap's gap at its places: (joints, n)."""
-        frame = self.moved.frame
-        assert frame is not None
-        return [self._free(frame, over) for over in self._overlaps]
+        return [self._free(over) for over in self._overlaps]
 
     @property
     def _run(self) -> bool:
@@ -311,45 +313,56 @@ class LayerGaps:
         known = [(one.frame, one.solution) for one in self.moved.shapes]
         return [Raised(frame=frame, solution=solution) for frame, solution in known if frame and solution]
 
-    def _free(self, frame: LinkageFrame, over: Overlap, shares: Real | None = None, *, held: bool = False) -> Real:
+    def _free(self, over: Overlap, shares: Real | None = None, *, held: bool = False) -> Real:
         """How far play of joints, or shares of it, lets both links come nearer at places (J, n), by forces at rims.
 
         ``held`` is with heads without a gap, between which no link tilts.
         """
         total = np.zeros((len(self.case.joints), len(over.places)))
-        middle, units = over.places.mean(axis=0), {}
-        for link in (over.lower, over.upper):
-            if link in frame.stations:
-                near = [(float(np.linalg.norm(frame.model.nodes[n][:2] - middle)), n) for _, n in frame.stations[link]]
-                units[link] = self._units(frame, min(near)[1])
-        for i, name in enumerate(self.case.joints):
-            for group in loose_holes(self.case, name):
-                each = []
-                for bored, whole in group:
-                    play, force = whole if shares is None else shares[i] * whole, np.zeros((len(over.places), 2, 2))
-                    for link, sign in ((over.lower, 1.0), (over.upper, -1.0)):
-                        if link in units:
-                            origin, (push, about_x, about_y) = units[link]
-                            x, y = (over.places - origin).T[..., None, None]
-                            key = name, bored
-                            force += sign * (push[key] + y * about_x[key] - x * about_y[key])
-                    alone = len(group) == 1
-                    apart = apart_at_rims(self.case, name, bored, play) if alone else play
-                    apart = 0.0 if held else apart
-                    each.append(furthest(play / 2.0 * force, np.array(apart / (play / 2.0))))
-                total[i] += np.max(each, axis=0)
+        units = {link: self._units[node] for link, node in self._nearest(over).items()}
+        for i, group in self._loose:
+            each = []
+            for hole, whole, most in group:
+                play, force = whole if shares is None else shares[i] * whole, np.zeros((len(over.places), 2, 2))
+                for link, sign in ((over.lower, 1.0), (over.upper, -1.0)):
+                    if link in units:
+                        origin, (push, about_x, about_y) = units[link]
+                        x, y = (over.places - origin).T[..., None, None]
+                        force += sign * (push[hole] + y * about_x[hole] - x * about_y[hole])
+                apart = 0.0 if held else min(play, most)
+                each.append(furthest(play / 2.0 * force, np.array(apart / (play / 2.0))))
+            total[i] += np.max(each, axis=0)
         return total
 
-    def _units(self, frame: LinkageFrame, node: int) -> tuple[Real, Sequence[Mapping[tuple[str, str], Real]]]:
-        """A node's place, and the forces at rims by a unit force across the plane and unit moments about x and y."""
-        if node not in self._known:
-            loads = [NodeLoad(node=node, wrench=unit) for unit in np.eye(6)[2:5]]
-            self._known[node] = frame.model.nodes[node][:2], rim_forces(self.case, frame, loads)
-        return self._known[node]
+    @cached_property
+    def _loose(self) -> list[tuple[int, list[tuple[tuple[str, str], float, float]]]]:
+        """Holes that share a play, with the number of their joint: each with it, and how far its rims may be apart."""
+        found = []
+        for i, name in enumerate(self.case.joints):
+            for group in loose_holes(self.case, name):
+                alone = len(group) == 1
+                most = [apart_at_rims(self.case, name, link, math.inf) if alone else math.inf for link, _ in group]
+                found.append((i, [((name, link), play, far) for (link, play), far in zip(group, most, strict=True)]))
+        return found
+
+    def _nearest(self, over: Overlap) -> dict[str, int]:
+        """The node of either link that is nearest to where they pass over each other."""
+        frame, middle = self._frame, over.places.mean(axis=0)
+        nodes = frame.model.nodes
+        return {
+            link: min((float(np.linalg.norm(nodes[n][:2] - middle)), n) for _, n in frame.stations[link])[1]
+            for link in (over.lower, over.upper)
+            if link in frame.stations
+        }
 
     @cached_property
-    def _known(self) -> dict[int, tuple[Real, Sequence[Mapping[tuple[str, str], Real]]]]:
-        return {}
+    def _units(self) -> dict[int, tuple[Real, Sequence[Mapping[tuple[str, str], Real]]]]:
+        """Of nodes: place, and forces at rims by a unit force across the plane and unit moments about x and y."""
+        frame = self._frame
+        nodes = list(dict.fromkeys(n for over in self._overlaps for n in self._nearest(over).values()))
+        loads = [NodeLoad(node=node, wrench=unit) for node in nodes for unit in np.eye(6)[2:5]]
+        found = rim_forces(self.case, frame, loads)
+        return {n: (frame.model.nodes[n][:2], found[3 * k : 3 * k + 3]) for k, n in enumerate(nodes)}
 
 
 def layer_gap_outcomes(
