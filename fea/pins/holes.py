@@ -56,7 +56,7 @@ class Hole:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Face:
+class EyeFace:
     """Where an eye at an end of a pin's beam ends, of the way from its start to its stop.
 
     Attributes
@@ -182,7 +182,7 @@ class RimFrame:
         Stiffness [N/mm].
     g : ndarray, shape (4 h,)
         Forces at the rims with tight pins [N].
-    faces : mapping of str to tuple of 2 Face
+    faces : mapping of str to tuple of 2 EyeFace
         Joint -> where the eyes at both ends of its pin's beam end; left out where that is not known.
     """
 
@@ -196,7 +196,7 @@ class RimFrame:
     by_rims: Real
     K: Real
     g: Real
-    faces: Mapping[str, tuple[Face, Face]]
+    faces: Mapping[str, tuple[EyeFace, EyeFace]]
 
     @cached_property
     def beam_ends(self) -> BeamEnds:
@@ -213,7 +213,7 @@ class RimFrame:
         cls,
         frame: LinkageFrame,
         rims: Mapping[tuple[str, str], tuple[float, float]],
-        faces: Mapping[str, tuple[Face, Face]] = MappingProxyType({}),
+        faces: Mapping[str, tuple[EyeFace, EyeFace]] = MappingProxyType({}),
     ) -> "RimFrame":
         """Condense a frame to the rims of its holes.
 
@@ -223,7 +223,7 @@ class RimFrame:
             With pins that are tight in both links.
         rims : mapping of (str, str) to tuple of 2 float
             Joint and link -> z of the rims of the hole, from the link's mid-plane [mm]; those left out are tight.
-        faces : mapping of str to tuple of 2 Face, optional
+        faces : mapping of str to tuple of 2 EyeFace, optional
             As of the attribute.
 
         Returns
@@ -319,10 +319,10 @@ def _row(frame: LinkageFrame, entries: Mapping[int, float]) -> Real:
 
 
 def _beam_ends(
-    frame: LinkageFrame, solved: FactorisedFrame, opened: Real, faces: Mapping[str, tuple[Face, Face]]
+    frame: LinkageFrame, solved: FactorisedFrame, opened: Real, faces: Mapping[str, tuple[EyeFace, EyeFace]]
 ) -> BeamEnds:
     ends = [(i, ("link", beam.link), _at(at)) for i, beam in frame.beams.items() for at in (0.0, 1.0)]
-    unknown = Face(near=0.0, far=np.nan), Face(near=1.0, far=np.nan)
+    unknown = EyeFace(near=0.0, far=np.nan), EyeFace(near=1.0, far=np.nan)
     known = {name: faces.get(name, unknown) for name in frame.pin_beams}
     ends += [(i, ("pin", name), _at(face.near)) for name, i in frame.pin_beams.items() for face in known[name]]
     count = len(ends)
@@ -354,7 +354,7 @@ def _at(place: float) -> Real:
     return np.array([1.0 - place, -place])
 
 
-def _within(face: Face, share: float) -> Real:
+def _within(face: EyeFace, share: float) -> Real:
     """Moment (2,) within an eye, at a share of the way from where the pin ends, by those at both ends of its beam.
 
     The eye presses with what is linear along it, so that the moment is a cubic from nothing to that of its face.
@@ -422,7 +422,7 @@ def rims_of(case: Case, joint: str, link: str) -> tuple[float, float]:
     return found or (-shortest(case) / 2.0, shortest(case) / 2.0)
 
 
-def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[Face, Face]]:
+def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[EyeFace, EyeFace]]:
     """Return where the eyes at both ends of pins between layers end.
 
     Parameters
@@ -433,10 +433,10 @@ def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[Face, Face]]:
 
     Returns
     -------
-    dict of str to tuple of 2 Face
+    dict of str to tuple of 2 EyeFace
         As ``RimFrame.faces``, of pins between eyes that are known and lie side by side.
     """
-    found, (starts, stops) = dict[str, tuple[Face, Face]](), frame.model.all_ends
+    found, (starts, stops) = dict[str, tuple[EyeFace, EyeFace]](), frame.model.all_ends
     ending = Counter(eye for own in frame.pin_eyes.values() for eye in own)
     for name, i in frame.pin_beams.items():
         up, eyes = float(stops[i][2] - starts[i][2]), frame.pin_eyes[name]
@@ -449,8 +449,8 @@ def faces_of(case: Case, frame: LinkageFrame) -> dict[str, tuple[Face, Face]]:
         ends = [ending[eye] == 1 and len(_walls(case, *eye)) == 1 for eye in eyes]
         if 0.0 <= near <= 1.0 + other <= 1.0:
             found[name] = (
-                Face(near=near, far=below if ends[0] else np.nan),
-                Face(near=1.0 + other, far=1.0 + above if ends[1] else np.nan),
+                EyeFace(near=near, far=below if ends[0] else np.nan),
+                EyeFace(near=1.0 + other, far=1.0 + above if ends[1] else np.nan),
             )
     return found
 
