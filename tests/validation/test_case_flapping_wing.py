@@ -141,12 +141,16 @@ def test_by_hand_no_link_fails() -> None:
 
 @pytest.mark.converged
 def test_the_check_ends_in_pass_but_for_how_pins_share_couples(case, name) -> None:
-    """In layers nothing fails, and what stays open has the sharing of couples among the sources of its band."""
+    """In layers nothing fails, and what stays open has the sharing of couples among the sources of its band.
+
+    Of links that is strength, of the card's range and of layers, by as little as their couples leave; and gaps.
+    """
     found = check_case(case, name=name, fidelity="solid")
     checks = [check for result in found.load_cases.values() for check in result.checks]
     assert all(check.verdict is not Verdict.FAIL for check in checks)
     left = [check for check in checks if check.verdict is Verdict.UNDECIDED]
-    assert {check.link for check in left} <= {"crank", "the linkage"}
-    assert {check.name for check in left if check.link == "the linkage"} <= {"resonance"}
+    sided = {f"{link}-{side}" for link in ("coupler", "inner") for side in ("left", "right")}
+    assert {check.link for check in left} <= {"crank", "the linkage"} | sided
+    assert {check.name for check in left if check.link == "the linkage"} <= {"resonance", "clearance"}
     kind = COUPLES[0].kind
-    assert all(kind in [source.kind for source in check.value.sources] for check in left)
+    assert all(kind in [source.kind for source in check.value.sources] for check in left if check.name != "clearance")
