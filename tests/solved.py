@@ -64,10 +64,12 @@ stand in other cases (``owl-wing-flight``, ``slider-crank``)."""
 FEWER = {
     "flapping-wing-chosen": ("held", "flapping"),
     "ornithopter": ("slow", "wings-10-air", "wings-12-air"),
+    "owl-wing-anchor": ("weight",),
     "owl-wing-flight": ("as-published", "complete"),
 }
 """Load cases under which tests take long cases by hand; the others are these with other numbers. ``make verify`` has
-all of what flaps by its solids, and all of the flight in other air (``owl-wing-braking``)."""
+all of what flaps by its solids, and all of the flight in other air (``owl-wing-braking``); the ground's part bears that
+of the anchor in the same way."""
 
 
 def few(name: str, case: Case) -> Case:

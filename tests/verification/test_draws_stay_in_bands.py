@@ -43,13 +43,12 @@ def test_between_eyes_of_unlike_thickness_pins_bear_most_at_a_face():
     assert draws.outside(draws.validate(tables | {"layer_spacing": "14 mm"}), 2000, 11) == []
 
 
-@pytest.mark.parametrize("seed", [1, 8])
-def test_a_hole_whose_rims_do_not_touch_is_tried_at_both_ends(seed):
-    """Its slope is nothing there. By slopes and four times as many starts the ends fell short by 16 and 21 %."""
+def test_a_hole_whose_rims_do_not_touch_is_tried_at_both_ends():
+    """Its slope is nothing there. By slopes and four times as many starts the ends fell short by 21 %."""
     statics = draws.solve_case_statics(read_case("flapping-wing-reference"), "flapping-wing-reference")
     pins = statics.forces["held"].pins
     assert pins is not None
-    drawn, found = (pins.aims.values(pins.solved(x).v) for x in (draws.shares(pins, 1000, seed), pins.extremes))
+    drawn, found = (pins.aims.values(pins.solved(x).v) for x in (draws.shares(pins, 1000, 1), pins.extremes))
     between = np.ptp(np.vstack([drawn, found]), axis=0)
     assert (drawn.max(axis=0) - found.max(axis=0) <= 0.01 * between).all()
 
