@@ -183,7 +183,7 @@ def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
     Seat or None
         None for a slot, for a hole of several walls, and where the joint has no pin or several joints meet.
     """
-    joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name]
+    joints = linkage.joints_at(link, pin.name)
     if pin.slot or not joints or link not in linkage.moduli:
         return None
     joint, ring, own = linkage.joints[joints[0]], body.ring(pin), linkage.pin_holes(joints[0])[link]
@@ -238,7 +238,7 @@ def slot_place(place: Placement, link: str, pin: Pin) -> Real:
         Where it stands beyond an end of the slot.
     """
     linkage = place.linkage
-    joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name)
+    joint = linkage.joints_at(link, pin.name)[0]
     other = linkage.joints[joint].links[1]
     arm = place.position(other, linkage.point_of(joint, other)) - place.origin(link)
     return in_slot(pin, np.asarray((np.conj(place.direction(link)) * arm).real), link)

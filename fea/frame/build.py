@@ -47,7 +47,6 @@ YIELDS_NOT = 3e3
 tip of a cantilever 0.1 % too far; in small ones it does not give. Measured on a portal frame with clamps of 0.5 % to
 45 % of its links: equilibrium is followed with 2e3 to 2e4, and with 1e5 no more."""
 _SAME_PLACE = 1e-9
-"""Link and point."""
 
 
 def build_frame(

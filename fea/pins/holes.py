@@ -459,17 +459,12 @@ def _walls(case: Case, link: str, point: str) -> Sequence[tuple[float, float]]:
     """Return the walls of the hole at a point of a link; one where no part tells."""
     if case.links[link].part is None:
         return ((0.0, 0.0),)
-    return eye_of(case, _joint_at(case, link, point), link).walls
-
-
-def _joint_at(case: Case, link: str, point: str) -> str:
-    linkage = case.linkage
-    return next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point)
+    return eye_of(case, case.linkage.joints_at(link, point)[0], link).walls
 
 
 def _known_at(case: Case, link: str, point: str) -> tuple[float, float] | None:
     """Return the rims of the hole at a point of a link, as ``known_hole`` does."""
-    return known_hole(case, _joint_at(case, link, point), link)
+    return known_hole(case, case.linkage.joints_at(link, point)[0], link)
 
 
 def shortest(case: Case) -> float:

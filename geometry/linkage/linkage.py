@@ -279,6 +279,21 @@ class Linkage:
         """
         return self._on_links.get(link, ())
 
+    def joints_at(self, link: str, point: str) -> tuple[str, ...]:
+        """Names of the joints at a point of a link.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        tuple of str
+            Names of joints.
+        """
+        return tuple(name for name in self.joints_of(link) if self.point_of(name, link) == point)
+
     @cached_property
     def _on_links(self) -> Mapping[str, tuple[str, ...]]:
         found: dict[str, tuple[str, ...]] = {}

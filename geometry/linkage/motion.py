@@ -181,7 +181,7 @@ def _refuse(motion: Motion, link: str, point: str, ends: tuple[float, float]) ->
     from scipy.interpolate import CubicSpline
 
     place, linkage = motion.placement, motion.linkage
-    joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point)
+    joint = linkage.joints_at(link, point)[0]
     other = linkage.joints[joint].links[1]
     arm = place.position(other, linkage.point_of(joint, other)) - place.origin(link)
     along = CubicSpline(steps := np.arange(len(motion.angles)), (np.conj(place.direction(link)) * arm).real)

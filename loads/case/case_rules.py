@@ -453,7 +453,7 @@ def _check_held(case: CoreCase, link: str) -> None:
     if record.part is None:
         raise CaseError(f"{entry}: the ground has no part that could be held; name a part, or remove held_at")
     require(entry, record.held_at, record.points, "is no point of the link")
-    joints = [name for name in case.linkage.joints_of(link) if case.linkage.point_of(name, link) == record.held_at]
+    joints = case.linkage.joints_at(link, record.held_at)
     if joints:
         raise CaseError(
             f"{entry}: '{record.held_at}' is the point of joint '{joints[0]}', where another link acts; name a point "
@@ -484,7 +484,7 @@ def _check_slots(case: CoreCase, link: str) -> None:
         )
     sliding = {linkage.point_of(name, link): name for name, joint in linkage.joints.items() if joint.slotted == link}
     for point in record.slots:
-        joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
+        joints = linkage.joints_at(link, point)
         if point not in sliding or len(joints) != 1:
             raise CaseError(
                 f"links.{link}.slots.{point}: a slot belongs to a point with one joint, a pin in slot with "

@@ -95,7 +95,7 @@ def joint_of_fork(linkage: Linkage, link: str, point: str) -> str:
     CaseError
         Where the pin does not turn in it, or holds more than one other link.
     """
-    here = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
+    here = linkage.joints_at(link, point)
     entry = f"links.{link}.eyes.{point}.fork"
     if len(here) != 1:
         raise CaseError(

@@ -218,8 +218,7 @@ def check_place(case: CoreCase, entry: str, place: Place) -> None:
 def _check_torque(case: CoreCase, entry: str, load: PointMoment | LoadLine | Attachment) -> None:
     """A pin that turns freely passes no torque about its own axis; only the drive's does."""
     linkage = case.linkage
-    pins = [name for name in linkage.joints_of(load.link)
-            if linkage.point_of(name, load.link) == load.at and not linkage.joints[name].slides]  # fmt: skip
+    pins = [name for name in linkage.joints_at(load.link, load.at) if not linkage.joints[name].slides]
     driven = case.drive is not None and case.drive.joint in pins
     if pins and not driven and not any(linkage.joints[name].fixed for name in pins):
         raise CaseError(
