@@ -55,8 +55,11 @@ def solid_shares(
         Where memory does not suffice or a solver fails.
     """
     every = tuple(cause.every for cause in causes)
+    alone = all(one.layers is None for one in refined.precision)
     found: list[dict[PeakQuantity, Scatter]] = []
-    for cause, peaks in zip(causes, _peaks(task.link, refined.solution.space, every, threads=threads), strict=True):
+    for cause, peaks in zip(
+        causes, _peaks(task.link, refined.solution.space, every, alone, threads=threads), strict=True
+    ):
         found.append({})
         for quantity, one in peaks.items():
             rule = cause.displacement if quantity == "displacement" else cause.stress
@@ -79,7 +82,7 @@ class _Peaks:
     elsewhere : float
         The largest with its error, where it is a stress of another answer; else 0.
     stated : float
-        The largest as stated with its error, by the same estimate; 0 where it is the largest of all.
+        The largest as stated with its error, by the same estimate, of layers without a series of meshes.
     """
 
     values: Real
@@ -90,7 +93,12 @@ class _Peaks:
 
 @kept(but=("threads",))
 def _peaks(
-    link: ElasticLink, space: DisplacementSpace, causes: tuple[tuple[Plates, ...], ...], *, threads: int | None
+    link: ElasticLink,
+    space: DisplacementSpace,
+    causes: tuple[tuple[Plates, ...], ...],
+    alone: bool,  # layers have no series of meshes
+    *,
+    threads: int | None,
 ) -> tuple[dict[PeakQuantity, _Peaks], ...]:
     """Return the peaks of all answers of each cause on a mesh of the link; the rules of causes do not enter."""
     every = [(i, j, plate) for i, cause in enumerate(causes) for j, way in enumerate(cause) for plate in way]
@@ -107,11 +115,9 @@ def _peaks(
             if quantity != "displacement" and answers[largest] > 0:
                 stated = own[answers[own] == 0]
                 first = int(stated[np.argmax(peaks.value[stated])])
-                elsewhere, beside = (
-                    measure.ends(quantity, load, int(peaks.node[load]), float(peaks.value[load]))[1]
-                    for load in (largest, first)
-                )
-                of_answers = replace(of_answers, elsewhere=elsewhere, stated=beside)
+                loads = (largest, first) if alone and quantity == "layers" else (largest,)
+                tops = [measure.ends(quantity, k, int(peaks.node[k]), float(peaks.value[k]))[1] for k in loads]
+                of_answers = replace(of_answers, elsewhere=tops[0], stated=sum(tops[1:]))
             told[quantity] = of_answers
     return tuple(found)
 
