@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from alula.fea.asked.asked import Asked
 from alula.fea.beam.cut_free import seat
+from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter
@@ -21,10 +22,11 @@ from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
+from alula.fea.outcomes.pins import in_eyes, on_links
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
-from alula.loads.records.applied import shifted
+from alula.loads.case.layers import joints_of_pin
 from alula.loads.records.bearing import bearing_stress
 from alula.loads.records.contact import half_angle, pressure
 from alula.loads.statics.joint_reaction import JointReaction
@@ -34,27 +36,8 @@ Real = NDArray[np.float64]
 WITHOUT = reason("evenly_over_projected_area")
 
 
-def on_links(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
-    """Return what a joint's pin does to each of its links.
-
-    Parameters
-    ----------
-    case : Case
-    joint : str
-    wrench : ndarray, shape (..., 6)
-        What the first link does to the second, about the point of the second [N, N mm].
-
-    Returns
-    -------
-    dict of str to ndarray
-        Link -> wrench (..., 6) about its own point.
-    """
-    first, second = case.joints[joint].links
-    return {first: shifted(-wrench, np.array([0.0, 0.0, case.linkage.rise(joint)])), second: wrench}
-
-
-def in_eyes(case: Case, joint: str, joints: Mapping[str, JointReaction]) -> dict[str, Real]:
-    """Return what presses in the eyes of a joint's links: all joints that have their pin in the same hole together.
+def in_own_eyes(case: Case, joint: str, joints: Mapping[str, JointReaction]) -> dict[str, Real]:
+    """Return what presses in the eyes of a joint's links: all joints that are on its pin together.
 
     Parameters
     ----------
@@ -68,31 +51,8 @@ def in_eyes(case: Case, joint: str, joints: Mapping[str, JointReaction]) -> dict
     dict of str to ndarray
         Link -> wrench (..., 6) about its point [N, N mm]; of a slot that of its own pin alone.
     """
-    found = {}
-    for link, own in on_links(case, joint, joints[joint].wrench).items():
-        others = [name for name in beside(case, joint, link) if name != joint]
-        found[link] = own + sum(on_links(case, name, joints[name].wrench)[link] for name in others)
-    return found
-
-
-def beside(case: Case, joint: str, link: str) -> tuple[str, ...]:
-    """Return the joints whose pin stands in the hole that a joint has in a link, itself among them.
-
-    Parameters
-    ----------
-    case : Case
-    joint, link : str
-
-    Returns
-    -------
-    tuple of str
-    """
-    linkage = case.linkage
-    if link not in case.joints[joint].bored:
-        return (joint,)
-    point = linkage.point_of(joint, link)
-    every = (name for name in linkage.joints_of(link) if link in case.joints[name].bored)
-    return tuple(name for name in every if linkage.point_of(name, link) == point)
+    found = in_eyes(case, joint, {name: one.wrench for name, one in joints.items()})
+    return {link: found[link, case.linkage.point_of(joint, link)] for link in case.joints[joint].links}
 
 
 def pressing(case: Case, link: str, wrench: Real) -> Real:
@@ -113,7 +73,7 @@ def pressing(case: Case, link: str, wrench: Real) -> Real:
     force, distance = wrench[..., :2], apart(case, link)
     if distance is None:
         return np.asarray(np.linalg.norm(force, axis=-1))
-    aside = 2.0 * np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1) / distance  # moment of the force along z
+    aside = 2.0 * first_moment(wrench) / distance
     return np.asarray(np.maximum(*(np.linalg.norm(force + side * aside, axis=-1) for side in (1.0, -1.0))))
 
 
@@ -149,7 +109,7 @@ def weakest_eye(
         Of the check.
     joint : str
     ways : sequence of mapping of str to ndarray
-        Link -> wrench (6,) in its eye, as ``in_eyes`` has it, in all ways in which pins may share couples.
+        Link -> wrench (6,) in its eye, as ``in_own_eyes`` has it, in all ways in which pins may share couples.
     load : mapping of str to Scatter
         Link -> what that force may be over what it is. The band holds it and, where the strength is that of the safety
         factor, the strength's.
@@ -253,7 +213,7 @@ def bearing_outcome(
         For a joint without pin diameter.
     """
     joint, load = one.subject.name, load_scatter(case, load_case)
-    every = [in_eyes(case, joint, way) for way in ways]
+    every = [in_own_eyes(case, joint, way) for way in ways]
     grown = {link: load.times(_grown(case, joint, link, ways[0], every[0][link], growth)) for link in every[0]}
     eye, factor = weakest_eye(case, one.name, joint, every, grown)
     found = one.outcome(load_case, factor)
@@ -278,11 +238,12 @@ def _grown(
     growth: Callable[[str], Scatter],
 ) -> Scatter:
     """By what the force in a link's eye grows, where several joints press there."""
-    names = beside(case, joint, link)
+    eye = link, case.linkage.point_of(joint, link)
+    names = set(case.linkage.joints_at(*eye)).intersection(joints_of_pin(case, joint))
     size = float(np.linalg.norm(whole[:2]))
     if not size > 0.0:
         return growth(joint)
-    return of_sum([(float(np.linalg.norm(joints[name].wrench[:2])), growth(name)) for name in names], size)
+    return of_sum([(float(np.linalg.norm(joints[name].wrench[:2])), growth(name)) for name in sorted(names)], size)
 
 
 def judge_bearing(here: Loading, one: Asked) -> Judged:
@@ -317,7 +278,7 @@ def least_of_bearing(over: OverMotion, one: Asked) -> Real:
     """
     case, joint = over.case, one.subject.name
     [way] = over.ways()
-    borne = in_eyes(case, joint, way.joints)
+    borne = in_own_eyes(case, joint, way.joints)
     with np.errstate(divide="ignore"):  # without a force there is no end
         every = [
             own.low * bears / pressing(case, link, borne[link])

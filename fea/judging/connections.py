@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.asked.asked import Asked
+from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, Source, SourceKind, distinct
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.judging.bearing import on_links, pressing
+from alula.fea.judging.bearing import pressing
 from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.fea.modes.connection_modes import (
     ConnectionFactors,
@@ -29,6 +30,7 @@ from alula.fea.modes.connection_modes import (
     screws,
     shaft_torsion,
 )
+from alula.fea.outcomes.pins import on_links
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import connected_link
@@ -62,7 +64,7 @@ def transmitted(case: Case, check: ConnectionCheck, wrench: Real, drive_torque: 
     plates = _plates(case, check)
     torque = wrench[..., 5] if joint.fixed else np.broadcast_to(drive_torque, wrench.shape[:-1])
     levels = (rise, 0.0) if not check.on_shaft else (rise,) if link == joint.links[0] else (0.0,)
-    across = np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1)
+    across = first_moment(wrench)
     couples = [np.linalg.norm(across + level * wrench[..., :2], axis=-1) for level in levels]
     return Transmitted(
         torque=np.abs(torque) / plates,

@@ -20,7 +20,7 @@ from alula.fea.common.reason import Reason, reason, together
 from alula.fea.common.scatter import fatigue_scatter, load_scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from alula.fea.judging.bearing import contact_pressure, in_eyes
+from alula.fea.judging.bearing import contact_pressure, in_own_eyes
 from alula.fea.judging.loading import Judged, SolvedLinks
 from alula.fea.outcomes.fatigue import (
     LIFE_FACTOR,
@@ -282,7 +282,7 @@ def _pressed(here: SolvedLinks, link: str, strength: float) -> Reason | None:
     case, found = here.case, {}
     for joint in case.bearing_joints:
         if link in case.joints[joint].links:
-            borne = in_eyes(case, joint, here.ways()[0].joints)[link]
+            borne = in_own_eyes(case, joint, here.ways()[0].joints)[link]
             force = load_scatter(case, here.load_case).high * float(np.linalg.norm(borne[:3]))
             found[joint] = contact_pressure(case, joint, link, force)
     joint, most = max(((x, p[1]) for x, p in found.items() if p), key=lambda of: of[1], default=("", 0.0))

@@ -8,15 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.asked.asked import Asked
+from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES, distinct, friction_source
 from alula.fea.common.verdict import CheckOutcome
-from alula.fea.judging.bearing import on_links, pressing
+from alula.fea.judging.bearing import pressing
 from alula.fea.judging.loading import ByHand, Judged, Loading
 from alula.fea.modes.line_contact import LineContact, hertz_pressure, most_equivalent
+from alula.fea.outcomes.pins import on_links
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
@@ -47,7 +49,7 @@ def line_load(case: Case, joint: str, wrench: Real) -> Real:
     length, force = eye_of(case, joint, link).thickness, pressing(case, link, on_links(case, joint, wrench)[link])
     if apart(case, link) is not None:
         return np.asarray(force / length)  # of the worse plate, whose force has the couple
-    couple = np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1) + rise * wrench[..., :2]
+    couple = first_moment(wrench) + rise * wrench[..., :2]
     return np.asarray(force / length + 6.0 * np.linalg.norm(couple, axis=-1) / length**2)
 
 

@@ -37,7 +37,8 @@ adds to the shear where nothing bends, and at the extreme fibre to the bending b
 """
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -62,7 +63,7 @@ from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import connected_joints, turned_by_drive
 from alula.loads.case.eyes import other_link
 from alula.loads.case.forks import eye_of, eyes, outer_link
-from alula.loads.case.layers import Eye, joints_of_pin, on_one_axis, pin_stretches
+from alula.loads.case.layers import Eye, joints_of_pin, pin_stretches, pins
 from alula.loads.records.applied import shifted
 from alula.loads.statics.joint_reaction import JointReaction
 from alula.loads.text.caveat import Caveat, Topic
@@ -146,22 +147,21 @@ def shaft_caveats(case: Case) -> Iterator[Caveat]:
         yield Caveat(topic=Topic.SHAFT, what=reason("drive_shaft", joint=drive.joint), why=why)
 
 
-def shared_pin_caveats(case: Case, judged: Collection[str]) -> Iterator[Caveat]:
+def shared_pin_caveats(case: Case, judged: AbstractSet[str]) -> Iterator[Caveat]:
     """Yield the pins of several joints whose links have no order along them: each joint is judged as if by itself.
 
     Parameters
     ----------
     case : Case
-    judged : collection of str
+    judged : set of str
         Joints whose pins a check judges.
 
     Yields
     ------
     Caveat
     """
-    for names in on_one_axis(case):
-        own = [name for name in names if name in judged]
-        if len(joints_of_pin(case, names[0])) > 1 and own and not between_layers(case, names[0]):
+    for names in pins(case):
+        if len(names) > 1 and not judged.isdisjoint(names) and not between_layers(case, names[0]):
             what = reason("bending_of_shared_pin", joints=list(names))
             yield Caveat(topic=Topic.PINS, what=what, why=reason("no_order_along_pin"))
 
@@ -381,6 +381,48 @@ def between_layers(case: Case, joint: str) -> bool:
     return any(case.linkage.rise(name) != 0.0 for name in joints_of_pin(case, joint))
 
 
+def on_links(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
+    """Return what a joint's pin does to each of its links.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    wrench : ndarray, shape (..., 6)
+        What the first link does to the second, about the point of the second [N, N mm].
+
+    Returns
+    -------
+    dict of str to ndarray
+        Link -> wrench (..., 6) about its own point.
+    """
+    first, second = case.joints[joint].links
+    return {first: shifted(-wrench, np.array([0.0, 0.0, case.linkage.rise(joint)])), second: wrench}
+
+
+def in_eyes(case: Case, joint: str, wrenches: Mapping[str, Real]) -> dict[Eye, Real]:
+    """Return what a joint's pin does to all eyes in which it stands, of all joints that it is of.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    wrenches : mapping of str to ndarray, shape (..., 6)
+        Of all joints that are on the pin, on their second links [N, N mm].
+
+    Returns
+    -------
+    dict of tuple of str to ndarray
+        Link and point -> wrench (..., 6) about that point; of a slot that of its own pin.
+    """
+    found: dict[Eye, Real] = {}
+    for name in joints_of_pin(case, joint):
+        for link, wrench in on_links(case, name, wrenches[name]).items():
+            eye = link, case.linkage.point_of(name, link)
+            found[eye] = found.get(eye, 0.0) + wrench
+    return found
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _EyesOnPin:
     """The eyes of all links on a pin, with what presses in them in n states.
@@ -406,17 +448,13 @@ class _EyesOnPin:
 
     @classmethod
     def of(cls, case: Case, joint: str, wrenches: Mapping[str, Real]) -> "_EyesOnPin":
-        linkage = case.linkage
-        rings: dict[Eye, Ring] = {}
-        borne: dict[Eye, Real] = {}
+        linkage, rings = case.linkage, dict[Eye, Ring]()
         for name in joints_of_pin(case, joint):
-            own, rise = wrenches[name], np.array([0.0, 0.0, linkage.rise(name)])
-            links = case.joints[name].links
-            for link, ring, wrench in zip(links, eyes(case, name), (shifted(-own, rise), own), strict=True):
+            for link, ring in zip(case.joints[name].links, eyes(case, name), strict=True):
                 eye = link, linkage.point_of(name, link)
                 if eye not in rings or case.links[link].part is not None:
                     rings[eye] = ring
-                borne[eye] = borne.get(eye, 0.0) + wrench
+        borne = in_eyes(case, joint, wrenches)
         levels = {eye: linkage.heights.get(eye[0], 0.0) for eye in rings}
         ends = pin_stretches(case)[joint]
         rims = [levels[eye] + rim for eye in ends for rim in (rings[eye].low, rings[eye].high)]

@@ -62,7 +62,7 @@ def caveats(case: Case, *, over_motion: bool = False, harmonic: Reason | None = 
         *drive_caveats(case),
         *joint_caveats(case),
         *shaft_caveats(case),
-        *shared_pin_caveats(case, asked_of(case, PinCheck)),
+        *shared_pin_caveats(case, {*asked_of(case, PinCheck)}),
         *collision_caveats(case),
         *_pins(case),
         *wall_caveats(case),

@@ -18,7 +18,7 @@ from alula.fea.pins.programme import NO_TIES
 from alula.geometry.joints.holes import HolePlay
 from alula.loads.case.case import Case
 from alula.loads.case.forks import eye_of, in_holes
-from alula.loads.case.layers import on_one_axis
+from alula.loads.case.layers import joints_of_pin, on_one_axis
 
 Real = NDArray[np.float64]
 HoleName = tuple[str, str]
@@ -136,9 +136,7 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
 def _as_stated(case: Case, joint: str, hole: HolePlay) -> HolePlay:
     """Return a joint's hole as the joint states it or, where it says nothing, another joint of its pin."""
     linkage, point = case.linkage, case.linkage.point_of(joint, hole.link)
-    same = (
-        x for x in linkage.joints_of(hole.link) if linkage.joints[x].pivots and linkage.point_of(x, hole.link) == point
-    )
+    same = (name for name in linkage.joints_at(hole.link, point) if linkage.joints[name].pivots)
     every = [hole, *(linkage.pin_holes(name)[hole.link] for name in same)]
     return next((one for one in every if one.stated), hole)
 
@@ -159,8 +157,7 @@ def gap_over_diameter(case: Case, joint: str, link: str) -> tuple[float, float] 
     tuple of 2 float or None
         Least and largest [rad]; None where the pin has no heads that hold it.
     """
-    names = next(names for names in on_one_axis(case) if joint in names)
-    every = [case.joints[name].heads for name in names if case.joints[name].pivots]
+    every = [case.joints[name].heads for name in joints_of_pin(case, joint) if case.joints[name].pivots]
     stated = [heads for heads in every if heads is not None]
     if not stated or len(stated) < len(every):
         return None

@@ -74,10 +74,24 @@ def joints_of_pin(case: CoreCase, joint: str) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Those beside it that have a pin.
+        Itself alone where it has no pin.
     """
-    names = next(names for names in on_one_axis(case) if joint in names)
-    return tuple(name for name in names if name == joint or case.joints[name].kind.has_pin)
+    return next((names for names in pins(case) if joint in names), (joint,))
+
+
+def pins(case: CoreCase) -> tuple[tuple[str, ...], ...]:
+    """Return the joints of each pin; a slider along a guide has none.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    tuple of tuple of str
+    """
+    every = (tuple(name for name in names if case.joints[name].kind.has_pin) for names in on_one_axis(case))
+    return tuple(names for names in every if names)
 
 
 def pin_stretches(case: CoreCase) -> dict[str, tuple[Eye, Eye]]:
@@ -133,8 +147,7 @@ def pin_masses(case: CoreCase) -> dict[str, CarriedBody]:
         ground without part; there are none without layers.
     """
     found: dict[str, CarriedBody] = {}
-    for names in on_one_axis(case) if case.layered else ():
-        own = [name for name in names if case.joints[name].kind.has_pin]
+    for own in pins(case) if case.layered else ():
         for diameter in dict.fromkeys(case.joints[name].pin_diameter for name in own):
             alike = [name for name in own if case.joints[name].pin_diameter == diameter]
             link, point = _standing_in(case, alike)
@@ -214,8 +227,8 @@ def _check_one_pin(case: CoreCase) -> None:
             if heights[other] != heights[one] and heights[other][0] < heights[one][1]:
                 links = dict.fromkeys(link for name in own for link in case.joints[name].links)
                 raise CaseError(
-                    f"joints.{other}: its pin passes a link of joint '{one}', which is on the same pin, but goes on "
-                    f"from none of its links; join all of {', '.join(links)} there to one of them"
+                    f"joints.{other}: its pin is that of joint '{one}' as well and runs past one of its links; let all "
+                    f"joints there have one of {', '.join(links)} in common"
                 )
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
-from alula.loads.case.layers import on_one_axis, pin_masses
+from alula.loads.case.layers import pin_masses, pins
 from alula.loads.records.check_spec import MassCheck
 from alula.loads.states.actions import lasting
 from alula.loads.states.masses import laden_masses, part_masses
@@ -121,8 +121,7 @@ def unweighed(case: Case) -> tuple[Reason, ...]:
 def _pins_left(case: Case) -> Iterator[Reason]:
     """Yield the pins of a layered case that ``pin_masses`` leaves out."""
     known, ground = pin_masses(case), case.linkage.ground
-    own = [[name for name in group if case.joints[name].kind.has_pin] for group in on_one_axis(case)]
-    left = [group for group in own if not set(group) & set(known)]
+    left = [group for group in pins(case) if not set(group) & set(known)]
     reasons = {True: reason("no_diameter"), False: reason("in_ground_without_part", ground=ground)}
     for unknown, why in reasons.items():
         names = [name for group in left for name in group if (case.joints[name].pin_diameter is None) is unknown]

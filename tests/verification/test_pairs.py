@@ -14,7 +14,7 @@ from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.fea.common.plates import pair_forces, plates
 from alula.fea.frame.build import build_frame
 from alula.fea.frame.linear import solve_frame
-from alula.fea.judging.bearing import in_eyes, pressing
+from alula.fea.judging.bearing import in_own_eyes, pressing
 from alula.fea.outcomes.pins import crossing, shared_stress, stress_at, stresses_between
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
@@ -294,7 +294,7 @@ def test_bars_off_the_middle_of_a_pair_between_layers():
         for pin_load in plate.pins:
             assert np.linalg.norm(pin_load.wrench[:2]) == pytest.approx(share * force, rel=1e-3)
             assert np.abs(pin_load.wrench[3:5]).max() < 1e-2 * force
-    pressed = {link: pressing(case, link, one) for link, one in in_eyes(case, "C", tilts.joints).items()}
+    pressed = {link: pressing(case, link, one) for link, one in in_own_eyes(case, "C", tilts.joints).items()}
     assert pressed["coupler"] == pytest.approx(2.0 * (0.5 + off / span) * force, rel=1e-3)
     assert pressed["rocker"] == pytest.approx(force)
     assert statics.links["coupler"].von_mises_max.high >= (0.5 + off / span) * force / (16.0 * 6.0) * (1.0 - 1e-3)

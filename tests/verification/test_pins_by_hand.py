@@ -27,7 +27,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject
-from alula.fea.judging.bearing import bearing_outcome, in_eyes, pressing
+from alula.fea.judging.bearing import bearing_outcome, in_own_eyes, pressing
 from alula.fea.outcomes.pins import pin_growth, stress_at
 from alula.fea.pins.clearances import HoleClearance, loose_holes, radii_of
 from alula.fea.pins.states import PinStates
@@ -360,7 +360,7 @@ def test_what_bends_a_pin_of_three_links_is_what_all_of_them_press(joints, force
 def test_an_eye_bears_what_all_joints_of_its_pin_press(joints, lower, crank):
     case = three(joints, {"crank": "0.02 mm"}, lower=lower)
     reactions = forces_of(case).reactions.joints
-    every = {link: one for name in joints for link, one in in_eyes(case, name, reactions).items()}
+    every = {link: one for name in joints for link, one in in_own_eyes(case, name, reactions).items()}
     borne = {link: float(pressing(case, link, one)) for link, one in every.items()}
     assert borne == pytest.approx({"lower": abs(lower), "crank": crank, "upper": 20.0}, abs=0.01)
 
@@ -382,7 +382,7 @@ def test_the_forces_of_all_joints_of_a_pin_may_grow_on_it(lower):
             stress, plain = (stress_at(case, name, of).equivalent.value for of in (grown, reactions))
             found = pin_growth(case, name, reactions, by.__getitem__)
             assert found.low * plain <= stress <= found.high * plain * (1.0 + 1e-9)
-        borne = float(pressing(case, "crank", in_eyes(case, "A", grown)["crank"]))
+        borne = float(pressing(case, "crank", in_own_eyes(case, "A", grown)["crank"]))
         assert band.low <= 240.0 / (borne / (3.0 * 6.0)) * (1.0 + 1e-9)
 
 
@@ -393,7 +393,7 @@ def test_a_pin_that_passes_a_link_by_is_refused():
         data["links"][name] = {"part": "coupler", "z": f"{30.0 + 20.0 * k} mm", "points": points}
     for name, pair in (("A", ["crank", "one"]), ("A2", ["coupler", "two"]), ("A3", ["coupler", "one"])):
         data["joints"][name] = {"links": pair, "points": ["A", "A"], "pin_diameter": "3 mm", "pin_material": "soft"}
-    said = r"^joints\.A3: its pin passes a link of joint 'A', .* join all of crank, one, coupler, two there to one of"
+    said = r"^joints\.A3: its pin is that of joint 'A' as well .* let all joints there have one of crank, one, coupler"
     with pytest.raises(CaseError, match=said):
         checked(data)
 

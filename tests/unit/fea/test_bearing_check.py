@@ -10,9 +10,10 @@ from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Verdict
-from alula.fea.judging.bearing import weakest_eye
+from alula.fea.judging.bearing import in_own_eyes, weakest_eye
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
-from alula.loads.case.case_file import validate
+from alula.loads.case.case_file import read_case, validate
 from alula.reports.sentences import told
 
 
@@ -99,6 +100,16 @@ def test_an_eye_bears_the_largest_force_of_all_ways_of_sharing(order):
     )
     assert eye == "arm"
     assert (factor.value, factor.low) == pytest.approx((52.0 / (5.0 / 6.0), 52.0 / (6.0 / 6.0)))
+
+
+def test_a_guide_presses_in_no_eye():
+    """It holds the slider at its own pin, whose eye bears the rod alone: of 40 N along it and what stands across."""
+    case = read_case("slider-crank")
+    joints = solve_case_statics(case).reactions["push forward"].joints
+    guided, pinned = (joints[name].wrench[:2] for name in ("guide", "B"))
+    assert np.linalg.norm(guided) > 0.05 * np.linalg.norm(pinned) > 0.0
+    for link, sense in (("rod", -1.0), ("slider", 1.0)):
+        assert in_own_eyes(case, "B", joints)[link][:2] == pytest.approx(sense * pinned)
 
 
 def test_joint_that_does_not_exist():

@@ -420,7 +420,7 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
 
 def pose_of_bearing(monkeypatch, pressed, bears, evaluated):
     """Return the pose at which two eyes are judged that are pressed so, and bear so much."""
-    monkeypatch.setattr(bearing, "in_eyes", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
+    monkeypatch.setattr(bearing, "in_own_eyes", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
     monkeypatch.setattr(bearing, "pressing", lambda case, link, force: force)
     monkeypatch.setattr(bearing, "_borne", lambda *_: {eye: (x, Scatter()) for eye, x in zip("ab", bears, strict=True)})
     told, joint = [], SimpleNamespace(wrench=np.zeros((4, 6)))

@@ -110,12 +110,20 @@ def test_collisions_are_told_where_several_links_have_parts_and_none_states_a_la
 def test_a_pin_of_several_joints_in_one_plane_is_told_where_pins_are_checked(build, pins):
     """A link more on the pin at B, from there to the ground beside O4: another rocker, of another length."""
     case = build({"a": STRENGTH, "p": PINS} if pins else {"a": STRENGTH})
-    told_of = "what the joints B, B2 do to their one pin together (their links lie in one plane"
+    told_of = "bending of the pin that joints B, B2 share (their links lie in one plane"
     links = case.links | {"arm": case.links["rocker"].model_copy(update={"layer": case.links["base"].layer})}
     joint = case.joints["B"].model_copy(update={"links": ("coupler", "arm"), "points": ("B", "B")})
     with_arm = case.model_copy(update={"links": links, "joints": case.joints | {"B2": joint}})
     told = [one for one in unchecked(with_arm) if one.startswith(told_of)]
     assert len(told) == (pins and build is starter)
+
+
+def test_a_guide_shares_no_pin():
+    """Stated before the pin at its place, which is that of one joint."""
+    tables = tomllib.loads((files("alula.loads") / "cases" / "slider-crank.toml").read_text(encoding="utf-8"))
+    tables |= {"layer_spacing": "0 mm", "checks": {"pins": PINS}}
+    tables["joints"] = {name: tables["joints"][name] for name in ("guide", "O2", "A", "B")}
+    assert not [one for one in unchecked(validate(tables)) if "bending of the pin" in one]
 
 
 def test_a_sustained_check_looks_at_stress_but_not_in_an_envelope():
