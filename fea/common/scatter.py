@@ -11,11 +11,16 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
 from alula.fea.common.source import UNKNOWN, Source, SourceKind, distinct
 from alula.geometry.materials.material import Fatigue, Material
 from alula.loads.case.case import Case
+
+Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,9 +125,25 @@ def of_sum(parts: Iterable[tuple[float, Scatter]], whole: float) -> Scatter:
     (first, *others) = known = tuple(parts)
     if not others:
         return first[1]
-    differs = sum(size * max(one.high - 1.0, 1.0 - one.low) for size, one in known) / whole
+    differs = float(together(known) / whole)
     sources = distinct(*(one.told for _, one in known))
     return Scatter(low=max(1.0 - differs, 0.0), high=1.0 + differs, sources=sources)
+
+
+def together(parts: Iterable[tuple[float | Real, Scatter]]) -> float | Real:
+    """Return by how much the size of a sum of vectors may differ, of which each may be longer or shorter by itself.
+
+    Parameters
+    ----------
+    parts : iterable of (float or ndarray, Scatter)
+        As of ``of_sum``.
+
+    Returns
+    -------
+    float or ndarray
+        In the unit of the sizes.
+    """
+    return sum(size * max(one.high - 1.0, 1.0 - one.low) for size, one in parts)
 
 
 def _product(end: float, factor: float) -> float:

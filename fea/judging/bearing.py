@@ -17,12 +17,12 @@ from alula.fea.beam.cut_free import seat
 from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter
+from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter, together
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
 from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
-from alula.fea.outcomes.pins import in_eyes, on_links
+from alula.fea.outcomes.pins import in_eyes
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart, eye_of
@@ -77,22 +77,22 @@ def pressing(case: Case, link: str, wrench: Real) -> Real:
     return np.asarray(np.maximum(*(np.linalg.norm(force + side * aside, axis=-1) for side in (1.0, -1.0))))
 
 
-def sharing(case: Case, joint: str, link: str, wrenches: Sequence[Real]) -> Scatter:
+def sharing(case: Case, link: str, wrenches: Sequence[Real]) -> Scatter:
     """Return what other ways in which pins may share couples make of the force that presses a link's eye most.
 
     Parameters
     ----------
     case : Case
-    joint, link : str
+    link : str
     wrenches : sequence of ndarray, shape (6,)
-        What the first link does to the second, first that which stands [N, N mm].
+        What presses in the eye, as ``in_own_eyes`` has it, first that which stands [N, N mm].
 
     Returns
     -------
     Scatter
-        More than 1 only of pairs of plates, whose plates bear couples.
+        More than 1 where pins, plates of a pair or joints of one pin bear couples.
     """
-    stands, *others = (float(pressing(case, link, on_links(case, joint, wrench)[link])) for wrench in wrenches)
+    stands, *others = (float(pressing(case, link, wrench)) for wrench in wrenches)
     _, most = sought([stands, *others])
     return Scatter(high=most / stands, sources=COUPLES) if most > stands > 0.0 else Scatter()
 
@@ -214,11 +214,11 @@ def bearing_outcome(
     """
     joint, load = one.subject.name, load_scatter(case, load_case)
     every = [in_own_eyes(case, joint, way) for way in ways]
-    grown = {link: load.times(_grown(case, joint, link, ways[0], every[0][link], growth)) for link in every[0]}
-    eye, factor = weakest_eye(case, one.name, joint, every, grown)
+    spread = {link: load.times(grown(case, joint, link, ways[0], growth)) for link in every[0]}
+    eye, factor = weakest_eye(case, one.name, joint, every, spread)
     found = one.outcome(load_case, factor)
     force = max(float(pressing(case, eye, way[eye])) for way in every)
-    contact = contact_pressure(case, joint, eye, force * max(grown[eye].high, 1.0))
+    contact = contact_pressure(case, joint, eye, force * max(spread[eye].high, 1.0))
     why = reason("bearing_on_eye", link=eye, why=found.reason)
     if contact is None:
         return found.because(why)
@@ -229,21 +229,61 @@ def bearing_outcome(
     )
 
 
-def _grown(
-    case: Case,
-    joint: str,
-    link: str,
-    joints: Mapping[str, JointReaction],
-    whole: Real,
-    growth: Callable[[str], Scatter],
+def grown(
+    case: Case, joint: str, link: str, joints: Mapping[str, JointReaction], growth: Callable[[str], Scatter]
 ) -> Scatter:
-    """By what the force in a link's eye grows, where several joints press there."""
+    """Return by what the force in an eye grows; where several joints press there, that of all of them.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+        The link has the eye, in which the joint's pin stands.
+    joints : mapping of str to JointReaction
+        Of all joints.
+    growth : callable
+        Of a joint, to how its force grows beside scattered loads (``alula.fea.doubts.load_growth``).
+
+    Returns
+    -------
+    Scatter
+        That of the joint where nothing presses in the eye.
+    """
+    parts, whole = _parts(case, joint, link, joints, growth)
+    return of_sum([(float(size), own) for size, own in parts], float(whole)) if whole > 0.0 else growth(joint)
+
+
+def most_grown(
+    case: Case, joint: str, link: str, joints: Mapping[str, JointReaction], growth: Callable[[str], Scatter]
+) -> Real:
+    """Return the high end of ``grown`` at each pose.
+
+    Parameters
+    ----------
+    case, joint, link, growth
+        As of ``grown``.
+    joints : mapping of str to JointReaction
+        Of all joints, with wrenches (n, 6).
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    parts, whole = _parts(case, joint, link, joints, growth)
+    of_one = np.full(whole.shape, growth(joint).high)
+    if len(parts) == 1:
+        return of_one
+    return np.asarray(1.0 + np.divide(together(parts), whole, out=of_one - 1.0, where=whole > 0.0))
+
+
+def _parts(
+    case: Case, joint: str, link: str, joints: Mapping[str, JointReaction], growth: Callable[[str], Scatter]
+) -> tuple[list[tuple[Real, Scatter]], Real]:
+    """Return the size of each joint's force in an eye with its growth, and that of their sum (...)."""
     eye = link, case.linkage.point_of(joint, link)
     names = set(case.linkage.joints_at(*eye)).intersection(joints_of_pin(case, joint))
-    size = float(np.linalg.norm(whole[:2]))
-    if not size > 0.0:
-        return growth(joint)
-    return of_sum([(float(np.linalg.norm(joints[name].wrench[:2])), growth(name)) for name in sorted(names)], size)
+    parts = [(np.linalg.norm(joints[name].wrench[..., :2], axis=-1), growth(name)) for name in sorted(names)]
+    return parts, np.asarray(np.linalg.norm(in_own_eyes(case, joint, joints)[link][..., :2], axis=-1))
 
 
 def judge_bearing(here: Loading, one: Asked) -> Judged:

@@ -15,7 +15,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, play_source
 from alula.fea.common.verdict import CheckOutcome, Verdict
-from alula.fea.judging.bearing import sharing
+from alula.fea.judging.bearing import grown, in_own_eyes, most_grown, sharing
 from alula.fea.judging.loading import ByHand, Judged, Loading, OverMotion
 from alula.fea.modes.eye_modes import STRAIGHT, EyeFactors, EyeMode, EyeStrength, RoundEye, asme_bth_1, en_1993_1_8
 from alula.fea.modes.eye_scatter import eye_scatter
@@ -177,7 +177,7 @@ def eye_factors(
     plates : sequence of LinkLoads
         What acts on the link at one pose, or on each plate of a pair.
     growth : mapping of str to Scatter
-        Joint -> how its force grows beside scattered loads (``alula.fea.doubts.load_growth``).
+        Point -> how the force in the eye there grows beside scattered loads.
 
     Yields
     ------
@@ -186,15 +186,7 @@ def eye_factors(
     check, link = one.check, one.subject.name
     assert isinstance(check, EyeCheck)
     for strength in strengths(case, link, check):
-        more = [growth.get(joint, Scatter()) for joint in eyes_of(case, link)[strength.name]]
-        spread = load_scatter(case, load_case).times(
-            Scatter(
-                low=min(x.low for x in more),
-                high=max(x.high for x in more),
-                sources=distinct(*(x.told for x in more)),
-            )
-        )
-        yield worse_of(strength, plates, spread)
+        yield worse_of(strength, plates, load_scatter(case, load_case).times(growth[strength.name]))
 
 
 def judge_eyes(here: Loading, one: Asked) -> Judged:
@@ -211,11 +203,10 @@ def judge_eyes(here: Loading, one: Asked) -> Judged:
     Judged
     """
     case, link = here.case, one.subject.name
-    growth = {
-        joint: here.joint_growth(joint).times(sharing(case, joint, link, here.wrenches(joint)))
-        for joints in eyes_of(case, link).values()
-        for joint in joints
-    }
+    ways, growth = [way.joints for way in here.ways()], {}
+    for point, (joint, *_) in eyes_of(case, link).items():
+        pressing = [in_own_eyes(case, joint, way)[link] for way in ways]
+        growth[point] = grown(case, joint, link, ways[0], here.joint_growth).times(sharing(case, link, pressing))
     found = tuple(eye_factors(case, here.load_case, one, here.loads(link), growth))
     return Judged(outcome=eye_outcome(here.load_case, one, found), numbers=found)
 
@@ -275,13 +266,14 @@ def least_of_eyes(over: OverMotion, one: Asked) -> NDArray[np.float64]:
     ndarray, shape (n,)
     """
     assert isinstance(one.check, EyeCheck)
-    least, joints = np.full(len(over.evaluated), np.inf), eyes_of(over.case, one.subject.name)
-    for strength in strengths(over.case, one.subject.name, one.check):
-        grown = max(over.joint_growth(joint).high for joint in joints[strength.name])
-        for plate in over.loads(one.subject.name):
+    link, least = one.subject.name, np.full(len(over.evaluated), np.inf)
+    [way], eyes = over.ways(), eyes_of(over.case, link)
+    for strength in strengths(over.case, link, one.check):
+        most = most_grown(over.case, eyes[strength.name][0], link, way.joints, over.joint_growth)
+        for plate in over.loads(link):
             force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
             for _, low, _ in strength.factors(np.broadcast_to(force, (*least.shape, 2)))[0].values():
-                least = np.minimum(least, low / grown)
+                least = np.minimum(least, low / most)
     return least
 
 

@@ -1,5 +1,6 @@
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +9,13 @@ from edited_cases import edited
 
 from alula.fea.check.run import check_case
 from alula.fea.common.scatter import Scatter
-from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Verdict
-from alula.fea.judging.bearing import in_own_eyes, weakest_eye
+from alula.fea.judging.bearing import grown, in_own_eyes, most_grown, weakest_eye
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, validate
+from alula.loads.statics.joint_reaction import JointReaction
 from alula.reports.sentences import told
 
 
@@ -110,6 +112,34 @@ def test_a_guide_presses_in_no_eye():
     assert np.linalg.norm(guided) > 0.05 * np.linalg.norm(pinned) > 0.0
     for link, sense in (("rod", -1.0), ("slider", 1.0)):
         assert in_own_eyes(case, "B", joints)[link][:2] == pytest.approx(sense * pinned)
+
+
+def test_what_two_joints_press_in_one_eye_grows_by_what_each_of_them_does():
+    """One pulls with 10 N and may with 9 to 12, the other against it with 6 N and may with 4.5 to 6.6: 0.5 to 7.5 N.
+
+    Two poses later they pull alike, where 16 N may be 12.5 to 19.5; a link of one joint grows as that does.
+    """
+    case, loads = read_case("flapping-wing-chosen"), (Source(kind=SourceKind.LOAD),)
+    own = {"AR": Scatter(low=0.9, high=1.2, sources=COUPLES), "AL": Scatter(low=0.75, high=1.1, sources=loads)}
+    wrenches = {"AR": np.zeros((3, 6)), "AL": np.zeros((3, 6))}
+    wrenches["AR"][:, 1] = 10.0, 0.0, 10.0
+    wrenches["AL"][:, 1] = -6.0, 0.0, 6.0
+    whole = {
+        name: JointReaction(joint=name, by="crank", on=case.joints[name].links[1], wrench=of)
+        for name, of in wrenches.items()
+    }
+    poses = [{name: replace(one, wrench=one.wrench[k]) for name, one in whole.items()} for k in range(3)]
+    for joint in own:
+        against, free, alike = (grown(case, joint, "crank", pose, own.get) for pose in poses)
+        assert (against.low, against.high) == pytest.approx((0.5 / 4.0, 7.5 / 4.0))
+        assert (alike.low, alike.high) == pytest.approx((12.5 / 16.0, 19.5 / 16.0))
+        assert against.sources == alike.sources == (*loads, *COUPLES)
+        assert free == own[joint]
+        found = most_grown(case, joint, "crank", whole, own.get)
+        assert found == pytest.approx([against.high, free.high, alike.high])
+        alone = case.joints[joint].links[1]
+        assert grown(case, joint, alone, poses[0], own.get) == own[joint]
+        assert most_grown(case, joint, alone, whole, own.get) == pytest.approx(own[joint].high)
 
 
 def test_joint_that_does_not_exist():

@@ -18,7 +18,7 @@ from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.bearing import sharing
-from alula.fea.judging.eyes import EYES, eye_factors, strengths, worse_of
+from alula.fea.judging.eyes import EYES, strengths, worse_of
 from alula.fea.modes.eye_modes import EyeFactors, EyeMode
 from alula.fea.modes.eye_scatter import eye_scatter
 from alula.fea.motion.envelope_outcomes import _at_worst_pose
@@ -182,11 +182,11 @@ def test_of_all_ways_of_sharing_couples_the_one_that_presses_most_counts(order):
     wrenches = np.zeros((3, 6))
     wrenches[:, :2] = (3.0, 0.0), (0.0, 4.0), (2.0, 0.0)
     beyond = LEFT * (4.0 - 2.0)  # what a search may have left
-    found = sharing(eyes(), "B", "level", [wrenches[0], *wrenches[1:][::order]])
+    found = sharing(eyes(), "level", [wrenches[0], *wrenches[1:][::order]])
     assert found.high == pytest.approx((4.0 + beyond) / 3.0)
-    stands = sharing(eyes(), "B", "level", [wrenches[1], *wrenches[::2][::order]])
+    stands = sharing(eyes(), "level", [wrenches[1], *wrenches[::2][::order]])
     assert stands.high == pytest.approx((4.0 + beyond) / 4.0)
-    assert sharing(eyes(), "B", "level", wrenches[:1]) == Scatter()
+    assert sharing(eyes(), "level", wrenches[:1]) == Scatter()
 
 
 def test_page_and_file_have_every_mode():
@@ -212,11 +212,8 @@ def test_over_a_motion_the_worst_pose_counts():
     def judged_and_singly(one, counted):
         """Return the outcome, the pose at which a link's eyes bear least, and by what they do."""
         over = loading_over(moved, load_case, counted, loaded, grown)
-        growth = {joint: over.joint_growth(joint) for joint in case.linkage.joints_of(one.subject.name)}
-        singly = []
-        for pose in range(len(counted)):
-            plates = [x.chosen(pose) for x in loaded[one.subject.name]]
-            singly.append(min(eye.worst[1].low for eye in eye_factors(case, load_case, one, plates, growth)))
+        poses = [EYES.judge(over.at(pose), one).numbers for pose in range(len(counted))]
+        singly = [min(eye.worst[1].low for eye in numbers) for numbers in poses]
         assert EYES.least(over, one) == pytest.approx(singly)
         pose = first_least(np.where(counted, singly, np.inf))
         assert singly[pose] < max(singly)
