@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 from eye_case import checked, eyes
 
 from alula.fea.asked.asked import asked, asked_of
@@ -187,6 +187,25 @@ def test_of_all_ways_of_sharing_couples_the_one_that_presses_most_counts(order):
     stands = sharing(eyes(), "level", [wrenches[1], *wrenches[::2][::order]])
     assert stands.high == pytest.approx((4.0 + beyond) / 4.0)
     assert sharing(eyes(), "level", wrenches[:1]) == Scatter()
+
+
+def test_every_eye_of_a_link_bears_the_way_that_presses_it_most():
+    case = edited("six-bar", [PLANAR, 'checks={eye={type="eye", minimum=2.4}}', "motion.poses=3"])
+    [load_case], moved = case.load_cases, solve_case_motion(case)
+    loaded = {link: link_histories(moved, link) for link in case.checked_links}
+    over = loading_over(moved, load_case, np.ones(len(moved.motion.angles), dtype=bool), loaded, Growths())
+    here, beyond = over.at(1), 2.0 + LEFT  # what a search may have left
+    [way] = here.ways()
+    more = replace(way, joints={name: replace(one, wrench=2.0 * one.wrench) for name, one in way.joints.items()})
+    for one in asked(case, EyeCheck):
+        plain, found = (
+            {eye.eye: eye.worst[1] for eye in EYES.judge(replace(here, ways=lambda ways=ways: ways), one).numbers}
+            for ways in ([way], [way, more])
+        )
+        assert {eye: band.low for eye, band in found.items()} == pytest.approx(
+            {eye: band.low / beyond for eye, band in plain.items()}
+        )
+        assert {eye: band.value for eye, band in found.items()} == {eye: band.value for eye, band in plain.items()}
 
 
 def test_page_and_file_have_every_mode():

@@ -1,6 +1,7 @@
 """What the search over where pins stand seeks is what joint forces say, whichever way pins point."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -91,6 +92,23 @@ def test_a_pin_bends_between_the_faces_that_look_at_each_other(monkeypatch, low,
         signs.add(np.sign(up))
     assert signs == ({-1.0, 1.0} if apart else set())
     assert apart or not found
+
+
+def test_within_an_eye_is_looked_only_where_its_pin_ends_in_one_wall(monkeypatch):
+    """Not where another joint's pin goes on from it, nor in a hole of two walls."""
+    case, forces = standing(1)
+    (one, *_), eyes = forces.frame.pin_eyes, forces.frame.pin_eyes
+
+    def bounded(pin_eyes):
+        faces = holes.faces_of(case, replace(forces.frame, pin_eyes=pin_eyes))
+        return {name: tuple(math.isfinite(face.far) for face in own) for name, own in faces.items()}
+
+    both = dict.fromkeys(eyes, (True, True))
+    assert bounded(eyes) == both
+    assert bounded({**eyes, "more": (("elsewhere", "X"), eyes[one][0])}) == both | {one: (False, True)}
+    walls = {eyes[one][1]: ((-2.0, -1.0), (1.0, 2.0))}
+    monkeypatch.setattr(holes, "_walls", lambda case, *eye: walls.get(eye, ((-2.0, 2.0),)))
+    assert bounded(eyes) == both | {one: (True, False)}
 
 
 def test_slopes_are_those_of_the_functions():

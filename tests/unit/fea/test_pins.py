@@ -157,6 +157,8 @@ def test_a_short_pin_shears_before_it_bends():
 
 def test_the_eyes_of_a_joint_are_those_of_its_links():
     assert [hole.thickness for hole in eyes(read_case(WING, [PLANAR]), "B")] == [7.0, 7.0]
+    stated = eyes(edited(WING, [PLANAR, 'links.AG.thickness="9 mm"']), "A")
+    assert sorted((hole.low, hole.high) for hole in stated) == [(-4.5, 4.5), (-3.5, 3.5)]
     # The ground has no part: its eye is taken as thick as that of AE.
     assert (
         stress_at(edited(WING, [PLANAR, 'joints.A.pin_gap="0.4 mm"']), "A", {"A": reaction(1, 0, 0, 0, 0, 0)}).lever
