@@ -51,8 +51,8 @@ DERIVED = ("margin", "changes", "tiers")
 WHOLE = ("mass", "size", "frequencies")
 """Entries of a whole result that closed forms are compared with (``tests/unit/fea/test_mass_and_size.py`` and
 ``test_frequency_check.py``)."""
-FEWER_POSES = {"flapping-wing-chosen": ("--set", "motion.poses=73")}
-"""Play at every degree of this motion takes as long as all other motions together; at every fifth it tells the same."""
+FEWER_POSES = {"flapping-wing-chosen": ("--set", "motion.poses=37")}
+"""Play at every degree of this motion takes as long as all other motions together; at every tenth it tells the same."""
 FRAMED = "linkage"
 """Entry whose numbers come from the frame; they are kept with hand calculations and motions alone."""
 

@@ -5,6 +5,7 @@ Friction in a slider-crank
 The built-in case ``slider-crank``: pins and guide rub, so that the drive needs more torque in one direction than it
 gets back in the other.
 """
+# slow: the rod's solid under both directions, some 10 s
 
 import numpy as np
 

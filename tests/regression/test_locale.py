@@ -21,7 +21,7 @@ def test_a_path_with_spaces_and_letters_beyond_ascii(tmp_path: Path, german: dic
     case = tmp_path / "Eulen und Käuze" / "Снег 雪" / f"{NAME}.toml"
     for folder in (scratch, case.parent):
         folder.mkdir(parents=True)
-    shutil.copy(programs.ROOT / "loads" / "cases" / "four-bar-synthesis.toml", case)
+    shutil.copy(programs.ROOT / "loads" / "cases" / "knee.toml", case)
     comma = "import locale; locale.setlocale(locale.LC_ALL, ''); assert locale.str(0.5) == '0,5'; " if german else ""
     code = comma + "from alula.reports.commands.cli import main; main()"
     command = [sys.executable, "-c", code, "check", str(case), "--fidelity", "beam", "-o", str(out)]
@@ -32,7 +32,7 @@ def test_a_path_with_spaces_and_letters_beyond_ascii(tmp_path: Path, german: dic
     assert programs.is_whole(out)
     found = json.loads((out / "result.json").read_text(encoding="utf-8"))
     assert found["case"] == str(case)
-    plain = json.loads(as_json(solved.by_hand("four-bar-synthesis")))
+    plain = json.loads(as_json(solved.by_hand("knee")))
     for key in ("reactions", "checks", "pose", "drive_torque", "verdict"):
         assert found[key] == plain[key]
 

@@ -97,6 +97,7 @@ def tensions(found: LoadCaseResult) -> list[float]:
     return [-float(found.reactions.joints[name].wrench[1]) for name in "ABC"]
 
 
+@pytest.mark.converged
 def test_slender_cranks_share_the_load_as_springs_in_parallel():
     """Springs E A/L under a rigid beam; eyes and bores, a few widths of 300 mm, change the shares by less than 1 %."""
     widths, xs, at, pull = np.array([5.0, 8.0, 6.0]), np.array([0.0, 40.0, 100.0]), 30.0, 30.0
@@ -158,6 +159,7 @@ def bonded(*, halves: bool) -> Case:
     )
 
 
+@pytest.mark.converged
 def test_two_halves_bonded_at_a_pin_are_as_one_bar():
     """The bond gives a little: moments by which the ends are built in agree within 3 %, the displacement within 2 %."""
     (one, moved), (two, also) = (solved(bonded(halves=halves), "solid") for halves in (False, True))

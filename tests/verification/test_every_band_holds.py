@@ -320,6 +320,7 @@ def over_motion_of(of: FourBar, causes: tuple[str, ...], places: Collection[tupl
             assert band.low * (1.0 - LEAST) <= expected <= band.high * (1.0 + LEAST), (joint, inputs)
 
 
+@pytest.mark.converged
 def test_a_motion_holds_pins_anywhere_in_their_play() -> None:
     """Of bearing, columns and the motor, with pins that stand off alike at all poses, at their worst for one."""
     of, angles = FourBar(3), np.linspace(0.0, math.pi / 3.0, POSES)

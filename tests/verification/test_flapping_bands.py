@@ -156,6 +156,7 @@ def test_a_checks_bands_hold_every_coefficient_of_the_range():
     assert sum(wider.values()) > 5  # the air is most of the load
 
 
+@pytest.mark.converged
 def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
     moved = solve_case_motion(swept())
     every = np.ones(len(moved.motion.angles), dtype=bool)

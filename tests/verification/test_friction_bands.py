@@ -139,6 +139,7 @@ def layer_gap(friction: float, stated: tuple[float, float]):
     return next(one for one in checks if one.quantity is Quantity.LAYER_GAP)
 
 
+@pytest.mark.converged
 def test_the_gap_between_layers_is_what_all_friction_that_may_be_leaves() -> None:
     """Links bend further with more friction; where the linkage may lock itself, no gap is sure."""
     told, locked = layer_gap(0.1, (0.05, 0.2)), layer_gap(0.1, (0.05, 2.0))

@@ -210,7 +210,6 @@ def test_a_displacement_whose_band_has_no_end_says_why(case, why):
         (partial(wing, 8.0, fits=False), "pass"),
         (partial(wing, 6.5), "fail"),  # play of its pins reaches further
         (partial(wing, 7.0), "undecided"),
-        (partial(wing, 8.0), "undecided"),
         (partial(wing, 9.0), "pass"),
         (partial(fitted_wing, 8.0), "pass"),
     ],

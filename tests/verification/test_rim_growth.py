@@ -62,6 +62,7 @@ def worst_places(case, pins, links):
         yield link, np.maximum(radii[k], 1e-7), stood[k]
 
 
+@pytest.mark.converged
 def test_bands_hold_what_links_bear_on_the_deformed_shape_with_pins_in_their_holes(leaning):
     """With tight growth alone the rocker bears 8 % more than its band."""
     case, statics, _ = leaning

@@ -54,6 +54,7 @@ def test_loads_of_every_variant_balance(tractions) -> None:
         assert np.abs(tractions.wrenches @ tractions.coefficients(loads, law, transfer)).max() < 1e-8
 
 
+@pytest.mark.converged
 def test_peaks_of_an_envelope_are_those_of_checks(mesh, tractions) -> None:
     loads = every_load()
     columns = np.hstack([tractions.coefficients(loads, law, transfer) for law, transfer in VARIANTS])

@@ -222,7 +222,7 @@ def test_over_a_motion_the_worst_pose_counts():
 
     What the forces of some joints may grow by counts at each pose, too.
     """
-    case = edited("six-bar", ['checks.eye={type="eye", minimum=2.4}', "motion.poses=13"])
+    case = edited("six-bar", [PLANAR, 'checks={eye={type="eye", minimum=2.4}}', "motion.poses=13"])
     [load_case], moved = case.load_cases, solve_case_motion(case)
     grown = Growths(joints={joint: Scatter(high=4.0, sources=PLAY) for joint in list(case.joints)[::2]})
     loaded = {link: link_histories(moved, link) for link in case.checked_links}

@@ -110,7 +110,7 @@ def test_play_asks_a_motor_for_the_most_and_the_least_power_whichever_way_it_tur
     assert size[:3] == (np.hypot(2.0, 2.0), 1.0, np.hypot(4.0, 4.0))
 
 
-MOTOR = ['checks.motor.no_load_speed="3500 rpm"', "motion.poses=25"]
+MOTOR = ['checks.motor.no_load_speed="3500 rpm"', "motion.poses=13"]
 
 
 def limits(*more: str, load_case: str = "wings-12", fits: bool = True):
@@ -131,7 +131,7 @@ def test_the_drive_must_not_be_faster_than_the_motor_without_load() -> None:
 
 def test_torque_over_the_line_and_over_time() -> None:
     """A stall torque twice what the peak needs at 720 rpm passes; one that it exceeds is for a flywheel to decide."""
-    case = read_case("ornithopter", ["motion.poses=25"])
+    case = read_case("ornithopter", ["motion.poses=13"])
     torque = solve_case_motion(case).forces["wings-12"].drive_torque
     peak = float(np.abs(torque).max())
     line = "share of the motor's torque at its speed"

@@ -73,6 +73,7 @@ def rows(store: Store):
     return [(position, values, a.state, repr(a.numbers)) for position, values, a, _ in store.rows()]
 
 
+@pytest.mark.converged
 def test_a_cluster_answers_as_this_machine_does_and_survives_what_dies(tmp_path):
     """A killed worker costs its point an attempt; a killed scheduler ends the study, and this machine goes on."""
     few, many = variants("5..8 by 1"), variants("5..24 by 1")

@@ -73,7 +73,7 @@ def test_console_record_and_notebook_tell_the_same_of_samples() -> None:
             "more": {"type": "safety-factor", "minimum": 9.0, "links": ["crank"]},
         }
     })  # fmt: skip
-    report = alula.tolerance(case, {"load_cases.lift.forces.0": "10 %"}, samples=200, accuracy="10 %")
+    report = alula.tolerance(case, {"load_cases.lift.forces.0": "10 %"}, samples=200, accuracy="50 %")
     sections = tolerance_sections(report.result)
     record, rows = as_record(sections), list(report.table())
     assert [row["number"] for row in rows] == list(report.numbers)
