@@ -125,15 +125,33 @@ def weakest_eye(
         For a joint without pin diameter.
     """
     factors = {}
-    for link, (bears, own) in _borne(case, name, joint).items():
+    for link, (bears, own) in eyes_bear(case, name, joint).items():
         force = max(float(pressing(case, link, way[link])) for way in ways)
         factors[link] = own.on(load[link].on(Band.exact(force, WITHOUT)).inverse(bears))
     weakest = min(factors, key=lambda link: factors[link].low)
     return weakest, factors[weakest]
 
 
-def _borne(case: Case, name: str, joint: str) -> dict[str, tuple[float, Scatter]]:
-    """Link -> force that its eye or slot bears of a joint's pin [N], and what that scatters by."""
+def eyes_bear(case: Case, name: str, joint: str) -> dict[str, tuple[float, Scatter]]:
+    """Return what the eyes or the slot of a joint's links bear of its pin.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the check.
+    joint : str
+
+    Returns
+    -------
+    dict of str to tuple of (float, Scatter)
+        Link -> force [N], and what that scatters by.
+
+    Raises
+    ------
+    CaseError
+        For a joint without pin diameter.
+    """
     record = case.joints[joint]
     if record.pin_diameter is None:
         raise CaseError(
@@ -322,7 +340,7 @@ def least_of_bearing(over: OverMotion, one: Asked) -> Real:
     with np.errstate(divide="ignore"):  # without a force there is no end
         every = [
             own.low * bears / pressing(case, link, borne[link])
-            for link, (bears, own) in _borne(case, one.name, joint).items()
+            for link, (bears, own) in eyes_bear(case, one.name, joint).items()
         ]
     return np.asarray(np.min(every, axis=0))
 

@@ -7,12 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.outcomes.pins import between_layers
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.refine.refinement import Effort
 from alula.fea.tolerance.sizes import SizedCheck, SizeEnds, resized, sized_check
 from alula.fea.tolerance.states import Sampler, States
 from alula.fea.tolerance.told import PEAKS, SolvedCheck, Told
 from alula.loads.case.case import Case
+from alula.loads.case.layers import joints_of_pin
+from alula.loads.records.check_spec import PinCheck
 
 Real = NDArray[np.float64]
 
@@ -171,6 +174,9 @@ class SampledCheck:
 def covered(case: Case, outcome: CheckOutcome) -> bool:
     """Return True for an outcome whose number follows from statics and unit solutions.
 
+    That of a pin of several joints between layers does not: it is in no proportion to the force of one joint, and
+    samples have no couples.
+
     Parameters
     ----------
     case : Case
@@ -182,5 +188,8 @@ def covered(case: Case, outcome: CheckOutcome) -> bool:
     """
     if outcome.quantity is Quantity.BUCKLING_FACTOR:
         return outcome.subject.kind == "link" and case.part_of(outcome.subject.name).is_beam  # others buckle as solids
+    if outcome.subject.kind == "pin" and isinstance(case.all_checks[outcome.name], PinCheck):
+        joint = outcome.subject.name
+        return len(joints_of_pin(case, joint)) == 1 or not between_layers(case, joint)
     known = (Quantity.SAFETY_FACTOR, Quantity.SUSTAINED_STRESS, *PEAKS, Quantity.DISPLACEMENT)
     return outcome.quantity in known

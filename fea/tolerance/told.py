@@ -16,6 +16,7 @@ from alula.fea.asked.asked import place_of
 from alula.fea.buckling.buckling import link_factors
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.verdict import CheckOutcome, Quantity
+from alula.fea.judging.bearing import eyes_bear, in_own_eyes
 from alula.fea.motion.buckling_history import axial_compression
 from alula.fea.outcomes.limits import layers_of
 from alula.fea.outcomes.result import CheckResult, SolidResult
@@ -251,28 +252,32 @@ class Told:
 
     def _pin(self, outcome: CheckOutcome, joint: str) -> PeakShares | None:
         case, sampler = self.check.result.case, self.check.sampler
+        if isinstance(case.all_checks[outcome.name], BearingCheck):
+            return self._eyes(outcome, joint)
         here, nominal = (
             np.linalg.norm(states.forces[outcome.load_case].joints[joint].wrench[:, :2], axis=1)
             for states in (self.states, self.check.nominal)
         )
         if nominal[0] == 0.0:
             return None
-        if isinstance(case.all_checks[outcome.name], BearingCheck):
-            links = [link for link in case.joints[joint].links if link in case.checked_links]
-            cards = {case.part_of(link).material: case.material_of(link) for link in links}
-            factors = [
-                sampler.factor(
-                    self.deviations, name, "ultimate_strength" if card.ultimate_strength else _strength(card)
-                )
-                for name, card in cards.items()
-            ]
-            strength = np.min(factors, axis=0)
-        else:
-            strength = sampler.factor(
-                self.deviations, case.joints[joint].pin_material, _strength(case.pin_material(joint))
-            )
+        strength = sampler.factor(self.deviations, case.joints[joint].pin_material, _strength(case.pin_material(joint)))
         with np.errstate(divide="ignore"):
             return _same(strength * nominal[0] / here)
+
+    def _eyes(self, outcome: CheckOutcome, joint: str) -> PeakShares | None:
+        """Factors on what the weaker eye of a joint bears, in which all joints of its pin press together."""
+        case, found = self.check.result.case, list[Real]()
+        nominal, here = (
+            in_own_eyes(case, joint, states.forces[outcome.load_case].joints)
+            for states in (self.check.nominal, self.states)
+        )
+        for link, (bears, _) in eyes_bear(case, outcome.name, joint).items():
+            card = case.material_of(link)
+            strength = self._factor(link, "ultimate_strength" if card.ultimate_strength else _strength(card))
+            with np.errstate(divide="ignore"):
+                found.append(bears * np.concatenate([[1.0], strength]) / _sizes(nominal[link], here[link]))
+        first, *others = np.min(found, axis=0)
+        return _same(np.array(others) / first) if np.isfinite(first) else None
 
     def _column(self, load_case: str, link: str) -> PeakShares | None:
         """Factors on the buckling factors: 1/factor is linear in the compression along the link, to first order."""
@@ -332,6 +337,11 @@ class Told:
                     total += case.links[name].count * work / self._factor(name, "youngs_modulus")
             found.append(total)
         return np.hypot(*found)
+
+
+def _sizes(*wrenches: Real) -> Real:
+    """Forces across the pin of wrenches (n, 6) one after the other."""
+    return np.asarray(np.linalg.norm(np.concatenate(wrenches)[:, :2], axis=1))
 
 
 def _same(factor: Real) -> PeakShares:

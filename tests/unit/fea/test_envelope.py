@@ -422,7 +422,9 @@ def pose_of_bearing(monkeypatch, pressed, bears, evaluated):
     """Return the pose at which two eyes are judged that are pressed so, and bear so much."""
     monkeypatch.setattr(bearing, "in_own_eyes", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
     monkeypatch.setattr(bearing, "pressing", lambda case, link, force: force)
-    monkeypatch.setattr(bearing, "_borne", lambda *_: {eye: (x, Scatter()) for eye, x in zip("ab", bears, strict=True)})
+    monkeypatch.setattr(
+        bearing, "eyes_bear", lambda *_: {eye: (x, Scatter()) for eye, x in zip("ab", bears, strict=True)}
+    )
     told, joint = [], SimpleNamespace(wrench=np.zeros((4, 6)))
     judge = SimpleNamespace(least=BY_HAND[BearingCheck].least, judge=lambda here, one: told.append(here) or one)
     monkeypatch.setitem(BY_HAND, BearingCheck, judge)

@@ -10,6 +10,7 @@ from arm_case import ARM, BAR
 from alula.fea.common.band import Band
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject
 from alula.fea.motion.buckling_history import axial_compression
+from alula.fea.tolerance.numbers import covered
 from alula.fea.tolerance.states import Sampler
 from alula.fea.tolerance.told import SolvedCheck, Told
 from alula.geometry.materials.material import TOLD
@@ -49,6 +50,56 @@ def samples(rows):
         result=SimpleNamespace(case=case), sampler=sampler, deviation=none, nominal=sampler.states(none), responses={}
     )
     return Told(check=check, states=sampler.states(deviations), deviations=deviations)
+
+
+def hanging(layers, **changes):
+    """A hanger on the pin by which the arm rests on its strut; each bears a force of its own."""
+    data = tomllib.loads(ARM.format(part=BAR, fillet=1.0, force=1.0, minimum=3.0, thickness=3.0))
+    data["links"] |= {"hanger": {"part": "arm", "points": {"B": ["0 mm", "0 mm"], "W": ["30 mm", "0 mm"]}}}
+    data["links"]["strut"]["part"] = "arm"
+    data["joints"]["B"]["points"] = ["B", "B"]
+    data["joints"]["C"] = {"links": ["arm", "hanger"], "points": ["B", "B"], "pin_diameter": "2 mm"}
+    data["pose"] |= {"coordinate": "hanger", "angle": "-90 deg"}
+    data["drive"] = {"link": "hanger", "joint": "C"}
+    data["load_cases"]["tip"]["forces"] += [{"link": "hanger", "at": "W", "force": ["0 N", "-4 N"]}]
+    data["checks"] = {"eyes": {"type": "bearing"}, "pins": {"type": "pins", "minimum": 1.0}}
+    if layers:
+        data["layer_spacing"] = "4 mm"
+        data["links"]["frame"]["thickness"] = "3 mm"
+        for height, link in enumerate(("frame", "arm", "strut", "hanger")):
+            data["links"][link]["layer"] = height
+    return validate(data | changes)
+
+
+def safety_factor(name, joint):
+    """Of a check of a joint's pin."""
+    return CheckOutcome.of(name, Subject.pin(joint), "tip", Quantity.SAFETY_FACTOR, BAND, 3.0)
+
+
+def test_bearing_is_told_by_all_that_presses_in_an_eye():
+    """The hanger pulls by 4 N, the strut takes that less twice what lifts the tip, and the arm the difference of both.
+
+    On the pin that all three have, the link of each joint decides that bears more.
+    """
+    case = hanging(layers=False, tolerances=dict.fromkeys(("load_cases.tip.forces.0",), "400 %"))
+    sampler = Sampler(case=case, pose=case.solve_pose(), masses={}, variables=toleranced(case))
+    none, deviations = np.zeros((1, 1)), np.array([[0.0], [-1.0], [-2.0], [-4.0]])
+    check = SolvedCheck(
+        result=SimpleNamespace(case=case), sampler=sampler, deviation=none, nominal=sampler.states(none), responses={}
+    )
+    told = Told(check=check, states=sampler.states(deviations), deviations=deviations)
+    # Tip 1, 0, -1 and -3 N: the strut bears 2, 4, 6 and 10 N, the hanger 4 N, the arm 2, 0, 2 and 6 N.
+    for joint, forces in (("B", [2.0, 4.0, 6.0, 10.0]), ("C", [4.0, 4.0, 4.0, 6.0])):
+        expected = np.outer([5.0, 4.0, 7.0], forces[0] / np.array(forces))
+        assert told.bands(safety_factor("eyes", joint)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("layers", [False, True])
+def test_the_stress_of_a_pin_of_several_joints_is_told_where_it_is_in_proportion_to_one_force(layers):
+    """Between layers what the other joint presses on the pin bends it as well; all else is told."""
+    case = hanging(layers=layers)
+    assert [covered(case, safety_factor("pins", joint)) for joint in "BCOP"] == [not layers, not layers, True, True]
+    assert all(covered(case, safety_factor("eyes", joint)) for joint in "BCOP")
 
 
 ROWS = [
