@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.joints.fits import RUNNING
@@ -11,6 +11,7 @@ from alula.geometry.joints.holes import Known, largest_clearance
 from alula.geometry.joints.joint_kinds import Surface
 from alula.loads.case.connection_rules import connected_joints
 from alula.loads.case.core import CoreCase
+from alula.loads.case.layers import on_one_axis
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.reason import reason
@@ -100,6 +101,8 @@ def check_friction(case: CoreCase) -> None:
             )
         if case.drive is None or case.pose.coordinate is None:
             raise CaseError(f"{entry}, but friction opposes a motion and nothing drives this linkage; leave it out")
+    for names in shared_pins(case):
+        _check_rubbing_pin(case, names)
     for name in case.load_cases if rubbing else ():
         for way in ("forward", "backward"):
             if f"{name} {way}" in case.load_cases:
@@ -107,6 +110,62 @@ def check_friction(case: CoreCase) -> None:
                     f"load_cases.{name} {way}: with friction, load case '{name}' in one direction has this name as "
                     "well; rename it"
                 )
+
+
+def shared_pins(case: CoreCase) -> tuple[tuple[str, ...], ...]:
+    """Return the joints of every pin of several joints that rubs.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    tuple of tuple of str
+        Of each pin, those without friction too.
+    """
+    own, joints = set(rubbing_joints(case)), case.joints
+    every = (tuple(name for name in names if joints[name].kind.has_pin) for names in on_one_axis(case))
+    return tuple(names for names in every if len(names) > 1 and any(joints[n].pivots and n in own for n in names))
+
+
+def standing_link(case: CoreCase, names: Sequence[str]) -> str | None:
+    """Return the link that all joints of a pin have in common: it is taken to stand there, and the others rub on it.
+
+    Parameters
+    ----------
+    case : CoreCase
+    names : sequence of str
+        Its joints.
+
+    Returns
+    -------
+    str or None
+        None where there is none.
+    """
+    first, *others = (case.joints[name].bored for name in names)
+    return next((link for link in first if all(link in other for other in others)), None)
+
+
+def _check_rubbing_pin(case: CoreCase, names: Sequence[str]) -> None:
+    """Refuse friction on a pin of several joints that does not stand in the link that these have in common.
+
+    The friction of a joint is that of its own force. In the link in which the pin stands all of them press.
+    """
+    stands = standing_link(case, names)
+    tight = [(name, link) for name in names for link in case.joints[name].tight_in]
+    name = next(name for name in names if case.joints[name].friction > 0.0)
+    entry = f"joints.{name}.friction: its pin is that of {', '.join(map(repr, names))}"
+    if stands is None:
+        raise CaseError(
+            f"{entry}, which have no link in common, so that nothing tells in which link it stands while others rub on "
+            "it; let all of them have that link"
+        )
+    if tight and all(link != stands for _, link in tight):
+        raise CaseError(
+            f"{entry} and is tight in '{tight[0][1]}', on which so all others rub, but the link that these joints have "
+            f"in common is '{stands}'; let all of them have '{tight[0][1]}'"
+        )
 
 
 def check_clamps(case: CoreCase) -> None:
@@ -245,6 +304,15 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             what=reason("no_couple_on", joints=short),
             why=reason("no_guide_length", joint=short[0]),
         )
+    for names in shared_pins(case):
+        stands = standing_link(case, names)
+        if not any(case.joints[name].tight_in for name in names):
+            yield Caveat(
+                heading=Heading.ASSUMED,
+                topic=Topic.FRICTION,
+                what=reason("shared_pin_stands", joints=list(names), link=stands),
+                why=reason("none_is_tight"),
+            )
     asked = any(isinstance(check, MotorCheck) for check in case.checks.values())
     if asked and not rubbing_joints(case):
         first = next(iter(case.pinned_joints), next(iter(case.joints)))
