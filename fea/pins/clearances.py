@@ -65,14 +65,14 @@ def clearances_of(case: Case, frame: LinkageFrame) -> tuple[HoleClearance, ...]:
     Returns
     -------
     tuple of HoleClearance
-        Without holes that hold their pin tightly, slots and guides. Where nothing tells how a pin sits in a hole, it
-        may be pressed and as loose as ``LOOSE``; the value is a running fit, and a pressed pin in a link, such as the
-        ground, whose thickness nothing tells.
+        Those of slots too, without guides and holes that hold their pin tightly. Where nothing tells how a pin sits in
+        a hole, it may be pressed and as loose as ``LOOSE``; the value is a running fit, and a pressed pin in a link,
+        such as the ground, whose thickness nothing tells.
     """
     linkage, found = frame.pose.linkage, []
     for name in frame.pin_beams:
         joint = linkage.joints[name]
-        if joint.slides or name in frame.bonded:
+        if not joint.kind.has_pin or name in frame.bonded:
             continue
         sits = linkage.pin_holes(name)
         if sits.shared is not None:
@@ -155,8 +155,10 @@ def gap_over_diameter(case: Case, joint: str, link: str) -> tuple[float, float] 
     Returns
     -------
     tuple of 2 float or None
-        Least and largest [rad]; None where the pin has no heads that hold it.
+        Least and largest [rad]; None where the pin has no heads that hold it, as in a slot.
     """
+    if link == case.joints[joint].slotted:
+        return None
     every = [case.joints[name].heads for name in joints_of_pin(case, joint) if case.joints[name].pivots]
     stated = [heads for heads in every if heads is not None]
     if not stated or len(stated) < len(every):

@@ -24,10 +24,12 @@ from alula.fea.frame.linear import FactorisedFrame
 from alula.fea.frame.linkage_frame import LinkageFrame
 from alula.fea.frame.model import FrameModel
 from alula.fea.frame.system import natural_deformations
+from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.parts.part import Section
 from alula.loads.case.case import Case
 from alula.loads.case.forks import eye_of
 from alula.loads.case.heights import thickness
+from alula.loads.case.layers import Eye
 
 Real = NDArray[np.float64]
 WITHIN = (0.5, 0.75)
@@ -232,20 +234,26 @@ class RimFrame:
         """
         solved = FactorisedFrame(frame.model)
         linkage = frame.pose.linkage
-        names: dict[tuple[str, str], list[tuple[str, str]]] = {}  # link and point -> joints there, and the link
+        names: dict[tuple[Eye, str], list[tuple[str, str]]] = {}  # hole -> joints there, and the link
         for name in frame.pin_beams:
             for link in linkage.joints[name].links:
-                names.setdefault((link, linkage.point_of(name, link)), []).append((name, link))
+                eye = link, linkage.point_of(name, link)
+                names.setdefault(_hole_of(linkage, name, eye), []).append((name, link))
         # A pin of several joints is tight in a link where one of them says so.
-        eyes = [eye for eye, each in names.items() if all(one in rims for one in each)]
+        holed = [hole for hole, each in names.items() if all(one in rims for one in each)]
         rows = np.array([6 * i + row for i in frame.pin_beams.values() for row in range(6)], dtype=np.int64)
-        number = {name: k for k, name in enumerate(frame.pin_beams)}
-        ends, holes = np.zeros((len(number), 12, 4 * len(eyes))), []
-        for k, eye in enumerate(eyes):
-            low, high = rims[names[eye][0]]
-            for name, end in ((x, end) for x, each in frame.pin_eyes.items() for end in (0, 1) if each[end] == eye):
-                ends[number[name], 6 * end : 6 * end + 6, 4 * k : 4 * k + 4] = _stands(low, high)
-            holes.append(Hole(link=eye[0], joints=tuple(name for name, _ in names[eye]), low=low, high=high))
+        beam_ends = [
+            (k, _hole_of(linkage, name, eye), end)
+            for k, name in enumerate(frame.pin_beams)
+            for end, eye in enumerate(frame.pin_eyes[name])
+        ]
+        ends, holes = np.zeros((len(frame.pin_beams), 12, 4 * len(holed))), []
+        for k, hole in enumerate(holed):
+            low, high = rims[names[hole][0]]
+            for beam, _, end in (one for one in beam_ends if one[1] == hole):
+                ends[beam, 6 * end : 6 * end + 6, 4 * k : 4 * k + 4] = _stands(low, high)
+            own = tuple(name for name, _ in names[hole])
+            holes.append(Hole(link=hole[0][0], joints=own, low=low, high=high))
         pins = list(frame.pin_beams.values())
         deformed = natural_deformations(solved.system.lengths[pins]) @ solved.system.matrices[pins]
         opening = -(deformed @ ends).reshape(len(rows), -1)
@@ -371,6 +379,11 @@ def _stresses(unit: Real, natural: Real) -> Real:
 def _unit_stresses(section: Section) -> tuple[float, float, float, float]:
     twisted = float(equivalent_stress(section, np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]))[0])
     return 1.0 / section.area, section.half_y / section.i_z, section.half_z / section.i_y, twisted
+
+
+def _hole_of(linkage: Linkage, joint: str, eye: Eye) -> tuple[Eye, str]:
+    """Return what tells the hole of an eye from others; in a slot the pin of each joint stands by itself."""
+    return eye, joint if eye[0] == linkage.joints[joint].slotted else ""
 
 
 def _stands(low: float, high: float) -> Real:

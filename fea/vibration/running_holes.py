@@ -39,13 +39,13 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     Returns
     -------
     tuple of (str, str)
-        Joint and link. A slot is none of them: it holds the tilt about its direction, as its frame does. Nor is a hole
-        between heads without a gap, which hold its link as it is.
+        Joint and link. A slot is one of them where it states a clearance. None are holes between heads without a gap,
+        which hold their link as it is.
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():
         if in_holes(case, name):
-            every = ((link, linkage.pin_holes(name)[link].high) for link in joint.bored)
+            every = ((link, linkage.pin_holes(name)[link].high) for link in joint.links)
             found += [(name, link) for link, play in every if play > 0.0 and _tilts(case, name, link)]
     return tuple(found)
 

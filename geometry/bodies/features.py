@@ -48,7 +48,7 @@ class Slot(CaseModel):
     last: Length
     """x of the centre of the other round end."""
     clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """How much wider the slot is than the pin."""
+    """How much wider the slot is than the pin; by that it tilts in the slot where links lie in layers."""
 
     @model_validator(mode="after")
     def _order(self) -> "Slot":
