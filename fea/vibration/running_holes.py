@@ -39,8 +39,8 @@ def running_holes(case: Case) -> tuple[Hole, ...]:
     Returns
     -------
     tuple of (str, str)
-        Joint and link. A slot is one of them where it states a clearance. None are holes between heads without a gap,
-        which hold their link as it is.
+        Joint and link. Slots are among them, but holes between heads without a gap are not, which hold their link as
+        it is.
     """
     linkage, found = case.linkage, []
     for name, joint in linkage.joints.items():

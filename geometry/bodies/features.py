@@ -47,8 +47,14 @@ class Slot(CaseModel):
     """x of the centre of one round end in the link's frame: how far the pin's centre may travel."""
     last: Length
     """x of the centre of the other round end."""
-    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """How much wider the slot is than the pin; by that it tilts in the slot where links lie in layers."""
+    clearance: Annotated[Length, NOT_NEGATIVE] | None = None
+    """How much wider the slot is than the pin. Left out, it is as wide as the pin in the plane, and between layers the
+    pin may tilt in it as in a hole of which nothing is stated."""
+
+    @property
+    def wider(self) -> float:
+        """How much wider than the pin it is in the plane [mm]."""
+        return self.clearance or 0.0
 
     @model_validator(mode="after")
     def _order(self) -> "Slot":

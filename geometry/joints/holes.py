@@ -84,7 +84,7 @@ class PinHoles:
         return math.fsum(hole.high for hole in self.holes if hole.stated)
 
 
-def pin_holes(joint: Joint, slot: float = 0.0) -> PinHoles:
+def pin_holes(joint: Joint, slot: float | None = 0.0) -> PinHoles:
     """Return what a joint states of the holes of its pin.
 
     A plain clearance or fit is that of the hole in which the pin is not tight. A hole of which nothing is stated may be
@@ -93,8 +93,8 @@ def pin_holes(joint: Joint, slot: float = 0.0) -> PinHoles:
     Parameters
     ----------
     joint : Joint
-    slot : float, optional
-        Clearance across the slot in the first link, of a pin in a slot [mm].
+    slot : float or None, optional
+        Clearance across the slot in the first link, of a pin in a slot [mm]; None where nothing is stated.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def pin_holes(joint: Joint, slot: float = 0.0) -> PinHoles:
         first, second = (_hole(link, known, (0.0, 0.0)) for link in joint.links)
         return PinHoles(holes=(first, second))
     loose, own, plain = loose_links(joint), by_link(joint), _plain(joint)
-    if joint.slotted is not None:
+    if joint.slotted is not None and slot is not None:
         own = {joint.links[0]: (Known.SLOT, (slot, slot))}
     if plain is not None and len(loose) == 2:
         half = 0.5 * _middle(plain)
@@ -114,7 +114,7 @@ def pin_holes(joint: Joint, slot: float = 0.0) -> PinHoles:
             HolePlay(link=link, low=0.0, high=plain[1][1], nominal=half, known=plain[0]) for link in joint.links
         )
         return PinHoles(holes=(first, second), shared=plain[1])
-    pressed = {link: (Known.PRESSED, (0.0, 0.0)) for link in joint.links if link not in loose}
+    pressed = {link: (Known.PRESSED, (0.0, 0.0)) for link in joint.bored if link not in loose}
     told = pressed | own | ({} if plain is None else dict.fromkeys(loose, plain))
     first, second = (
         _hole(link, *told[link]) if link in told else _unknown(link, joint.pin_diameter) for link in joint.links

@@ -252,7 +252,8 @@ class Linkage:
         Returns
         -------
         PinHoles
-            Of a pin in a slot, the slot's clearance across it is that of the first link.
+            Of a pin in a slot, the slot's clearance across it is that of the first link; a link without a part has a
+            slot as wide as the pin.
         """
         return self._pin_holes[name]
 

@@ -633,8 +633,8 @@ def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
     (x, y), slot = record.points[name], record.slots.get(name)
     if slot is not None:
         middle, length = (slot.first + slot.last) / 2.0, slot.last - slot.first
-        width = diameter + slot.clearance
-        pin = Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance)
+        width = diameter + slot.wider
+        pin = Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.wider)
     else:
         foot = record.arms.get(name)
         pin = Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])

@@ -41,7 +41,7 @@ def ornithopter_entries(rules: OrnithopterRules) -> dict[str, object]:
         found |= {
             f"links.base.points.{pivot}": [_mm(side * sizes.pivot_offset), height],
             f"links.{link}.points.slot": [_mm(-sizes.slot_reach), "0 mm"],
-            f"links.{link}.slots.slot": {"first": _mm(low), "last": _mm(high)},
+            f"links.{link}.slots.slot": {"first": _mm(low), "last": _mm(high), "clearance": _mm(0.0)},
             f"pose.near.{link}": f"{angle!r} deg",
         }
     for part, body in bodies.items():

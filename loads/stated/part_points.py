@@ -218,4 +218,4 @@ def pinned(name: str, points: object, slots: object, joints: object) -> tuple[Wa
 
 def _slotted(point: Wanted, slot: Slot) -> Wanted:
     middle = (slot.first + slot.last) / 2.0, point.place[1]
-    return replace(point, place=middle, slot=(slot.first, slot.last), clearance=slot.clearance)
+    return replace(point, place=middle, slot=(slot.first, slot.last), clearance=slot.wider)

@@ -47,13 +47,13 @@ width = "10 mm"
 thickness = "4 mm"
 fillet_radius = "2 mm"
 """
-TILTED = {"tight_in": "crank"}, {"clearance": "0.1 mm"}
 
 
-def lever(slot: str = "0 mm", **joint: Any) -> Case:
+def lever(slot: str | None = "0 mm", **joint: Any) -> Case:
     data = tomllib.loads(LEVER)
     data["joints"]["S"] |= joint
-    data["links"]["lever"]["slots"]["S"]["clearance"] = slot
+    if slot is not None:
+        data["links"]["lever"]["slots"]["S"]["clearance"] = slot
     return validate(data)
 
 
@@ -96,14 +96,16 @@ def test_nothing_presses_along_a_slot():
     assert wrench[3:5] @ across == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_hole_of_which_nothing_is_stated_is_open_where_its_pin_slides_too():
-    """From a pressed pin to one that runs: the band of what the crank bears holds both."""
-    case = lever()
+@pytest.mark.parametrize(("link", "slot", "joint"), [("crank", "0 mm", {}), ("lever", None, {"tight_in": "crank"})])
+def test_what_is_not_stated_is_open_where_a_pin_slides_too(link, slot, joint):
+    """From a pressed pin to one that runs, in the hole or in the slot: the band of what the crank bears holds both."""
+    case = lever(slot, **joint)
     found = solved(case)
-    assert [one.holes for one in clearances_of(case, found.frame)] == [(("S", "crank"),)]
+    assert [(one.holes, one.stated) for one in clearances_of(case, found.frame)] == [((("S", link),), False)]
     couples = [float(np.hypot(*one.joints["S"].wrench[3:5])) for one in found.sharings]
-    tight, wide = (borne(solved(lever(**joint)))[2] for joint in TILTED)
-    assert (min(couples), max(couples)) == pytest.approx((wide, tight), rel=1e-3)
+    wide = lever("0.1 mm" if link == "lever" else slot, **(joint or {"clearance": "0.1 mm"}))
+    ends = borne(solved(lever(tight_in="crank")))[2], borne(solved(wide))[2]
+    assert (min(couples), max(couples)) == pytest.approx((min(ends), max(ends)), rel=1e-3)
     assert solved(lever(tight_in="crank")).pins is None
 
 
@@ -122,9 +124,10 @@ def test_a_slot_that_is_counted_from_a_pin_is_a_hole_of_its_own(point):
     assert on_crank == pytest.approx(2.0 * force, rel=1e-6)
 
 
-def test_a_slot_with_a_clearance_has_a_hinge_in_frequencies():
-    """A slot that states none holds the tilt of its pin."""
+def test_a_slot_that_may_be_wider_has_a_hinge_in_frequencies():
+    """One as wide as its pin holds that pin's tilt."""
     assert running_holes(lever(tight_in="crank")) == ()
+    assert running_holes(lever(None, tight_in="crank")) == (("S", "lever"),)
     assert running_holes(lever("0.1 mm", tight_in="crank")) == (("S", "lever"),)
     assert running_holes(lever("0.1 mm")) == (("S", "lever"), ("S", "crank"))
 
