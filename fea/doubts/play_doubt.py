@@ -1,9 +1,8 @@
 """What play makes of the numbers of a check: links through changed forces, and how much load the linkage holds."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,17 +19,14 @@ from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
 from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band
 from alula.geometry.base.errors import CannotRunError, CaseError
-from alula.geometry.bodies.body import Body
 from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.states.play import Displaced, Play, Span
-from alula.loads.statics.effort import DriveEffort
-from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 
-OUT_OF_PLANE = [2, 3, 4]
-"""Components of a wrench that equilibrium in the plane does not give."""
+IN_PLANE = np.array([True, True, False, False, False, True])
+"""Components of a wrench that equilibrium in the plane gives."""
 
 
 def play_doubt(
@@ -131,33 +127,35 @@ class _OnLink:
 
 
 def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> _OnLink:
-    play, body = forces.play, case.body(link)
+    play = forces.play
     assert play is not None
-    source, acting = play_source(play.clearances), link_loads(load_case, link, body, forces.reactions, loads)
-    if play.through_dead_point or play.nominal is None:
+    source = play_source(play.clearances)
+    acting = link_loads(load_case, link, case.body(link), forces.reactions, loads)
+    if play.through_dead_point:
         lost = Scatter(low=0.0, high=np.inf, sources=(source,))
         without = [on_plates(case, link, acting)]
         nothing = np.zeros((2, 1))
         return _OnLink(answers=without, peaks=nothing, by_hand=nothing, rules=(lambda *_: lost,) * 3)
-    at = partial(_at, load_case, link, body, acting)
-    ends = _ends(play, forces)
-    standing = [(_reactions(play, forces, play.nominal), play.nominal), *(end for _, _, end in ends)]
-    answers = [on_plates(case, link, at(*state)) for state in standing]
+    each = [way for way in play.loose.ways for _ in range(2)]
+    ends = [way for way, sound in zip(each, play.ends.sound[1:], strict=True) if sound]
+    answers = _answers(case, acting, play.ends)
     numbers = _numbers(case, link, answers)
-    worst = list[Plates]()
+    worst = list[Mapping[str, Real]]()
     for plain, *tried in numbers.tolist():
         slopes = {name: np.zeros(2) for name in play.loose.radii}
-        for (name, i, _), one in reversed(list(zip(ends, tried, strict=True))):  # that at the end in x or y rules
+        for (name, i), one in reversed(list(zip(ends, tried, strict=True))):  # that at the end in x or y rules
             slopes[name][i] = one - plain
         if 2.0 * sum(float(np.linalg.norm(slope)) for slope in slopes.values()) > LEAST * plain:
-            worst += [on_plates(case, link, at(*state)) for state in _worst(play, forces, slopes)]
+            worst += [slopes, {name: -slope for name, slope in slopes.items()}]
     if worst:
-        numbers = np.hstack([numbers, _numbers(case, link, worst)])
+        furthest = {name: np.array([slopes[name] for slopes in worst]) for name in play.loose.radii}
+        others = _answers(case, acting, play.solved(play.loose.at_rims(furthest)))
+        answers, numbers = [*answers, *others], np.hstack([numbers, _numbers(case, link, others)])
     held = [_scatter(play.forces[name], source) for name in case.linkage.joints_of(link)] if case.layered else []
 
     def alone(value: float, found: Sequence[float]) -> Scatter:
         steps = {name: np.zeros(2) for name in play.loose.radii}
-        for (name, i, _), one in zip(ends, found, strict=False):
+        for (name, i), one in zip(ends, found, strict=False):
             steps[name][i] = max(steps[name][i], abs(one - value))
         slack = sum(float(np.linalg.norm(step)) for step in steps.values())
         low, high = min(value - slack, *found, value), max(value + slack, *found, value)
@@ -172,7 +170,7 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         return Scatter(low=max(low, 0.0), high=high, sources=(source,))
 
     rules = with_couples, with_couples, alone
-    return _OnLink(answers=[*answers, *worst], peaks=numbers[:2], by_hand=numbers[2:], rules=rules)
+    return _OnLink(answers=answers, peaks=numbers[:2], by_hand=numbers[2:], rules=rules)
 
 
 def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:
@@ -181,59 +179,15 @@ def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:
     return np.vstack([hand.peaks, hand.displacement, hand.inverse_buckling])
 
 
-def _at(load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced) -> LinkLoads:
-    """What acts on a link with its joints at offsets.
+def _answers(case: Case, plain: LinkLoads, here: Displaced) -> list[Plates]:
+    """What acts on a link with its joints at offsets, in each of n states that are sound.
 
     Components out of the plane are those of the link ``plain``, in its own axes, since play changes none of them.
     """
-    found = link_loads(load_case, link, body, here, at.loads)
-    pins = [
-        replace(pin, wrench=_across(pin.wrench, was.wrench)) for pin, was in zip(found.pins, plain.pins, strict=True)
-    ]
-    ends = [
-        replace(end, wrench=_across(end.wrench, was.wrench)) for end, was in zip(found.ends, plain.ends, strict=True)
-    ]
-    return replace(found, pins=tuple(pins), ends=tuple(ends))
-
-
-def _across(wrench: Real, plain: Real) -> Real:
-    found = wrench.copy()
-    found[OUT_OF_PLANE] = plain[OUT_OF_PLANE]
-    return found
-
-
-@lru_cache(maxsize=2)
-def _ends(play: Play, forces: JointForces) -> tuple[tuple[str, int, tuple[Reactions, Displaced]], ...]:
-    """Joint, number of a direction of its play, and forces with it at an end there; each direction has two ends."""
-    found = []
-    for name in play.loose.radii:
-        for i, share in enumerate(np.eye(2)[: len(play.loose.directions(name))]):
-            for sign in (1.0, -1.0):
-                here = play.at(play.loose.offsets({name: sign * share}))
-                if here is not None:
-                    found.append((name, i, (_reactions(play, forces, here), here)))
-    return tuple(found)
-
-
-def _worst(play: Play, forces: JointForces, slopes: Mapping[str, Real]) -> Iterator[tuple[Reactions, Displaced]]:
-    """Forces where a number is largest and least, from what each joint makes of it in x and in y."""
-    for sign in (1.0, -1.0):
-        shares = {name: sign * slope / (float(np.linalg.norm(slope)) or 1.0) for name, slope in slopes.items()}
-        here = play.at(play.loose.offsets(shares))
-        if here is not None:
-            yield _reactions(play, forces, here), here
-
-
-def _reactions(play: Play, forces: JointForces, here: Displaced) -> Reactions:
-    """Return the joint reactions at offsets, in the plane."""
-    plain = forces.reactions
-    effort = DriveEffort.TORQUE if plain.drive is None else plain.drive.effort(play.case.linkage)
-    return replace(
-        plain,
-        pose=play.pose(here, plain.pose),
-        joints=here.joints,
-        **effort.alone(float(here.effort), 0.0),
-    )
+    found = link_loads(plain.name, plain.link, case.body(plain.link), here, here.loads)
+    wrenches = [np.where(IN_PLANE, new, old) for (_, new), (_, old) in zip(found.wrenches, plain.wrenches, strict=True)]
+    states = found.with_wrenches(wrenches)
+    return [on_plates(case, plain.link, states.chosen(i)) for i in np.flatnonzero(here.sound)]
 
 
 def _scatter(span: Span, source: Source) -> Scatter:

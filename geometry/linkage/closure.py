@@ -4,7 +4,8 @@ With every direction as a complex number, a point P of the linkage stands at
 
     P = sum_l C[P, l] e^{i phi_l} + sum_j D[P, j] s_j e^{i phi_a(j)}
 
-where phi_l is the angle of link l, s_j the travel in slot j and a(j) the link that carries the slot.
+where phi_l is the angle of link l, s_j the travel in slot j and a(j) the link that carries the slot. The offset by
+which play sets the points of a joint apart is one more s_j, which is complex and given.
 C and D follow once from a spanning tree over the joints; each joint outside the tree closes one
 loop, and its closure vector is a row of the same form (Norton, Design of Machinery, 5th ed.,
 chapter 4, with the loops of any number of links). Jacobian and accelerations are exact.
@@ -16,6 +17,7 @@ handled at once.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,13 +40,28 @@ class LoopClosure:
     ----------
     linkage : Linkage
         The linkage.
-    offsets : mapping of str to complex
+    offsets : mapping of str to complex or complex array (...)
         Joint -> where its second link's point stands off its first link's [mm], by play: in global axes at a revolute
         joint, in the frame of the first link across a slot. Zero at the joints that are left out.
     """
 
     linkage: Linkage
-    offsets: Mapping[str, complex] = field(default_factory=dict, kw_only=True)
+    offsets: Mapping[str, complex | Complex] = field(default_factory=dict, kw_only=True)
+
+    def chosen(self, poses: Any) -> "LoopClosure":
+        """Return the closure at the chosen poses alone.
+
+        Parameters
+        ----------
+        poses : int, slice or mask (n,)
+            Which of the n poses.
+
+        Returns
+        -------
+        LoopClosure
+        """
+        own = {name: offset[poses] for name, offset in self.offsets.items() if isinstance(offset, np.ndarray)}
+        return replace(self, offsets={**self.offsets, **own}) if own else self
 
     @cached_property
     def slots(self) -> tuple[str, ...]:
@@ -71,13 +88,23 @@ class LoopClosure:
         """Column of the link that carries each slot."""
         return tuple(self._index[self.linkage.joints[n].links[0]] for n in self.slots)
 
+    @cached_property
+    def _carriers(self) -> tuple[int, ...]:
+        """Column of the link in whose frame each travel and offset is."""
+        first = (self.linkage.joints[n].links[0] if n in self.slots else self.linkage.ground for n in self.offsets)
+        return (*self.slot_links, *(self._index[link] for link in first))
+
+    @cached_property
+    def _columns(self) -> int:
+        return len(self._index) + len(self._carriers)
+
     def _local(self, link: str, point: str) -> complex:
         return complex(*self.linkage.links[link].points[point])
 
     @cached_property
     def _origins(self) -> dict[str, Complex]:
         """Row [C | D] of every link's origin."""
-        rows: dict[str, Complex] = {self.linkage.ground: np.zeros(len(self._index) + len(self.slots), dtype=complex)}
+        rows: dict[str, Complex] = {self.linkage.ground: np.zeros(self._columns, dtype=complex)}
         for link, name in self.linkage.tree.items():
             joint = self.linkage.joints[name]
             here = joint.links.index(link)
@@ -91,13 +118,11 @@ class LoopClosure:
 
     def _apart(self, name: str) -> Complex:
         """Row from a joint's point on its first link to that on its second: travel along a slot, and an offset."""
-        row = np.zeros(len(self._index) + len(self.slots), dtype=complex)
-        first = self.linkage.ground
+        row, links = np.zeros(self._columns, dtype=complex), len(self._index)
         if name in self.slots:
-            joint = self.linkage.joints[name]
-            first = joint.links[0]
-            row[len(self._index) + self.slots.index(name)] = np.exp(1j * joint.direction)
-        row[self._index[first]] += self.offsets.get(name, 0.0)
+            row[links + self.slots.index(name)] = np.exp(1j * self.linkage.joints[name].direction)
+        if name in self.offsets:
+            row[links + len(self.slots) + list(self.offsets).index(name)] = 1.0
         return row
 
     def _row(self, link: str, point: str) -> Complex:
@@ -140,8 +165,7 @@ class LoopClosure:
 
     @cached_property
     def _loop_rows(self) -> Complex:
-        links = len(self._index)
-        rows = np.zeros((len(self.loops), links + len(self.slots)), dtype=complex)
+        rows = np.zeros((len(self.loops), self._columns), dtype=complex)
         for i, name in enumerate(self.loops):
             joint = self.linkage.joints[name]
             first, second = self.linkage.joint_points(name)
@@ -158,17 +182,25 @@ class LoopClosure:
         return np.array([self._row(link, point) for link, point in self.point_names])
 
     def _directions(self, q: Real) -> tuple[Complex, Complex]:
-        """e^{i phi} of all links (the ground's is 1) and of the links that carry slots."""
+        """e^{i phi} of all links (the ground's is 1) and of the links that carry travels and offsets."""
         moving = len(self.linkage.moving)
         e = np.ones((*q.shape[:-1], moving + 1), dtype=complex)
         np.exp(1j * q[..., :moving], out=e[..., :moving])
-        return e, e[..., self.slot_links]
+        return e, e[..., self._carriers]
+
+    def _travels(self, q: Real) -> Real | Complex:
+        """Travels and offsets (..., slots + offsets)."""
+        slides = q[..., len(self.linkage.moving) :]
+        return np.concatenate([slides, self._apart_by(q)], axis=-1) if self.offsets else slides
+
+    def _apart_by(self, q: Real) -> Complex:
+        """Offsets (..., offsets)."""
+        return np.stack([np.broadcast_to(offset, q.shape[:-1]) for offset in self.offsets.values()], axis=-1)
 
     def _evaluate(self, rows: Complex, q: Real) -> Complex:
         links = len(self._index)
         e, along = self._directions(q)
-        slides = q[..., len(self.linkage.moving) :]
-        return np.asarray(e @ rows[:, :links].T + (slides * along) @ rows[:, links:].T)
+        return np.asarray(e @ rows[:, :links].T + (self._travels(q) * along) @ rows[:, links:].T)
 
     def _derivative(self, rows: Complex, q: Real) -> Complex:
         """Derivative of ``_evaluate`` by the unknowns: (..., rows, unknowns)."""
@@ -176,11 +208,13 @@ class LoopClosure:
         e, along = self._directions(q)
         out = np.empty((*q.shape[:-1], len(rows), self.unknowns), dtype=complex)
         out[..., :moving] = 1j * rows[:, :moving] * e[..., None, :moving]
-        for k, link in enumerate(self.slot_links):
+        travels = self._travels(q)
+        for k, link in enumerate(self._carriers):
             column = rows[:, links + k] * along[..., None, k]
-            out[..., moving + k] = column
+            if k < len(self.slots):
+                out[..., moving + k] = column
             if link < moving:
-                out[..., link] += 1j * q[..., None, moving + k] * column
+                out[..., link] += 1j * travels[..., None, k] * column
         return out
 
     def _quadratic(self, rows: Complex, q: Real, qdot: Real) -> Complex:
@@ -190,10 +224,10 @@ class LoopClosure:
         spin = np.zeros_like(e, dtype=float)
         spin[..., :moving] = qdot[..., :moving]
         out = -(spin**2 * e) @ rows[:, :links].T
-        if self.slots:
-            turn = spin[..., self.slot_links]
-            travel, rate = q[..., moving:], qdot[..., moving:]
-            out = out + ((2j * rate * turn - travel * turn**2) * along) @ rows[:, links:].T
+        if self._carriers:
+            turn, rate = spin[..., self._carriers], np.zeros(along.shape)
+            rate[..., : len(self.slots)] = qdot[..., moving:]
+            out = out + ((2j * rate * turn - self._travels(q) * turn**2) * along) @ rows[:, links:].T
         return np.asarray(out)
 
     def positions(self, q: Real) -> Complex:
@@ -314,10 +348,10 @@ class LoopClosure:
         tuple of ndarray
             By mm of offset (..., equations), (..., points).
         """
-        other = replace(self, offsets={**self.offsets, name: self.offsets.get(name, 0.0) + offset})
-        loops = self._evaluate(other._loop_rows - self._loop_rows, q)
+        other = replace(self, offsets={name: offset})
+        by = other._apart_by(q) * other._directions(q)[1][..., -1:]
+        loops, points = by * other._loop_rows[:, -1], by * other._point_rows[:, -1]
         fixed = np.zeros((*q.shape[:-1], len(self.angles_fixed)))
-        points = self._evaluate(other._point_rows - self._point_rows, q)
         return np.concatenate([_split(loops), fixed], axis=-1), points
 
     def point_rates(self, q: Real) -> Complex:

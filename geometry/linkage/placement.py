@@ -57,6 +57,15 @@ class Placement:
         """The same poses without rates."""
         return replace(self, qdot=None, qddot=None)
 
+    @property
+    def listed(self) -> "Placement":
+        """The same poses along one axis."""
+        q, qdot, qddot = (x if x is None else x.reshape(-1, x.shape[-1]) for x in (self.q, self.qdot, self.qddot))
+        offsets = {name: np.broadcast_to(x, self.shape).ravel() for name, x in self.closure.offsets.items()}
+        closure = replace(self.closure, offsets=offsets) if offsets else self.closure
+        rows = None if self.rows is None else self.rows.ravel()
+        return Placement(closure=closure, q=q, qdot=qdot, qddot=qddot, rows=rows)
+
     def chosen(self, poses: Any) -> "Placement":
         """Return the chosen poses alone.
 
@@ -72,7 +81,7 @@ class Placement:
         """
         names = ("qdot", "qddot", "rows")
         own = {name: None if (value := getattr(self, name)) is None else value[poses] for name in names}
-        return Placement(closure=self.closure, q=self.q[poses], **own)
+        return Placement(closure=self.closure.chosen(poses), q=self.q[poses], **own)
 
     def _of(self, values: Real | Complex | None, link: str) -> Any:
         """Values of a link from those of the moving links; none for the ground and at rest."""

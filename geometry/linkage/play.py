@@ -162,6 +162,11 @@ class LooseJoints:
         rows = np.broadcast_to(self.held * self._sizes, (*q.shape[:-1], *self.held.shape))
         return np.concatenate([found, rows], axis=-2)
 
+    def _sign(self, matrix: Real) -> Real:
+        """Sign (...) of the determinant: 0 of matrices that are singular, 1 of those that are not square."""
+        square = matrix.shape[-1] == matrix.shape[-2]
+        return np.asarray(np.linalg.slogdet(matrix)[0] if square else np.ones(matrix.shape[:-2]))
+
     def _solved(self, matrix: Real, right: Real) -> Real:
         if matrix.shape[-1] != matrix.shape[-2]:
             return np.asarray((np.linalg.pinv(matrix, rcond=1e-12) @ right[..., None])[..., 0]) * self._sizes
@@ -258,40 +263,76 @@ class LooseJoints:
         """
         reach = self.reach(link, point)
         least, most = reach.least(displacement), reach.largest(displacement)
-        for sign in (1.0, -1.0):  # without displacement both sides are alike to first order, and only there
-            shares = {name: sign * share for name, share in reach.shares(displacement).items()}
-            place, closed = self.moved(self.offsets(shares))
-            if not np.all(closed):
-                return least, np.inf
-            solved = complex(place.position(link, point) - self.place.position(link, point))
-            most = max(most, abs(displacement + solved))
-        return least, most
+        both = {name: np.outer([1.0, -1.0], share) for name, share in reach.shares(displacement).items()}
+        place, closed = self.moved(self.offsets(both))  # without displacement both are alike to first order alone
+        if not closed.all():
+            return least, np.inf
+        solved = place.position(link, point) - self.place.position(link, point)
+        return least, max(most, *np.abs(displacement + solved).tolist())
 
-    def offsets(self, shares: Mapping[str, Real]) -> dict[str, complex]:
+    def offsets(self, shares: Mapping[str, Real]) -> dict[str, Complex]:
         """Return offsets of joints from shares of half of their play.
 
         Parameters
         ----------
-        shares : mapping of str to array (1 or 2,)
+        shares : mapping of str to array (..., 1 or 2)
             Joint -> its shares in each of ``directions``.
 
         Returns
         -------
-        dict of str to complex
+        dict of str to complex array (...)
             [mm]
         """
-        return {
-            name: complex(sum(self.radii[name] * x * u for x, u in zip(share, self.directions(name), strict=False)))
-            for name, share in shares.items()
-        }
+        along = {name: np.array(self.directions(name)) for name in shares}
+        return {name: self.radii[name] * (x[..., : len(along[name])] @ along[name]) for name, x in shares.items()}
 
-    def moved(self, offsets: Mapping[str, complex]) -> tuple[Placement, NDArray[np.bool_]]:
+    def at_rims(self, slopes: Mapping[str, Real]) -> dict[str, Complex]:
+        """Return offsets by half of their play along slopes.
+
+        Parameters
+        ----------
+        slopes : mapping of str to array (..., 1 or 2)
+            Joint -> slopes in each of ``directions``.
+
+        Returns
+        -------
+        dict of str to complex array (...)
+            [mm]; none at a joint without slope.
+        """
+        sizes = {name: np.linalg.norm(slope, axis=-1, keepdims=True) for name, slope in slopes.items()}
+        return self.offsets({n: slope / np.where(sizes[n] > 0.0, sizes[n], 1.0) for n, slope in slopes.items()})
+
+    @property
+    def ways(self) -> tuple[tuple[str, int], ...]:
+        """Joint and number of its direction for each of the k ways in which one joint may stand off."""
+        return tuple((name, i) for name in self.radii for i in range(len(self.directions(name))))
+
+    def one_by_one(self, sizes: Mapping[str, float]) -> dict[str, Complex]:
+        """Return offsets of one joint at a time, in each of ``ways`` to one side and to the other.
+
+        Parameters
+        ----------
+        sizes : mapping of str to float
+            Joint -> size of its offset [mm].
+
+        Returns
+        -------
+        dict of str to complex array (2 k,)
+            [mm]
+        """
+        found = {}
+        for name in self.radii:
+            along = [self.directions(at)[i] if at == name else 0.0 for at, i in self.ways]
+            found[name] = sizes[name] * np.outer(along, [1.0, -1.0]).ravel()
+        return found
+
+    def moved(self, offsets: Mapping[str, complex | Complex]) -> tuple[Placement, NDArray[np.bool_]]:
         """Assemble the linkage with the points of its joints apart.
 
         Parameters
         ----------
-        offsets : mapping of str to complex
-            As ``LoopClosure.offsets`` [mm].
+        offsets : mapping of str to complex or complex array (...)
+            As ``LoopClosure.offsets`` [mm]; of shapes that go with that of the poses, as (k, 1) with (n,).
 
         Returns
         -------
@@ -300,26 +341,24 @@ class LooseJoints:
             branch, since a dead point lies on the way.
         """
         place = self.place
-        closure, q = LoopClosure(place.linkage, offsets=offsets), place.q.copy()
+        shape = np.broadcast_shapes(place.shape, *map(np.shape, offsets.values()))
+        closure = LoopClosure(place.linkage, offsets={n: np.broadcast_to(o, shape)[()] for n, o in offsets.items()})
+        q = np.broadcast_to(place.q, (*shape, closure.unknowns)).copy()
         for _ in range(_ITERATIONS):
             gaps, off = closure.residual(q), (place.q - q) @ self.held.T
             if max(np.abs(gaps).max(initial=0.0) / place.linkage.longest, np.abs(off).max(initial=0.0)) <= _TARGET:
                 break
-            try:
-                step = self._solved(self._matrix(closure, q), self._right(-gaps, off)) / self._sizes
-            except np.linalg.LinAlgError:
-                break
+            matrix = self._matrix(closure, q)
+            regular = (self._sign(matrix) != 0.0)[..., None]  # states at a dead point stay there
+            matrix = np.where(regular[..., None], matrix, np.eye(*matrix.shape[-2:]))
+            step = np.where(regular, self._solved(matrix, self._right(-gaps, off)) / self._sizes, 0.0)
             q = q + np.clip(np.nan_to_num(step), -_LARGEST_STEP, _LARGEST_STEP) * self._sizes
         closed = np.abs(closure.residual(q)).max(axis=-1, initial=0.0) <= CLOSED * place.linkage.longest
-        return Placement(closure=closure, q=q, rows=place.rows), closed & self._same_branch(closure, q)
+        rows = None if place.rows is None else np.broadcast_to(place.rows, shape)
+        same_branch = self._sign(self._matrix(closure, q)) == self._sign(self._plain)
+        return Placement(closure=closure, q=q, rows=rows), closed & same_branch
 
     @cached_property
     def _plain(self) -> Real:
         """The matrix without play."""
         return self._matrix(self.place.closure, self.place.q)
-
-    def _same_branch(self, closure: LoopClosure, q: Real) -> NDArray[np.bool_]:
-        """Tell where the determinant has the sign that it has without play: it changes at a dead point."""
-        if self._plain.shape[-1] != self._plain.shape[-2]:
-            return np.ones(q.shape[:-1], dtype=np.bool_)
-        return np.asarray(np.linalg.slogdet(self._matrix(closure, q))[0] == np.linalg.slogdet(self._plain)[0])

@@ -30,11 +30,12 @@ class RowLoad(Acting):
             return self.now.loads(place)
         if not place.shape:
             return self.rows[int(place.rows)].loads(place)
-        every = [self.rows[row].loads(place.chosen(i)) for i, row in enumerate(place.rows.tolist())]
-        return tuple(_together(same) for same in zip(*every, strict=True))
+        every = [self.rows[row].loads(place.chosen(i)) for i, row in np.ndenumerate(place.rows)]
+        return tuple(_together(same, place.shape) for same in zip(*every, strict=True))
 
 
-def _together(loads: tuple[Any, ...]) -> Any:
+def _together(loads: tuple[Any, ...], shape: tuple[int, ...]) -> Any:
     """Return a load at n poses from itself at each."""
     first = loads[0]
-    return replace(first, **{x: np.stack([getattr(one, x) for one in loads]) for x in (*first.VECTORS, *first.SCALARS)})
+    every = {x: np.stack([getattr(one, x) for one in loads]) for x in (*first.VECTORS, *first.SCALARS)}
+    return replace(first, **{x: values.reshape(*shape, *values.shape[1:]) for x, values in every.items()})

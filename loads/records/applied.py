@@ -328,6 +328,25 @@ def at_poses(load: AnyLoad, shape: tuple[int, ...]) -> AnyLoad:
     return _with(load, **spread, **scalars)
 
 
+def reshaped(load: AnyLoad, shape: tuple[int, ...]) -> AnyLoad:
+    """Return a load with its poses along other axes.
+
+    Parameters
+    ----------
+    load : PointLoad, LineLoad or BodyForce
+        With all of its arrays at the same poses.
+    shape : tuple
+        Of the poses, as ``numpy.reshape`` takes it.
+
+    Returns
+    -------
+    PointLoad, LineLoad or BodyForce
+    """
+    vectors = {name: getattr(load, name) for name in load.VECTORS}
+    spread = {name: vector.reshape(*shape, vector.shape[-1]) for name, vector in vectors.items()}
+    return _with(load, **spread, **{name: np.reshape(getattr(load, name), shape) for name in load.SCALARS})
+
+
 def _with(load: AnyLoad, **changes: Any) -> AnyLoad:
     changed: Any = load
     found: AnyLoad = replace(changed, **changes)

@@ -126,8 +126,7 @@ class LooseMotion:
         So it is at least at the poses on both sides of a dead point of the motion.
         """
         play = next(iter(self.plays.values()))
-        here, sound = play.plain
-        found = self._spread(~sound | (here.distance <= play.slack("distance")), True)
+        found = self._spread(~play.plain.sound | (play.plain.distance <= play.slack("distance")), True)
         for angle in self.moved.dead_points:
             between = self.moved.motion.passing(angle)
             found[np.concatenate([between, between + 1])] = True
@@ -171,7 +170,7 @@ class LooseMotion:
     def distance(self) -> tuple[Real, Real]:
         """Distance (n,) to a dead point of the drive, without play and the least; it does not depend on the loads."""
         load_case, play = next(iter(self.plays.items()))
-        value = self._spread(play.plain[0].distance, 0.0)
+        value = self._spread(play.plain.distance, 0.0)
         return value, np.maximum(value - self.slack(load_case, "distance"), 0.0)
 
     def farthest(self, link: str, point: str) -> tuple[float, int]:

@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +23,12 @@ from alula.geometry.linkage.play import LooseJoints
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import clearances, rubbing_joints
-from alula.loads.records.applied import Load, PartMass
+from alula.loads.records.applied import Load, PartMass, chosen
 from alula.loads.states.actions import acting_loads
 from alula.loads.states.kinetostatics import is_determinate
 from alula.loads.states.rubbing import friction_at, sense_of
 from alula.loads.statics.friction import NOTHING_MORE, Presses
-from alula.loads.statics.joint_reaction import JointReaction
-from alula.loads.statics.statics import Drive, balance
-from alula.loads.statics.system import System
+from alula.loads.statics.statics import Balance, Drive, balance
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -60,30 +59,43 @@ class Span:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Displaced:
-    """The linkage with its joints at stated offsets, at one pose or at n.
+class Displaced(Balance):
+    """The equilibrium of the linkage with its joints at stated offsets, in one state or in n.
 
     Attributes
     ----------
-    offsets : mapping of str to complex
-        Joint -> its offset, as ``LoopClosure`` has it [mm].
-    place : Placement
-        Where the links stand.
     loads : tuple of Load
-        All that acts on them there.
-    joints : mapping of str to JointReaction
-    effort : array (...)
-        Drive torque [N mm], or force [N] where the drive pushes; 0 without drive.
-    system : System
-        The equations of equilibrium.
+        All that acts on the links there.
     """
 
-    offsets: Mapping[str, complex]
-    place: Placement
     loads: tuple[Load, ...]
-    joints: Mapping[str, JointReaction]
-    effort: Real
-    system: System
+
+    @property
+    def offsets(self) -> Mapping[str, Any]:
+        """Joint -> its offset (...), as ``LoopClosure`` has it [mm]."""
+        return self.place.closure.offsets
+
+    def chosen(self, states: Any) -> "Displaced":
+        """Return the chosen states alone.
+
+        Parameters
+        ----------
+        states : int, slice or mask (n,)
+            Which of the n states.
+
+        Returns
+        -------
+        Displaced
+        """
+        names = ("drive_torque", "drive_force", "residual", "sound", "unknowns")
+        return replace(
+            self,
+            place=self.place.chosen(states),
+            system=replace(self.system, matrix=self.system.matrix[states], rhs=self.system.rhs[states]),
+            joints={name: chosen(joint, states) for name, joint in self.joints.items()},
+            loads=tuple(chosen(load, states) for load in self.loads),
+            **{name: getattr(self, name)[states] for name in names},
+        )
 
     @cached_property
     def distance(self) -> Real:
@@ -142,7 +154,7 @@ class Play:
         """What holds the linkage."""
         return self.case.pinned_drive
 
-    def at(self, offsets: Mapping[str, complex]) -> Displaced | None:
+    def at(self, offsets: Mapping[str, complex | Complex]) -> Displaced | None:
         """Solve the linkage with its joints at offsets.
 
         Parameters
@@ -155,22 +167,22 @@ class Play:
         Displaced or None
             None where a dead point lies on the way, or friction locks the linkage.
         """
-        here, sound = self.solved(offsets)
-        return here if np.all(sound) else None
+        here = self.solved(offsets)
+        return here if np.all(here.sound) else None
 
-    def solved(self, offsets: Mapping[str, complex]) -> tuple[Displaced, NDArray[np.bool_]]:
+    def solved(self, offsets: Mapping[str, complex | Complex]) -> Displaced:
         """Solve the linkage with its joints at offsets, as far as it goes.
 
         Parameters
         ----------
-        offsets : mapping of str to complex
-            As ``LoopClosure.offsets`` [mm].
+        offsets : mapping of str to complex or complex array (...)
+            As of ``LooseJoints.moved`` [mm].
 
         Returns
         -------
-        tuple of (Displaced, bool array (...))
-            The second is false at poses where a dead point lies on the way, or friction locks the linkage: numbers mean
-            nothing there.
+        Displaced
+            Not sound in states where a dead point lies on the way, or friction locks the linkage: numbers mean nothing
+            there.
         """
         place, closed = self.loose.moved(offsets)
         place = self.rates(replace(place, q=np.where(closed[..., None], place.q, self.loose.place.q)))
@@ -178,26 +190,27 @@ class Play:
         rubbed, locked = self.friction(place, loads)
         loads += rubbed
         found = balance(place, self.drive, loads)
-        there = Displaced(
-            offsets=offsets,
-            place=place,
-            loads=loads,
-            joints=found.joints,
-            effort=np.asarray(found.effort),
-            system=found.system,
-        )
-        return there, closed & found.sound & ~locked
+        sound = closed & found.sound & ~locked
+        return Displaced(**{**vars(found), "sound": sound}, loads=loads)
 
     @cached_property
-    def plain(self) -> tuple[Displaced, NDArray[np.bool_]]:
+    def plain(self) -> Displaced:
         """The linkage without play, as of ``solved``."""
         return self.solved({})
 
     @cached_property
     def nominal(self) -> Displaced | None:
         """The linkage without play; None at a dead point."""
-        here, sound = self.plain
-        return here if np.all(sound) else None
+        return self.plain if np.all(self.plain.sound) else None
+
+    @cached_property
+    def ends(self) -> Displaced:
+        """The linkage without play, then with one joint at a time at an end of it (``LooseJoints.one_by_one``).
+
+        Of one pose.
+        """
+        apart = self.loose.one_by_one(self.loose.radii)
+        return self.solved({name: np.append(0.0, offsets) for name, offsets in apart.items()})
 
     @cached_property
     def settled(self) -> Displaced | None:
@@ -235,23 +248,17 @@ class Play:
         smallest singular value σ changes by uᵀ dA v with its singular vectors, A v = σ u (Golub and Van Loan, Matrix
         Computations, 4th ed., section 8.6.1).
         """
-        step, found = STEP * self.loose.place.linkage.longest, {}
-        left, _, right = np.linalg.svd(self.plain[0].system.scaled)
-        u, v = left[..., -1], right[..., -1, :]
-        for name in self.loose.radii:
-            each = []
-            for direction in self.loose.directions(name):
-                ends = [self.solved({name: sign * step * direction}) for sign in (1.0, -1.0)]
-                (plus, minus), sound = (self._at_hand(end) for end, _ in ends), ends[0][1] & ends[1][1]
-                by = {key: (plus[key] - minus[key]) / (2.0 * step) for key in plus}
-                by["distance"] = np.einsum("...i,...ij,...j->...", u, by.pop("equations"), v)
-                each.append({key: np.where(sound, change, np.inf) for key, change in by.items()})
-            found[name] = tuple(each)
-        return found
-
-    def _at_hand(self, here: Displaced) -> dict[str, Real | Complex]:
-        forces = {f"force {name}": here.force(name) for name in self.case.joints}
-        return {**forces, "effort": here.effort, "equations": here.system.scaled}
+        step, poses = STEP * self.loose.place.linkage.longest, self.loose.place.shape
+        left, _, right = np.linalg.svd(self.plain.system.scaled)
+        steps = self.loose.one_by_one(dict.fromkeys(self.loose.radii, step))
+        there = self.solved({name: offset.reshape(-1, *[1] * len(poses)) for name, offset in steps.items()})
+        numbers = {f"force {name}": there.force(name) for name in self.case.joints} | {"effort": there.effort}
+        by = {key: (x[0::2] - x[1::2]) / (2.0 * step) for key, x in {**numbers, "": there.system.scaled}.items()}
+        by["distance"] = np.einsum("...i,...ij,...j->...", left[..., -1], by.pop(""), right[..., -1, :])
+        sound = there.sound[0::2] & there.sound[1::2]
+        by = {key: np.where(sound, change, np.inf) for key, change in by.items()}
+        each = [(name, {key: change[k] for key, change in by.items()}) for k, (name, _) in enumerate(self.loose.ways)]
+        return {name: tuple(one for at, one in each if at == name) for name in self.loose.radii}
 
     def slack(self, key: str) -> Real:
         """Return how far a real number of ``gradients`` may go to either side, to first order.
@@ -274,12 +281,13 @@ class Play:
     @cached_property
     def _worst(self) -> Mapping[tuple[str, float], Displaced | None]:
         """The linkage where distance and effort are largest and least, to first order; of one pose."""
-        found = {}
-        for key, sign in itertools.product(("distance", "effort"), (1.0, -1.0)):
-            slopes = {name: np.array([float(one[key].real) for one in by]) for name, by in self.gradients.items()}
-            shares = {name: sign * slope / (np.linalg.norm(slope) or 1.0) for name, slope in slopes.items()}
-            found[key, sign] = self.at(self.loose.offsets(shares))
-        return found
+        ends = list(itertools.product(("distance", "effort"), (1.0, -1.0)))
+        slopes = {
+            name: np.array([[sign * float(one[key].real) for one in by] for key, sign in ends])
+            for name, by in self.gradients.items()
+        }
+        found = self.solved(self.loose.at_rims(slopes))
+        return {end: found.chosen(i) if found.sound[i] else None for i, end in enumerate(ends)}
 
     @cached_property
     def through_dead_point(self) -> bool:
@@ -325,18 +333,20 @@ class Play:
     @cached_property
     def forces(self) -> Mapping[str, Span]:
         """Joint -> size of its force [N]; of one pose."""
+        if self.nominal is None or self.through_dead_point:
+            sizes = {n: np.nan if self.nominal is None else abs(self.nominal.force(n)) for n in self.case.joints}
+            return {name: Span(value=float(size), low=0.0, high=np.inf) for name, size in sizes.items()}
+        forces, reaches = {name: complex(self.nominal.force(name)) for name in self.case.joints}, {}
+        for name in forces:
+            rates = {n: tuple(np.asarray(one[f"force {name}"]) for one in by) for n, by in self.gradients.items()}
+            reaches[name] = self.loose.reach_of(rates)
+        shares = [reaches[name].shares(force) for name, force in forces.items()]
+        worst = self.solved(self.loose.offsets({n: np.array([one[n] for one in shares]) for n in self.loose.radii}))
         found = {}
-        for name in self.case.joints:
-            value = np.nan if self.nominal is None else abs(complex(self.nominal.force(name)))
-            if self.through_dead_point:
-                found[name] = Span(value=value, low=0.0, high=np.inf)
-                continue
-            assert self.nominal is not None
-            force, key = complex(self.nominal.force(name)), f"force {name}"
-            rates = {n: tuple(np.asarray(one[key], dtype=complex) for one in by) for n, by in self.gradients.items()}
-            reach = self.loose.reach_of(rates)
-            worst = self.at(self.loose.offsets(reach.shares(force)))
-            high = max(value, reach.largest(force), np.inf if worst is None else abs(complex(worst.force(name))))
+        for i, (name, force) in enumerate(forces.items()):
+            value, reach = abs(force), reaches[name]
+            solved = abs(complex(worst.force(name)[i])) if worst.sound[i] else np.inf
+            high = max(value, reach.largest(force), solved)
             found[name] = Span(value=value, low=min(value, reach.least(force)), high=high)
         return found
 

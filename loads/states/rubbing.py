@@ -15,7 +15,7 @@ from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
-from alula.loads.records.applied import Load, at_poses, chosen
+from alula.loads.records.applied import Load, at_poses, chosen, reshaped
 from alula.loads.records.load_case import LoadCase
 from alula.loads.states.kinetostatics import is_determinate
 from alula.loads.statics.friction import NOTHING_MORE, Presses, solve_friction
@@ -167,11 +167,10 @@ def friction_at(
     tuple of (tuple of Load, bool array (...))
         Loads mean nothing where the second is true.
     """
-    poses = place.q.reshape(-1, place.q.shape[-1])
-    moved = replace(place, q=poses, qdot=driven.coefficients(poses)[0], qddot=None)
-    found = solve_friction(moved, drive, loads, sense, presses=presses)
-    rubbed: tuple[Load, ...] = found.loads(moved)
-    return rubbed if place.shape else tuple(chosen(load, 0) for load in rubbed), np.reshape(found.locked, place.shape)
+    moved = replace(place, qdot=driven.coefficients(place.q)[0], qddot=None).listed
+    listed, senses = [reshaped(load, (-1,)) for load in loads], np.broadcast_to(sense, place.shape).ravel()
+    found = solve_friction(moved, drive, listed, senses, presses=presses)
+    return tuple(reshaped(load, place.shape) for load in found.loads(moved)), np.reshape(found.locked, place.shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,6 +1,7 @@
 """The reaction at one joint, and where the pin stands."""
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,8 @@ class JointReaction:
         between layers and by play.
     """
 
+    VECTORS: ClassVar[tuple[str, ...]] = ("wrench", "arm")
+    SCALARS: ClassVar[tuple[str, ...]] = ()
     joint: str
     on: str
     by: str

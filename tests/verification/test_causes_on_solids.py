@@ -16,7 +16,7 @@ from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.sought import LEFT, sought
 from alula.fea.doubts.friction_doubt import friction_doubt
-from alula.fea.doubts.play_doubt import _reactions, play_answers
+from alula.fea.doubts.play_doubt import play_answers
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import examine
 from alula.fea.refine.refinement import START, Effort, RefinedSolid, refine_links
@@ -120,8 +120,7 @@ def test_wherever_pins_with_play_stand_the_solid_bears_no_more(link):
         shares = {name: np.array([np.cos(a), np.sin(a)]) for name, a in zip(("A", "O4"), angle, strict=True)}
         here = play.at(play.loose.offsets(shares))
         assert here is not None
-        reactions = _reactions(play, forces, here)
-        drawn.append(link_loads("l", link, case.body(link), reactions, here.loads))
+        drawn.append(link_loads("l", link, case.body(link), here, here.loads))
     stated, *sizes = peaks(link, answers.stated[0], *drawn)
     least, most = np.min(sizes, axis=0)[0] / stated[0], np.max(sizes, axis=0)[1] / stated[1]
     assert found["von_mises"].low <= least

@@ -265,13 +265,14 @@ def test_dead_points_leave_the_play_of_other_states(load_case: str, entries: dic
     place = placed(case)
     every = play_at(case, load_case, place, {}, None, 0.0)
     assert every is not None
-    here, sound = every.solved({})
+    here = every.solved({})
+    sound = here.sound
     assert not sound[~GOOD].any()
     assert sound.sum() >= 3
     for i in np.flatnonzero(sound):
         one = play_at(case, load_case, place.chosen(i), {}, None, 0.0)
         assert one is not None
-        assert here.effort[i] == pytest.approx(float(one.solved({})[0].effort), rel=1e-9)
+        assert here.effort[i] == pytest.approx(float(one.solved({}).effort), rel=1e-9)
         for key in ("effort", "distance", "force B"):
             assert every.slack(key)[i] == pytest.approx(float(one.slack(key)), rel=1e-5), key
     assert np.isinf(every.slack("effort")[~GOOD]).all()

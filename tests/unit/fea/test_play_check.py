@@ -15,6 +15,7 @@ from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Verdict
 from alula.fea.doubts import play_doubt as doubt_of_play
 from alula.fea.outcomes.result import LoadCaseResult
+from alula.geometry.linkage.play import LooseJoints
 from alula.loads.case.case_file import validate
 from alula.loads.states.play import Span
 from alula.reports.sections.play import play_record
@@ -164,20 +165,25 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
             "C1": (12.0, 1.2, 3.0), "-B0": (7.0, 0.7, 0.0), "-B1": (6.0, 0.6, 4.0), "-C0": (10.0, 1.0, 1.0),
             "-C1": (8.0, 0.8, 0.0), "most": (19.0, 1.5, 2.0), "least": (2.5, 0.5, 0.5)}  # fmt: skip
     stubs = {
-        "_ends": lambda *_: [
-            (name, i, (None, f"{sign}{name}{i}")) for name in ("B", "C") for i in range(2) for sign in ("", "-")
+        "_answers": lambda case, plain, here: [
+            (name,) for name, one in zip(here.names, here.sound, strict=True) if one
         ],
-        "_at": lambda *given: given[-1],
         "on_plates": lambda case, link, loads: (loads,),
         "_numbers": lambda case, link, answers: np.array([[told[one][i] for (one,) in answers] for i in (0, 0, 1, 2)]),
-        "_worst": lambda *_: [(None, "most"), (None, "least")],
-        "_reactions": lambda *_: None,
         "link_loads": lambda *_: None,
     }
     for name, stub in stubs.items():
         monkeypatch.setattr(doubt_of_play, name, stub)
-    play = SimpleNamespace(clearances={"B": 0.1, "C": 0.2}, forces={}, through_dead_point=False, nominal="plain",
-                           loose=SimpleNamespace(radii={"B": 0.05, "C": 0.1}))  # fmt: skip
+    ways = [(name, i) for name in ("B", "C") for i in range(2)]
+    ends = ["plain", *(f"{sign}{name}{i}" for name, i in ways for sign in ("", "-"))]
+    play = SimpleNamespace(
+        clearances={"B": 0.1, "C": 0.2},
+        forces={},
+        through_dead_point=False,
+        ends=SimpleNamespace(names=ends, sound=[name != "-C0" for name in ends]),
+        solved=lambda slopes: SimpleNamespace(names=["most", "least"] * 4, sound=[True] * len(slopes["B"])),
+        loose=SimpleNamespace(radii={"B": 0.05, "C": 0.1}, ways=ways, at_rims=lambda slopes: slopes),
+    )
     case = SimpleNamespace(checked_links=["arm"], body=lambda link: None, layered=False)
     found = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
     stress, displacement = found.stress["arm"], found.displacement["arm"]
@@ -193,21 +199,27 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
         assert tied.columns["arm"] == found.columns["arm"]
 
 
-def test_the_worst_offsets_lie_along_all_slopes_and_against_them(monkeypatch) -> None:
-    """Each joint at the rim of its play; one way is left out where the linkage cannot be assembled there."""
-    monkeypatch.setattr(doubt_of_play, "_reactions", lambda play, forces, here: here)
-    slopes = {"B": np.array([3.0, -4.0]), "C": np.zeros(2), "D": np.array([0.0, 2.0])}
-    along = {"B": [0.6, -0.8], "C": [0.0, 0.0], "D": [0.0, 1.0]}
-    for reached in ((1.0, -1.0), (-1.0,)):
-        play = SimpleNamespace(
-            loose=SimpleNamespace(offsets=lambda shares: shares),
-            at=lambda shares, reached=reached: shares if np.sign(shares["D"][1]) in reached else None,
-        )
-        found = [here for _, here in doubt_of_play._worst(play, None, slopes)]
-        for here, sign in zip(found, reached, strict=True):
-            assert {name: (sign * share).tolist() for name, share in here.items()} == {
-                name: pytest.approx(share) for name, share in along.items()
-            }
+def test_the_worst_offsets_lie_along_all_slopes_each_joint_at_the_rim_of_its_play() -> None:
+    slopes = {
+        "B": np.array([[3.0, -4.0], [-3.0, 4.0]]),
+        "C": np.zeros((2, 2)),
+        "D": np.array([[0.0, 2.0], [0.0, -2.0]]),
+    }
+    loose = SimpleNamespace(offsets=lambda shares: {name: share.tolist() for name, share in shares.items()})
+    assert LooseJoints.at_rims(loose, slopes) == {  # type: ignore[arg-type]
+        "B": [pytest.approx([0.6, -0.8]), pytest.approx([-0.6, 0.8])],
+        "C": [[0.0, 0.0], [0.0, 0.0]],
+        "D": [[0.0, 1.0], [0.0, -1.0]],
+    }
+
+
+def test_no_answer_is_made_of_states_in_which_the_linkage_cannot_be_assembled(monkeypatch) -> None:
+    acting = SimpleNamespace(name="tip", link="arm", wrenches=(), with_wrenches=lambda _: SimpleNamespace(chosen=int))
+    monkeypatch.setattr(doubt_of_play, "link_loads", lambda *_: acting)
+    monkeypatch.setattr(doubt_of_play, "on_plates", lambda case, link, loads: (loads,))
+    here = SimpleNamespace(sound=np.array([True, False, True, False]), loads=())
+    case = SimpleNamespace(body=lambda link: None)
+    assert doubt_of_play._answers(case, acting, here) == [(0,), (2,)]  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("ends", "shares"), [((-6.0, -1.0), (0.5, 3.0)), ((-1.0, 6.0), (0.0, 3.0))])
