@@ -20,7 +20,6 @@ import numpy as np
 from alula.fea.beam.calibration import proportions
 from alula.fea.beam.critical_locations import critical_locations, displacement_estimate
 from alula.fea.beam.cut_free import beam_loads
-from alula.fea.beam.piecewise import stacked
 from alula.fea.beam.theory import BeamCheck, check_beam
 from alula.fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from alula.fea.solid.solution import solve_solid
@@ -210,7 +209,7 @@ def solids(body: Body, nu: float) -> dict[str, dict[str, list[float]]]:
         fields = [stress_field(solution.space, s.displacement, E=YOUNG, nu=nu) for s in found]
         peaks = [f.von_mises.max() for f in fields]
         other = np.ones(len(nodes), dtype=bool)
-        for location in critical_locations(body, [loads], stacked([_beam(body, loads, nu).forces]), nu):
+        for location in critical_locations(body, loads.chosen(None), _beam(body, loads, nu).forces.state(None), nu):
             near = (nodes[:, 0] >= location.low) & (nodes[:, 0] <= location.high)
             inside = other if location.kind == "section" else near
             other = other & ~inside
@@ -228,7 +227,7 @@ def compare(body: Body, nu: float, kept: dict[str, dict[str, list[float]]]) -> l
         beam, solid = _beam(body, loads, nu), kept[loads.name]
         places = [
             location
-            for location in critical_locations(body, [loads], stacked([beam.forces]), nu)
+            for location in critical_locations(body, loads.chosen(None), beam.forces.state(None), nu)
             if location.estimate > 0.0
         ]
         hand = max(location.estimate for location in places)

@@ -68,17 +68,15 @@ class CriticalLocation:
         return float(self.each[0])
 
 
-def critical_locations(
-    body: Body, states: Sequence[LinkLoads], forces: Piecewise, poisson: float
-) -> tuple[CriticalLocation, ...]:
+def critical_locations(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float) -> tuple[CriticalLocation, ...]:
     """Return every critical location of a link.
 
     Parameters
     ----------
     body : Body
         Geometry of the link.
-    states : sequence of LinkLoads
-        What acts in each state.
+    loads : LinkLoads
+        In n states.
     forces : Piecewise
         Internal forces of all of them, on the link's axis.
     poisson : float
@@ -95,14 +93,14 @@ def critical_locations(
         For a cross hole outside of the handbook's range.
     """
     first, last = extent(body)
-    found = [_eye(body, pin, states, forces, poisson) for pin in body.pins]
+    found = [_eye(body, pin, loads, forces, poisson) for pin in body.pins]
     found += [
         _hole(body, row, number, x, forces, poisson) for number, row in enumerate(body.holes) for x in row.positions
     ]
-    for i, end in enumerate(states[0].ends):
+    for end in loads.ends:
         place = next(e for e in body.ends if e.name == end.name)
         low, high = patch_span(body, place)
-        pushed = np.linalg.norm([loads.ends[i].wrench[:3] for loads in states], axis=1)
+        pushed = np.linalg.norm(end.wrench[:, :3], axis=1)
         stress = _largest(body, forces, [(low, high)], poisson) + pushed / (place.patch * body.part.section.width)
         found.append(CriticalLocation(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low,
                                       high=high, each=stress))  # fmt: skip
@@ -239,16 +237,15 @@ def _largest(body: Body, forces: Piecewise, stretches: Sequence[tuple[float, flo
     return largest_stress(only(forces, stretches), body.part.section, poisson)
 
 
-def _eye(body: Body, pin: Pin, states: Sequence[LinkLoads], forces: Piecewise, poisson: float) -> CriticalLocation:
+def _eye(body: Body, pin: Pin, loads: LinkLoads, forces: Piecewise, poisson: float) -> CriticalLocation:
     part, (first, last) = body.part, extent(body)
     reach = eye_reach(body, pin)
-    loads = [next(p for p in one.pins if p.name == pin.name) for one in states]
-    couples = [sum(float(c.torque) for c in one.couples if c.pin == pin.name) for one in states]
-    torque = np.array(couples) + [float(load.wrench[5]) for load in loads]
-    nothing = np.zeros((len(states), 6))
+    pushed = next(p for p in loads.pins if p.name == pin.name)
+    torque = pushed.wrench[:, 5] + sum(couple.torque for couple in loads.couples if couple.pin == pin.name)
+    nothing = np.zeros(pushed.wrench.shape)
     before = forces_at(forces, pin.x, "before") if pin.x > forces.breaks[0] else nothing
     after = forces_at(forces, pin.x, "after") if pin.x < forces.breaks[-1] else nothing
-    found = [_bore(body, pin, loads, torque, before, after)]
+    found = [_bore(body, pin, pushed, torque, before, after)]
     sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
     found += [_junction(body, pin, forces_at(forces, x, side), poisson) for x, side in sides if first < x < last]
     far = reach + part.section.width / 2.0
@@ -274,7 +271,7 @@ def _junction(body: Body, pin: Pin, forces: Floats, poisson: float) -> Floats:
     return np.hypot(direct, math.sqrt(3.0) * torsion * unit * np.abs(forces[:, 3]) + sheared)
 
 
-def _bore(body: Body, pin: Pin, loads: Sequence[PinLoad], torque: Floats, before: Floats, after: Floats) -> Floats:
+def _bore(body: Body, pin: Pin, load: PinLoad, torque: Floats, before: Floats, after: Floats) -> Floats:
     """Stress (n,) at the edge of a pin hole.
 
     Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin in a strip, net section, d/D of 0.15
@@ -287,7 +284,7 @@ def _bore(body: Body, pin: Pin, loads: Sequence[PinLoad], torque: Floats, before
     wide, thick = ring.diameter, ring.thickness
     h = min(max(hole / wide, 0.15), 0.75)
     factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
-    pushed = factor * net_tension(1.0, wide, hole, thick) * _largest_push(ring, loads)
+    pushed = factor * net_tension(1.0, wide, hole, thick) * _largest_push(ring, load)
     larger, passing = np.maximum(np.abs(before), np.abs(after)).T, before[:, 0] * after[:, 0] > 0.0
     through = np.where(passing, np.minimum(np.abs(before[:, 0]), np.abs(after[:, 0])), 0.0)
     n = 3.0 * through / ((wide - hole) * thick)
@@ -298,16 +295,16 @@ def _bore(body: Body, pin: Pin, loads: Sequence[PinLoad], torque: Floats, before
     return np.asarray(pushed + n + in_plane + out_of_plane + twisted + sheared)
 
 
-def _largest_push(ring: Ring, loads: Sequence[PinLoad]) -> Floats:
+def _largest_push(ring: Ring, load: PinLoad) -> Floats:
     """Largest resultant (n,) per length along a bore, times the bore's length [N].
 
     It is F + 6M/t of a stiff pin; one that bends presses more on the rim at which it is loaded
     (``alula.loads.statics.foundation``).
     """
-    wrenches = np.array([load.wrench for load in loads])
+    wrenches = load.wrench
     tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
     stiff = np.linalg.norm(wrenches[:, :3], axis=1) + tilted * np.linalg.norm(wrenches[:, 3:5], axis=1)
-    foundation = Foundation.of(loads[0].seat)
+    foundation = Foundation.of(load.seat)
     if foundation is None:
         return np.asarray(stiff)
     force = wrenches[:, :2]

@@ -280,10 +280,9 @@ def in_slot(pin: Pin, x: Real, link: str) -> Real:
 def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
     """Return the load of a pin on the beam; a pin on an arm loads it where the arm starts."""
     if foot is None:
-        return beam.PointLoad(point=pin.centre, wrench=pin.wrench)
+        return beam.PointLoad(point=pin.place, wrench=pin.wrench)
     start = np.array([*foot, 0.0])
-    moment = pin.wrench[3:] + np.cross(pin.centre - start, pin.wrench[:3])
-    return beam.PointLoad(point=start, wrench=np.concatenate([pin.wrench[:3], moment]))
+    return beam.PointLoad(point=start, wrench=shifted(pin.wrench, pin.place - start))
 
 
 def _spread(body: Body, density: float) -> list[tuple[float, float, float]]:
@@ -313,7 +312,7 @@ def _eyes(body: Body, density: float, spread: list[tuple[float, float, float]]) 
 
 
 def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
-    """Return the loads of one pose on the link's axis.
+    """Return the loads of a link on its axis, in one state or in n.
 
     A body force is spread along the tube or bar between the link's ends by its mass per length. The additional mass of
     an eye is a point load at its pin. Point loads at both ends stand for what holes and fillets change of the mass and
@@ -322,7 +321,7 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
     Parameters
     ----------
     loads : LinkLoads
-        At one pose.
+        At one pose, or in n states with pins at the same places.
     body : Body
         The link's.
     density : float
@@ -334,10 +333,10 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
     """
     feet = {pin.name: pin.foot for pin in body.pins}
     points = [_on_beam(pin, feet[pin.name]) for pin in loads.pins]
-    centres = {pin.name: pin.centre for pin in loads.pins}
+    places = {pin.name: pin.place for pin in loads.pins}
     for couple in loads.couples:
-        wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, couple.torque])
-        points.append(beam.PointLoad(point=centres[couple.pin], wrench=wrench))
+        wrench = np.asarray(couple.torque)[..., None] * np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        points.append(beam.PointLoad(point=places[couple.pin], wrench=wrench))
     points += [beam.PointLoad(point=end.point, wrench=end.wrench) for end in loads.ends]
     # What a clamp holds is part of the beam, though nothing is in it.
     held = [end.x for end in body.ends if mouth(body, end) != end.x]
@@ -364,7 +363,8 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
             ends = [per_length * per_mass(x) for x in (start, end)]
             lines.append(beam.LineLoad(start=start, end=end, first=ends[0], last=ends[1]))
         for x, lump in lumps:
-            wrench = np.concatenate([lump * per_mass(x), np.zeros(3)])
+            pull = lump * per_mass(x)
+            wrench = np.concatenate([pull, np.zeros(pull.shape)], axis=-1)
             points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
         # The centroid's distance from the axis adds a moment, and so do the widths of eyes and tube by their inertia.
         off_axis = np.cross([0.0, height, 0.0], mass.mass * per_mass(mass.centroid[0]))
@@ -372,8 +372,9 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
             p * (b - a) * ((b - a) ** 2 / 12.0 + ((a + b) / 2.0 - mass.centroid[0]) ** 2) for a, b, p in spread
         )
         on_line += sum(lump * (x - mass.centroid[0]) ** 2 for x, lump in lumps)
-        off_axis[2] -= (mass.inertia - on_line) * force.angular_acceleration
-        points.append(beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis])))
+        off_axis[..., 2] -= (mass.inertia - on_line) * force.angular_acceleration
+        wrench = np.concatenate([np.zeros(off_axis.shape), off_axis], axis=-1)
+        points.append(beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=wrench))
     if not lines and len({float(point.point[0]) for point in points}) < 2:  # loaded at its only pin, or not at all
         stations = (np.array([x, 0.0, 0.0]) for x in extent(body))
         points += [beam.PointLoad(point=at, wrench=np.zeros(6)) for at in stations]

@@ -84,7 +84,7 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
     tuple of Detail
         One per slot, arm, fork and pin through the walls of a tube; none of a part that is no beam.
     """
-    if not body.part.is_beam:
+    if not has_details(body):
         return ()
     pushed = {load.name: load for load in loads.pins}
     found = [_slot(body, pin, pushed[pin.name], forces, poisson) for pin in body.pins if pin.slot > 0.0]
@@ -95,6 +95,25 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
     if body.part.section.round:
         found += [_through(body, pin, forces, poisson) for pin in body.pins if body.ring(pin).diameter == 0.0]
     return tuple(found)
+
+
+def has_details(body: Body) -> bool:
+    """Return True for a link that has details.
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+
+    Returns
+    -------
+    bool
+    """
+    through = body.part.section.round
+    return body.part.is_beam and any(
+        pin.slot > 0.0 or pin.foot is not None or pin.fork is not None or (through and body.ring(pin).diameter == 0.0)
+        for pin in body.pins
+    )
 
 
 def remarks(body: Body, found: Sequence[Detail]) -> tuple[Reason | str, ...]:

@@ -1,4 +1,4 @@
-"""A balanced set of loads on a straight beam, in its link's frame."""
+"""A balanced set of loads on a straight beam, in its link's frame, in one state or in n along a leading axis."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,9 +15,9 @@ RECENT = 16
 
 
 def _frozen(values: ArrayLike, name: str, *shapes: int) -> Floats:
-    """Return a read-only copy of a vector, refused unless finite and of one of the given lengths."""
+    """Return a read-only copy of a vector or of n, refused unless finite and of one of the given lengths."""
     array = np.array(values, dtype=np.float64)
-    if array.ndim != 1 or array.size not in shapes or not np.isfinite(array).all():
+    if array.ndim not in (1, 2) or array.shape[-1] not in shapes or not np.isfinite(array).all():
         raise CannotRunError(f"{name} {array.tolist()} must be {' or '.join(map(str, shapes))} finite numbers")
     array.setflags(write=False)
     return array
@@ -31,7 +31,7 @@ class PointLoad:
     ----------
     point : ndarray, shape (3,)
         x, y, z [mm] (two numbers mean z = 0); off the axis it adds the moment of its force.
-    wrench : ndarray, shape (6,)
+    wrench : ndarray, shape (..., 6)
         Fx, Fy, Fz [N], Mx, My, Mz [N·mm].
     """
 
@@ -46,7 +46,7 @@ class PointLoad:
 
     @cached_property
     def on_axis(self) -> Floats:
-        """The same wrench (6,), reduced to the point (x, 0, 0) of the axis."""
+        """The same wrench (..., 6), reduced to the point (x, 0, 0) of the axis."""
         return shifted(self.wrench, np.array([0.0, self.point[1], self.point[2]]))
 
 
@@ -60,7 +60,7 @@ class LineLoad:
         x [mm].
     end : float
         x beyond ``start`` [mm].
-    first : ndarray, shape (3,)
+    first : ndarray, shape (..., 3)
         Force per length at the start, in the link's frame [N/mm].
     last : ndarray, shape (3,)
         The same at the end.
@@ -80,14 +80,15 @@ class LineLoad:
 
     @property
     def resultant(self) -> tuple[float, Floats]:
-        """Station of the mean force's moment and wrench (6,) about that station: the load as one wrench at mid-length.
+        """Station of the mean force's moment and wrench (..., 6) about it: the load as one wrench at mid-length.
 
         Force (first + last) L/2 at the middle, with the couple e_x × (last - first) L²/12.
         """
         length = self.end - self.start
         slope = (self.last - self.first) * length**2 / 12.0
-        couple = np.array([0.0, -slope[2], slope[1]])
-        return (self.start + self.end) / 2.0, np.concatenate([(self.first + self.last) * length / 2.0, couple])
+        couple = np.stack([np.zeros(slope.shape[:-1]), -slope[..., 2], slope[..., 1]], axis=-1)
+        force = (self.first + self.last) * length / 2.0
+        return (self.start + self.end) / 2.0, np.concatenate([force, couple], axis=-1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,6 +107,12 @@ class BeamLoads:
     lines: tuple[LineLoad, ...] = ()
 
     @cached_property
+    def states(self) -> tuple[int, ...]:
+        """Shape of the states: () for one, (n,) for n."""
+        vectors = [p.wrench for p in self.points] + [q.first for q in self.lines]
+        return np.broadcast_shapes(*(vector.shape[:-1] for vector in vectors))
+
+    @cached_property
     def span(self) -> tuple[float, float]:
         """The x of the first and of the last loaded station [mm]."""
         stations = [float(p.point[0]) for p in self.points] + [x for q in self.lines for x in (q.start, q.end)]
@@ -120,32 +127,33 @@ class BeamLoads:
         return max(x1 - x0, *(abs(float(end)) for p in self.points for end in p.point[1:]), 0.0)
 
     @cached_property
-    def scale(self) -> float:
-        """Sum of the magnitudes of all loads [N], moments divided by ``size``."""
-        total = 0.0
+    def scale(self) -> Floats:
+        """Sum (...) of the magnitudes of all loads [N], moments divided by ``size``."""
+        total = np.zeros(self.states)
         for p in self.points:
-            total += float(np.linalg.norm(p.wrench[:3]) + np.linalg.norm(p.wrench[3:]) / self.size)
+            total = total + _size(p.wrench[..., :3]) + _size(p.wrench[..., 3:]) / self.size
         for q in self.lines:
-            mean = (np.linalg.norm(q.first) + np.linalg.norm(q.last)) / 2.0
-            total += float(mean) * (q.end - q.start)
+            total = total + (_size(q.first) + _size(q.last)) / 2.0 * (q.end - q.start)
         return total
 
     @cached_property
     def resultant(self) -> Floats:
-        """The wrench (6,) of all loads about the middle of the span [N, N·mm]; zero where they balance."""
+        """The wrench (..., 6) of all loads about the middle of the span [N, N·mm]; zero where they balance."""
         middle = sum(self.span) / 2.0
-        total = np.zeros(6)
+        total = np.zeros((*self.states, 6))
         wrenches = [(float(p.point[0]), p.on_axis) for p in self.points] + [q.resultant for q in self.lines]
         for x, wrench in wrenches:
             total += wrench
-            total[4] -= (x - middle) * wrench[2]
-            total[5] += (x - middle) * wrench[1]
+            total[..., 4] -= (x - middle) * wrench[..., 2]
+            total[..., 5] += (x - middle) * wrench[..., 1]
         return total
 
     @property
-    def imbalance(self) -> float:
-        """Resultant over the sum of the loads' magnitudes (moments over ``size``)."""
-        if self.scale == 0.0:
-            return 0.0
-        force, moment = np.linalg.norm(self.resultant[:3]), np.linalg.norm(self.resultant[3:]) / self.size
-        return float(max(force, moment)) / self.scale
+    def imbalance(self) -> Floats:
+        """Resultant (...) over the sum of the loads' magnitudes (moments over ``size``)."""
+        larger = np.maximum(_size(self.resultant[..., :3]), _size(self.resultant[..., 3:]) / self.size)
+        return np.asarray(larger / np.where(self.scale > 0.0, self.scale, 1.0))
+
+
+def _size(vectors: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))

@@ -153,13 +153,13 @@ class Piecewise:
         interval = np.clip(interval, 0, self.coefficients.shape[-3] - 1)
         return values(self.coefficients[..., interval, :, :], (stations - self.breaks[interval])[..., None])
 
-    def state(self, i: int) -> "Piecewise":
+    def state(self, i: int | None) -> "Piecewise":
         """Return the functions of one of n states.
 
         Parameters
         ----------
-        i : int
-            Its number.
+        i : int or None
+            Its number. None gives functions in a single state an axis.
 
         Returns
         -------
@@ -286,39 +286,6 @@ class Piecewise:
 def _along(c: Floats, s: Floats) -> Floats:
     """Values (..., r, m) of polynomials (..., m, k) at r places."""
     return np.asarray(np.vander(s, c.shape[-1], increasing=True) @ c.swapaxes(-1, -2))
-
-
-def stacked(functions: Sequence[Piecewise]) -> Piecewise:
-    """Return functions of several states, of one each, as one.
-
-    Parameters
-    ----------
-    functions : sequence of Piecewise
-        Of the same breaks and powers.
-
-    Returns
-    -------
-    Piecewise
-    """
-    return Piecewise(breaks=functions[0].breaks, coefficients=np.stack([one.coefficients for one in functions]))
-
-
-def alike_stations(functions: Sequence[Piecewise]) -> list[list[int]]:
-    """Return which functions have the same breaks.
-
-    Parameters
-    ----------
-    functions : sequence of Piecewise
-
-    Returns
-    -------
-    list of list of int
-        Their numbers, rising.
-    """
-    found: dict[bytes, list[int]] = {}
-    for i, one in enumerate(functions):
-        found.setdefault(one.breaks.tobytes(), []).append(i)
-    return [*found.values()]
 
 
 def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:

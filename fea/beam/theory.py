@@ -50,7 +50,7 @@ def internal_forces(loads: BeamLoads) -> Piecewise:
     Parameters
     ----------
     loads : BeamLoads
-        A balanced set.
+        A balanced set, in one state or in n.
 
     Returns
     -------
@@ -62,28 +62,29 @@ def internal_forces(loads: BeamLoads) -> Piecewise:
     CannotRunError
         Where the loads do not balance to 1e-6 of their sum, with the resultant.
     """
-    if loads.imbalance > LARGEST_IMBALANCE:
-        force, moment = loads.resultant[:3], loads.resultant[3:]
+    if loads.imbalance.max(initial=0.0) > LARGEST_IMBALANCE:
+        worst = loads.imbalance.argmax()
+        force, moment = np.split(loads.resultant.reshape(-1, 6)[worst], 2)
         raise CannotRunError(
             f"the loads of a beam do not balance: resultant force ({force[0]:.6g}, {force[1]:.6g}, {force[2]:.6g}) N, "
             f"moment ({moment[0]:.6g}, {moment[1]:.6g}, {moment[2]:.6g}) N·mm about its middle, "
-            f"{loads.imbalance:.3g} of the load where {LARGEST_IMBALANCE:g} is allowed; check the joint forces"
+            f"{loads.imbalance.max():.3g} of the load where {LARGEST_IMBALANCE:g} is allowed; check the joint forces"
         )
     stations = [float(p.point[0]) for p in loads.points] + [x for q in loads.lines for x in (q.start, q.end)]
     breaks = np.unique(stations)
-    coefficients = np.zeros((len(breaks) - 1, 6, 4))
-    state = np.zeros(6)
+    coefficients = np.zeros((*loads.states, len(breaks) - 1, 6, 4))
+    state = np.zeros((*loads.states, 6))
     for i, (x, h) in enumerate(zip(breaks[:-1], np.diff(breaks), strict=True)):
         for p in loads.points:
             if p.point[0] == x:
                 state = state - p.on_axis
-        q = np.zeros((3, 2))
+        q = np.zeros((*loads.states, 3, 2))
         for line in loads.lines:
             if line.start <= x < line.end:
                 slope = (line.last - line.first) / (line.end - line.start)
-                q += np.column_stack([line.first + slope * (x - line.start), slope])
-        coefficients[i] = between_loads(state, q)
-        state = values(coefficients[i], h)
+                q += np.stack([line.first + slope * (x - line.start), slope], axis=-1)
+        coefficients[..., i, :, :] = between_loads(state, q)
+        state = values(coefficients[..., i, :, :], h)
     return Piecewise(breaks=breaks, coefficients=coefficients)
 
 

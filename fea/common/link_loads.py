@@ -4,7 +4,7 @@ The input of hand calculation, of solid models and of envelopes. A leading axis 
 there are several.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.geometry.bodies.seat import Seat
-from alula.loads.records.applied import BodyForce, LineLoad, chosen, shifted
+from alula.loads.records.applied import BodyForce, LineLoad, chosen, shifted, together
 
 Real = NDArray[np.float64]
 ALONG = np.array([1.0, 0.0, 0.0])
@@ -50,6 +50,11 @@ class PinLoad:
     slotted: bool = False
     friction: Any = 0.0
     seat: Seat | None = None
+
+    @property
+    def place(self) -> Real:
+        """Its centre (3,), which is the same in all states but in a slot [mm]."""
+        return self.centre.reshape(-1, 3)[0]
 
     @property
     def torque(self) -> Any:
@@ -230,6 +235,38 @@ class LinkLoads:
             force = self.inertia.at_centroid(np.array([*self.inertia.mass.centroid, 0.0]))
             total = total + np.linalg.norm(force[..., :3], axis=-1) + np.abs(force[..., 5]) / length
         return np.asarray(total)
+
+
+def stacked(states: Sequence[LinkLoads]) -> list[tuple[list[int], LinkLoads]]:
+    """Return the loads of a link in several states as few with an axis of states.
+
+    Parameters
+    ----------
+    states : sequence of LinkLoads
+        On the same link, in one state each.
+
+    Returns
+    -------
+    list of tuple of (list of int, LinkLoads)
+        Numbers of the states in which what acts stands at the same places, and all that acts on the link in these.
+    """
+    alike: dict[Any, list[int]] = {}
+    for i, one in enumerate(states):
+        pins, lines = (pin.centre.tobytes() for pin in one.pins), ((line.start, line.end) for line in one.lines)
+        alike.setdefault((*pins, *lines, *(couple.pin for couple in one.couples)), []).append(i)
+    return [(numbers, _stacked([states[i] for i in numbers])) for numbers in alike.values()]
+
+
+def _stacked(states: Sequence[LinkLoads]) -> LinkLoads:
+    first, inertia = states[0], [one.inertia for one in states]
+    return replace(
+        first,
+        pins=tuple(map(together, zip(*(one.pins for one in states), strict=True))),
+        couples=tuple(map(together, zip(*(one.couples for one in states), strict=True))),
+        ends=tuple(map(together, zip(*(one.ends for one in states), strict=True))),
+        lines=tuple(map(together, zip(*(one.lines for one in states), strict=True))),
+        inertia=None if first.inertia is None else together(inertia),
+    )
 
 
 Plates = tuple[LinkLoads, ...]

@@ -13,7 +13,6 @@ from typing import Literal
 
 from alula.fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
 from alula.fea.beam.critical_locations import CriticalLocation, critical_locations, displacement_estimate
-from alula.fea.beam.piecewise import stacked
 from alula.fea.beam.theory import BeamCheck
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
@@ -330,7 +329,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     found: tuple[CriticalLocation, ...] = ()
     if not outside:
         try:
-            found = critical_locations(body, [loads], stacked([beam.forces]), task.nu)
+            found = critical_locations(body, loads.chosen(None), beam.forces.state(None), task.nu)
         except CannotRunError as error:
             outside = str(error)
     if outside:

@@ -11,14 +11,14 @@ from alula.fea.beam.calibration import calibration_of, uncalibrated
 from alula.fea.beam.critical_locations import critical_locations
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.beam.deflection import Deflection, deflection
-from alula.fea.beam.details import Detail, details, remarks
+from alula.fea.beam.details import Detail, details, has_details, remarks
 from alula.fea.beam.flanks import flanks_of
 from alula.fea.beam.loads import BeamLoads, PointLoad
-from alula.fea.beam.piecewise import Piecewise, alike_stations, divided, stacked
+from alula.fea.beam.piecewise import Piecewise, divided
 from alula.fea.beam.section_stress import SectionStress
 from alula.fea.beam.theory import BeamCheck, check_beam, internal_forces, largest_stress
 from alula.fea.buckling.buckling import least_factor, least_factors
-from alula.fea.common.link_loads import LinkLoads, Plates
+from alula.fea.common.link_loads import LinkLoads, Plates, stacked
 from alula.fea.common.plates import plates
 from alula.fea.common.reason import Reason
 from alula.fea.links.on_axis import on_axis
@@ -239,11 +239,11 @@ class HandStates:
         """Largest stress (n,) of plain sections and details [MPa]; the largest pin force [N] where no beam stands."""
         body, poisson = self._body, self._material.poissons_ratio
 
-        def of(alike: list[int], forces: Piecewise) -> Real:
+        def of(loads: LinkLoads, forces: Piecewise) -> Real:
             plain = largest_stress(forces, hand_section(body), poisson, body.cuts)
-            for k, i in enumerate(alike):
-                places = details(body, self._every[i], forces.state(k), poisson)
-                plain[k] = max(plain[k], *(one.stress.equivalent for one in places), 0.0)
+            for k in range(len(plain) if has_details(body) else 0):
+                places = details(body, loads.chosen(k), forces.state(k), poisson)
+                plain[k] = max(plain[k], *(one.stress.equivalent for one in places))
             return plain
 
         return self._worse(self._each(of))
@@ -259,8 +259,7 @@ class HandStates:
             return np.tile(self.stress, (2, 1))
         calibration, found = calibration_of(body.part), np.zeros((2, len(self._every)))
         try:
-            for alike, forces in self._forces:
-                acting = [self._every[i] for i in alike]
+            for alike, acting, forces in self._forces:
                 for place in critical_locations(body, acting, forces, material.poissons_ratio):
                     factors = calibration.factors(place.kind, brittle=material.brittle)
                     ends = np.outer([factors.low, factors.high], place.each)
@@ -296,17 +295,19 @@ class HandStates:
         return np.asarray(np.maximum.reduceat(every, first, axis=-1))
 
     @cached_property
-    def _forces(self) -> list[tuple[list[int], Piecewise]]:
-        """Numbers of the states whose stations are alike, and their internal forces."""
-        alone = [internal_forces(on_axis(loads, self._body, self._material.density)) for loads in self._every]
-        cuts = [cut.x for cut in self._body.cuts]
-        return [(alike, divided(stacked([alone[i] for i in alike]), cuts)) for alike in alike_stations(alone)]
+    def _forces(self) -> list[tuple[list[int], LinkLoads, Piecewise]]:
+        """Numbers of the states whose stations are alike, what acts in these, and their internal forces."""
+        body, density, found = self._body, self._material.density, list[tuple[list[int], LinkLoads, Piecewise]]()
+        for alike, loads in stacked(self._every):
+            forces = internal_forces(on_axis(loads, body, density))
+            found.append((alike, loads, divided(forces, [cut.x for cut in body.cuts])))
+        return found
 
-    def _each(self, number: Callable[[list[int], Piecewise], Real]) -> Real:
+    def _each(self, number: Callable[[LinkLoads, Piecewise], Real]) -> Real:
         """A number (n,) of internal forces in every state."""
         if no_beam(self._body):
             return np.array([max(float(np.linalg.norm(pin.wrench[:3])) for pin in one.pins) for one in self._every])
         found = np.zeros(len(self._every))
-        for alike, forces in self._forces:
-            found[alike] = number(alike, forces)
+        for alike, loads, forces in self._forces:
+            found[alike] = number(loads, forces)
         return found

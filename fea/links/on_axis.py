@@ -10,12 +10,12 @@ from alula.geometry.parts.part import Body
 
 @lru_cache(maxsize=RECENT)
 def on_axis(loads: LinkLoads, body: Body, density: float) -> BeamLoads:
-    """Return the loads of one pose on the link's axis, as ``beam_loads`` does.
+    """Return the loads of a link on its axis, as ``beam_loads`` does.
 
     Parameters
     ----------
     loads : LinkLoads
-        At one pose.
+        As of ``beam_loads``.
     body : Body
         The link's.
     density : float

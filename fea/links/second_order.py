@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from alula.fea.beam.column_factor import GAUSS, MERGED, Stretch, slopes, stiffness_matrices
 from alula.fea.beam.cut_beam import curving_forces
-from alula.fea.beam.piecewise import Piecewise, Side, alike_stations, stacked
+from alula.fea.beam.piecewise import Piecewise, Side
 from alula.fea.beam.theory import internal_forces
 from alula.fea.buckling.holding import columns, holding
-from alula.fea.common.link_loads import LinkLoads
+from alula.fea.common.link_loads import LinkLoads, stacked
 from alula.fea.links.on_axis import on_axis
 from alula.geometry.bodies.body import no_beam
 from alula.loads.case.case import Case
@@ -108,19 +108,15 @@ def on_tilting_pins(case: Case, link: str, states: Sequence[LinkLoads]) -> tuple
     inertia, soft = columns(body, free=True)[1]
     across = Bend(stiffness=material.youngs_modulus * inertia, stretches=soft)
     on_arms = {pin.name for pin in body.pins if pin.foot is not None}
-    forces = [curving_forces(internal_forces(on_axis(one, body, material.density)), body.cuts) for one in states]
-    held = holding(case, link).outermost
-    grows = np.zeros(len(forces), dtype=bool)
-    for alike in alike_stations(forces):
-        marks = _marks(states[alike[0]], on_arms)
+    held, found = holding(case, link).outermost, list(states)
+    for alike, loads in stacked(states):
+        marks = _marks(loads, on_arms)
         if len(marks) > 1 and {*held} <= {*marks}:
-            nodes, every = _nodes(marks, _ends(soft)), stacked([forces[i] for i in alike])
-            share = _shares(*_system(every, across, nodes, held)[:3])
-            grows[alike] = (share >= NEGLIGIBLE) & (share < 1.0)
-    return tuple(
-        on_its_pins(loads, own, None, across, held, on_arms) if grown else loads
-        for loads, own, grown in zip(states, forces, grows, strict=True)
-    )
+            forces = curving_forces(internal_forces(on_axis(loads, body, material.density)), body.cuts)
+            share = _shares(*_system(forces, across, _nodes(marks, _ends(soft)), held)[:3])
+            for k in np.flatnonzero((share >= NEGLIGIBLE) & (share < 1.0)):
+                found[alike[k]] = on_its_pins(states[alike[k]], forces.state(k), None, across, held, on_arms)
+    return tuple(found)
 
 
 def between_stations(
@@ -187,7 +183,7 @@ def _marks(loads: LinkLoads, on_arms: Collection[str]) -> list[float]:
 
 
 def _stations(loads: LinkLoads, on_arms: Collection[str]) -> list[float]:
-    pins = {float(pin.centre[0]) for pin in loads.pins if pin.name not in on_arms}
+    pins = {float(pin.place[0]) for pin in loads.pins if pin.name not in on_arms}
     return sorted(pins | {float(end.point[0]) for end in loads.ends})
 
 

@@ -3,6 +3,7 @@
 Every record serves one pose or n of them, along a leading axis of its arrays, in global axes or in its link's own.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, TypeVar
 
@@ -370,6 +371,23 @@ def chosen(record: Any, poses: Any) -> Any:
     """
     values = {name: np.asarray(getattr(record, name)) for name in (*record.VECTORS, *record.SCALARS)}
     return replace(record, **{name: value[poses] if value.ndim else value for name, value in values.items()})
+
+
+def together(records: Sequence[Any]) -> Any:
+    """Return a record of loads at n poses from itself at each; ``chosen`` goes the other way.
+
+    Parameters
+    ----------
+    records : sequence of Load, or part of the loads on a link
+        Alike but for their ``VECTORS`` and ``SCALARS``.
+
+    Returns
+    -------
+    Load, or part of the loads on a link
+    """
+    first = records[0]
+    names = (*first.VECTORS, *first.SCALARS)
+    return replace(first, **{name: np.stack([getattr(one, name) for one in records]) for name in names})
 
 
 def shifted(wrench: Real, arm: Real) -> Real:

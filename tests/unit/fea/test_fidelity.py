@@ -10,7 +10,6 @@ from edited_cases import edited
 
 from alula.fea.beam.calibration import calibrations
 from alula.fea.beam.critical_locations import critical_locations, shoulder_factors
-from alula.fea.beam.piecewise import stacked
 from alula.fea.check import deciding
 from alula.fea.check.run import check_case
 from alula.fea.common.reason import reason
@@ -214,7 +213,9 @@ def test_a_cross_hole_bears_the_handbooks_factors():
     task = eye_link.task()
     row = HoleRow(count=1, diameter="1 mm", first="20 mm", last="20 mm", along="y")
     beam = eye_link.beam(task)
-    found = critical_locations(replace(task.body, holes=(row,)), task.loads[:1], stacked([beam.forces]), task.nu)
+    found = critical_locations(
+        replace(task.body, holes=(row,)), task.loads[0].chosen(None), beam.forces.state(None), task.nu
+    )
     [hole] = [s for s in found if s.kind == "hole"]
     r, h = 0.5, 0.2
     tension = 3.0 + (0.427 - 6.770 * r + 22.698 * r**2 - 16.670 * r**3) * h
