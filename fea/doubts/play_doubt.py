@@ -150,7 +150,8 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
     if worst:
         furthest = {name: np.array([slopes[name] for slopes in worst]) for name in play.loose.radii}
         others = _answers(case, acting, play.solved(play.loose.at_rims(furthest)))
-        answers, numbers = [*answers, *others], np.hstack([numbers, _numbers(case, link, others)])
+        answers = [*answers, *others]
+        numbers = np.hstack([numbers, _numbers(case, link, others)]) if others else numbers
     held = [_scatter(play.forces[name], source) for name in case.linkage.joints_of(link)] if case.layered else []
 
     def alone(value: float, found: Sequence[float]) -> Scatter:
@@ -184,10 +185,13 @@ def _answers(case: Case, plain: LinkLoads, here: Displaced) -> list[Plates]:
 
     Components out of the plane are those of the link ``plain``, in its own axes, since play changes none of them.
     """
+    if not np.any(here.sound):
+        return []
+    here = here.chosen(here.sound)
     found = link_loads(plain.name, plain.link, case.body(plain.link), here, here.loads)
     wrenches = [np.where(IN_PLANE, new, old) for (_, new), (_, old) in zip(found.wrenches, plain.wrenches, strict=True)]
     states = found.with_wrenches(wrenches)
-    return [on_plates(case, plain.link, states.chosen(i)) for i in np.flatnonzero(here.sound)]
+    return [on_plates(case, plain.link, states.chosen(i)) for i in range(len(here.sound))]
 
 
 def _scatter(span: Span, source: Source) -> Scatter:

@@ -137,6 +137,46 @@ def test_assembled_linkages_stay_within_reach(
     assert abs(place.position(*at) - start) == pytest.approx(reach.largest(), rel=1e-4)
 
 
+@pytest.mark.parametrize(("linkage", "stated", "drive", "at"), LINKAGES)
+def test_states_at_many_offsets_are_those_at_each_alone(
+    linkage: Linkage, stated: dict[str, Any], drive: Drive, at: tuple[str, str]
+) -> None:
+    """At one pose and at two; the second of four offsets cannot be reached, and the others know nothing of it."""
+    pose = solve_pose(linkage, **stated)
+    joints = loose(pose, {name: 0.1 for name, joint in linkage.joints.items() if joint.type != "slider"})
+    sizes = np.array([0.3, -400.0, -0.2, 0.1])
+    offsets = {n: sizes * (1.0 + k) * joints.directions(n)[-1] for k, n in enumerate(joints.radii)}
+    place, closed = joints.moved(offsets)
+    assert closed.tolist() == [True, False, True, True]
+    twice = replace(joints, place=replace(joints.place, q=np.stack([pose.q, pose.q])))
+    both, closed = twice.moved({n: offset[:, None] for n, offset in offsets.items()})
+    assert closed.tolist() == [[True] * 2, [False] * 2, [True] * 2, [True] * 2]
+    for i in (0, 2, 3):
+        alone, closed = joints.moved({n: complex(offset[i]) for n, offset in offsets.items()})
+        assert closed
+        for many in (place, both.chosen((slice(None), 1)), both.listed.chosen(slice(None, None, 2))):
+            one = many.chosen(i)
+            assert one.position(*at) == pytest.approx(complex(alone.position(*at)), rel=1e-12)
+            assert one.closure.offsets == alone.closure.offsets
+            assert np.abs(one.closure.residual(one.q)).max() < 1e-10
+
+
+def test_a_pose_in_line_to_the_last_digit_leaves_the_other_its_play() -> None:
+    """With the travel held and crank and coupler in line the matrix is singular; it is the second of both poses."""
+    pose = solve_pose(slider_crank(30, 90, 0), coordinate="crank", angle=0.9, near={"coupler": -0.2})
+    stretched = np.zeros_like(pose.q)
+    stretched[-1] = 120.0
+    assert np.abs(pose.closure.residual(stretched)).max() == 0.0
+    held = np.zeros((1, len(pose.q)))
+    held[0, -1] = 1.0 / pose.linkage.longest
+    both = LooseJoints(place=replace(pose.placement, q=np.stack([pose.q, stretched])), radii={"B": 0.1}, held=held)
+    alone = replace(both, place=pose.placement)
+    for offset in (0.1, 0.1j):
+        place, closed = both.moved({"B": offset})
+        assert closed.tolist() == [True, False]
+        assert place.q[0] == pytest.approx(alone.moved({"B": offset})[0].q, rel=1e-12)
+
+
 def arm_case(play: str, force: tuple[str, str] = ("0 N", "-5 N")) -> Case:
     """A lever of 80 mm on a pin with play, at 30°, held by a drive."""
     return validate(
