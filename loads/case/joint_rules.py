@@ -11,7 +11,7 @@ from alula.geometry.joints.holes import Known, largest_clearance
 from alula.geometry.joints.joint_kinds import Surface
 from alula.loads.case.connection_rules import connected_joints
 from alula.loads.case.core import CoreCase
-from alula.loads.case.layers import on_one_axis
+from alula.loads.case.layers import pins
 from alula.loads.records.check_spec import MotorCheck
 from alula.loads.text.caveat import Caveat, Heading, Topic
 from alula.loads.text.reason import reason
@@ -125,8 +125,7 @@ def shared_pins(case: CoreCase) -> tuple[tuple[str, ...], ...]:
         Of each pin, those without friction too.
     """
     own, joints = set(rubbing_joints(case)), case.joints
-    every = (tuple(name for name in names if joints[name].kind.has_pin) for names in on_one_axis(case))
-    return tuple(names for names in every if len(names) > 1 and any(joints[n].pivots and n in own for n in names))
+    return tuple(names for names in pins(case) if len(names) > 1 and any(joints[n].pivots and n in own for n in names))
 
 
 def standing_link(case: CoreCase, names: Sequence[str]) -> str | None:
