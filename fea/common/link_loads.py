@@ -54,7 +54,7 @@ class PinLoad:
     @property
     def place(self) -> Real:
         """Its centre (3,), which is the same in all states but in a slot [mm]."""
-        return self.centre.reshape(-1, 3)[0]
+        return np.asarray(self.centre.reshape(-1, 3)[0])
 
     @property
     def torque(self) -> Any:

@@ -114,7 +114,7 @@ def on_tilting_pins(case: Case, link: str, states: Sequence[LinkLoads]) -> tuple
         if len(marks) > 1 and {*held} <= {*marks}:
             forces = curving_forces(internal_forces(on_axis(loads, body, material.density)), body.cuts)
             share = _shares(*_system(forces, across, _nodes(marks, _ends(soft)), held)[:3])
-            for k in np.flatnonzero((share >= NEGLIGIBLE) & (share < 1.0)):
+            for k in np.flatnonzero((share >= NEGLIGIBLE) & (share < 1.0)).tolist():
                 found[alike[k]] = on_its_pins(states[alike[k]], forces.state(k), None, across, held, on_arms)
     return tuple(found)
 

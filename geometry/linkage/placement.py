@@ -60,11 +60,11 @@ class Placement:
     @property
     def listed(self) -> "Placement":
         """The same poses along one axis."""
-        q, qdot, qddot = (x if x is None else x.reshape(-1, x.shape[-1]) for x in (self.q, self.qdot, self.qddot))
+        qdot, qddot = (x if x is None else x.reshape(-1, x.shape[-1]) for x in (self.qdot, self.qddot))
         offsets = {name: np.broadcast_to(x, self.shape).ravel() for name, x in self.closure.offsets.items()}
         closure = replace(self.closure, offsets=offsets) if offsets else self.closure
         rows = None if self.rows is None else self.rows.ravel()
-        return Placement(closure=closure, q=q, qdot=qdot, qddot=qddot, rows=rows)
+        return Placement(closure=closure, q=self.q.reshape(-1, self.q.shape[-1]), qdot=qdot, qddot=qddot, rows=rows)
 
     def chosen(self, poses: Any) -> "Placement":
         """Return the chosen poses alone.

@@ -338,7 +338,10 @@ class Play:
             return {name: Span(value=float(size), low=0.0, high=np.inf) for name, size in sizes.items()}
         forces, reaches = {name: complex(self.nominal.force(name)) for name in self.case.joints}, {}
         for name in forces:
-            rates = {n: tuple(np.asarray(one[f"force {name}"]) for one in by) for n, by in self.gradients.items()}
+            rates = {
+                n: tuple(np.asarray(one[f"force {name}"], dtype=np.complex128) for one in by)
+                for n, by in self.gradients.items()
+            }
             reaches[name] = self.loose.reach_of(rates)
         shares = [reaches[name].shares(force) for name, force in forces.items()]
         worst = self.solved(self.loose.offsets({n: np.array([one[n] for one in shares]) for n in self.loose.radii}))
