@@ -22,7 +22,7 @@ BODY = Body(
     ends=(),
     holes=(),
 )  # fmt: skip
-IDLE = PinLoad(name="A", centre=np.zeros(3), diameter=HOLE, wrench=np.zeros(6))
+IDLE = PinLoad(name="A", centre=np.zeros((1, 3)), diameter=HOLE, wrench=np.zeros((1, 6)))
 
 
 def bore(torque=0.0, **through):
@@ -31,7 +31,7 @@ def bore(torque=0.0, **through):
     forces = np.zeros(6)
     for name, value in through.items():
         forces[names[name]] = value
-    [found] = _bore(BODY, BODY.pins[0], [IDLE], np.array([torque]), forces[None], forces[None])
+    [found] = _bore(BODY, BODY.pins[0], IDLE, np.array([torque]), forces[None], forces[None])
     return found
 
 
@@ -56,10 +56,10 @@ def test_a_pin_that_bends_presses_on_the_rim_at_which_it_is_loaded(soft):
     seat = Seat(young=70e3, pin_young=pin_young, diameter=HOLE, length=THICK, eye=WIDE, side=1)
 
     def over_stiff(force, couple):
-        stiff = replace(IDLE, wrench=np.array([force, 0.0, 0.0, 0.0, couple, 0.0]))
+        stiff = replace(IDLE, wrench=np.array([[force, 0.0, 0.0, 0.0, couple, 0.0]]))
         idle = np.zeros((1, 6))
         found = [
-            _bore(BODY, BODY.pins[0], [load], np.zeros(1), idle, idle) for load in (replace(stiff, seat=seat), stiff)
+            _bore(BODY, BODY.pins[0], load, np.zeros(1), idle, idle) for load in (replace(stiff, seat=seat), stiff)
         ]
         return found[0][0] / found[1][0]
 
