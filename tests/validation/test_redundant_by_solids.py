@@ -113,6 +113,7 @@ def test_slender_cranks_share_the_load_as_springs_in_parallel():
     assert moved.value.value == pytest.approx(rise + turn * at, rel=0.03)
 
 
+@pytest.mark.converged
 def test_short_plates_share_the_load_as_their_plane_solution_has_it():
     """Two known flat bars beside a slender one, which centre lines give 18 % too little, and solids 4 %."""
     parts, pins = [flat(14.0, 4.0), flat(3.0, 4.0), flat(14.0, 4.0)], [[5.0, 6.5], [1.0, 1.0], [5.0, 6.5]]

@@ -74,6 +74,7 @@ def test_the_least_of_a_convex_function_from_some_of_its_values():
     assert least_of_convex(zip(places, abs(places - 0.4), strict=True)) == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.converged
 def test_the_motors_bands_hold_what_every_coefficient_of_the_range_asks():
     found = motor(ornithopter())
     ends = [motor(direct(c)) for c in (1.2, 5.0)]

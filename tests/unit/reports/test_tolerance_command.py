@@ -65,6 +65,7 @@ def test_mistakes_are_told_in_one_sentence(arguments: tuple[str, ...], words: li
     assert len(done.stderr.strip().splitlines()) == 1
 
 
+@pytest.mark.converged
 def test_console_record_and_notebook_tell_the_same_of_samples() -> None:
     """Two checks of one number are named apart; a probability near 1 is not told as certain."""
     case = alula.read_case("four-bar").with_values({
