@@ -62,7 +62,7 @@ class _Envelope:
 
     def __init__(self, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> None:
         layered = with_couples(moved, evaluated)
-        self.moved, self.ways = layered.moved, layered.ways
+        self.moved, self.ways, self.pins = layered.moved, layered.ways, layered.pins
         self.evaluated, self.threads, self.progress = evaluated, threads, progress
         moved, case = self.moved, self.moved.case
         self.sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
@@ -186,7 +186,14 @@ class _Envelope:
         """Return the outcome of every check; undecided under load cases that load no link."""
         moved, evaluated = self.moved, self.evaluated
         checks = envelope_outcomes(
-            moved, links, evaluated, self.grown, loaded=self.loaded, stressed=self._growth, lasting=lasting
+            moved,
+            links,
+            evaluated,
+            self.grown,
+            loaded=self.loaded,
+            stressed=self._growth,
+            pins=self.pins,
+            lasting=lasting,
         )
         checks += column_outcomes(moved, self.loaded, evaluated, self.grown)
         checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])

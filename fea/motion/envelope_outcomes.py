@@ -1,6 +1,7 @@
 """From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,7 @@ def envelope_outcomes(
     *,
     loaded: Mapping[str, Sequence[LinkLoads]] | None = None,
     stressed: Callable[[str, str], Scatter] | None = None,
+    pins: Mapping[tuple[str, str], int] = MappingProxyType({}),
     lasting: bool = False,
 ) -> list[CheckOutcome]:
     """Return the outcomes of links and joints; no link or joint passes where poses were left out.
@@ -86,6 +88,8 @@ def envelope_outcomes(
         Link -> what acts on it, one record per load case and plate, for checks by hand of links.
     stressed : callable, optional
         Of load case and link, to what else than the scatter of loads makes of its stress by hand.
+    pins : mapping of tuple of 2 str to int, optional
+        (load case, joint) -> number of the pose in which its pin may bear most, of all ways of sharing couples.
     lasting : bool, optional
         Whether repetitions of the motion are asked for, so that fatigue that is not known leaves a link undecided.
 
@@ -105,7 +109,7 @@ def envelope_outcomes(
     for one in asked(case, SafetyFactorCheck, PlasticCollapseCheck, PinCheck, *BY_HAND):
         if not isinstance(one.check, SafetyFactorCheck | PlasticCollapseCheck):
             acting = [over for over in every if one.subject.kind != "link" or over.loads(one.subject.name)]
-            found += [_at_worst_pose(moved, over, one) for over in acting]
+            found += [_at_worst_pose(moved, over, one, pins) for over in acting]
         elif one.subject.name in links:
             elastic = as_elastic(one)
             for load_case, over in links[one.subject.name].load_cases.items():
@@ -210,11 +214,13 @@ def layer_fatigue_outcomes(
         yield told if material.shear_strength_between_layers else without_shear(told, material.title)
 
 
-def _at_worst_pose(moved: CaseMotion, over: OverMotion, one: Asked) -> CheckOutcome:
+def _at_worst_pose(
+    moved: CaseMotion, over: OverMotion, one: Asked, pins: Mapping[tuple[str, str], int] = MappingProxyType({})
+) -> CheckOutcome:
     """Return what a check by hand makes of its subject: at the pose where that bears least, which is told."""
     evaluated, subject = over.evaluated, one.subject
     if isinstance(one.check, PinCheck):
-        pose, found = _worst_pin(moved, over, one)
+        pose, found = _worst_pin(moved, over, one, pins.get((over.load_case, subject.name)))
     else:
         assert one.check is not None
         how = BY_HAND[type(one.check)]
@@ -227,11 +233,11 @@ def _at_worst_pose(moved: CaseMotion, over: OverMotion, one: Asked) -> CheckOutc
     return outcome.because(reason("under_force", force=force, when=when(moved, pose), why=outcome.reason))
 
 
-def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked) -> tuple[int, CheckOutcome]:
+def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked, most: int | None) -> tuple[int, CheckOutcome]:
     """Return the pose where a pin is stressed most, and the outcome there.
 
     That is the pose of the largest force, to which in a plane all stresses are in proportion. Between layers, and where
-    a torque goes through the pin, it is that of its own largest stress.
+    a torque goes through the pin, it is that of its own largest stress; where it may bear ``most`` counts beside it.
     """
     case, load_case, evaluated, joint = over.case, over.load_case, over.evaluated, one.subject.name
     solved = moved.forces[load_case]
@@ -248,11 +254,17 @@ def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked) -> tuple[int, Ch
         twisted(case, joint, stress, twist).equivalent.high if counts else -np.inf
         for stress, twist, counts in zip(stresses(case, joint, wrenches), twists, evaluated, strict=True)
     ]
+
+    def at(pose: int) -> CheckOutcome:
+        reactions = solved.at(pose).joints
+        shared = shared_stress(case, joint, reactions, forces_at(moved, load_case, pose))
+        growth = pin_growth(case, joint, reactions, over.pin_growth)
+        return pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
+
     pose = first_largest(np.array(bent))
-    reactions = solved.at(pose).joints
-    shared = shared_stress(case, joint, reactions, forces_at(moved, load_case, pose))
-    growth = pin_growth(case, joint, reactions, over.pin_growth)
-    return pose, pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
+    found = {i: at(i) for i in dict.fromkeys((pose, pose if most is None else most))}
+    worst = min(found, key=lambda i: found[i].value.low)
+    return worst, one.outcome(load_case, Band.least([outcome.value for outcome in found.values()]))
 
 
 def column_outcomes(

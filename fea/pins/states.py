@@ -219,6 +219,23 @@ class PinStates:
             return None
         return int(self.aims.stresses(self.states)[:, owners.index(("link", link)) - len(owners)].argmax())
 
+    def tried(self, shares: Real) -> dict[tuple[str, str], float]:
+        """Return the plain stress of each link and pin where it is largest in some states, without a search.
+
+        Parameters
+        ----------
+        shares : ndarray, shape (n, k)
+            Of what is open, such as the ``extremes`` of another pose.
+
+        Returns
+        -------
+        dict of tuple of 2 str to float
+            "link" or "pin", and its name -> stress [MPa].
+        """
+        every = self.aims.ends.owners
+        largest = -self.aims.stresses(self._stands(shares, STAGES[0][0])[1].v)[:, len(every) :]
+        return dict(zip(dict.fromkeys(every), largest.max(axis=0).tolist(), strict=True))
+
     @cached_property
     def ends(self) -> tuple[Reactions, ...]:
         """Joint forces in ``states``."""
@@ -300,9 +317,7 @@ class PinStates:
         A hole whose rims do not touch has no slope, however much more a narrower one would bear.
         """
         best = shares[np.unique(aims.values(self._stands(shares, close)[1].v).argmax(axis=0))]
-        count = best.shape[1]
-        ends = np.where(np.eye(count, dtype=bool), np.array([0.0, 1.0])[:, None, None, None], best[:, None])
-        return _distinct(np.vstack([shares, ends.reshape(-1, count)]))[0]
+        return _distinct(np.vstack([shares, _at_ends(best)]))[0]
 
     def _stands(self, shares: Real, close: float) -> tuple[Real, InDiscs]:
         radii = np.maximum(self.radii.of(shares)[0], LEAST_RADIUS)
@@ -313,6 +328,13 @@ def _drawn(count: int, shares: int) -> Real:
     draw = np.random.default_rng(0)
     between, kind = draw.uniform(size=(count, shares)), draw.integers(4, size=(count, shares))
     return np.asarray(np.choose(kind, (between, np.zeros_like(between), np.ones_like(between), between**6)))
+
+
+def _at_ends(shares: Real) -> Real:
+    """Shares (m, k) of states (n, k) with each one at either end, one at a time."""
+    count = shares.shape[1]
+    ends = np.where(np.eye(count, dtype=bool), np.array([0.0, 1.0])[:, None, None, None], shares[:, None])
+    return ends.reshape(-1, count)
 
 
 def _distinct(rows: Real) -> tuple[Real, Index]:
