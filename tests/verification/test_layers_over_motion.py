@@ -50,7 +50,7 @@ def test_pins_and_links_are_open_in_the_pose_in_which_they_may_bear_most() -> No
         "motion.poses=5",
         'checks.pins={type="pins"}',
     ]
-    case = edited("four-bar", [*STACK, *FITS, *more, 'load_cases.lift.forces.0.force=["-3 N", "-2 N"]'])
+    case = edited("four-bar", [*STACK, *FITS, *more, 'load_cases.lift.forces.0.force=["3 N", "-2 N"]'])
     moved, every = solve_case_motion(case), np.ones(5, dtype=bool)
     layered, [name] = with_couples(moved, every), moved.forces
     told = {one.subject.name: one.value for one in envelope_outcomes(layered.moved, {}, every, pins=layered.pins)}
