@@ -104,23 +104,23 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         for name in moved.forces:  # pose by pose: all load cases have one factorisation
             frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.held)
             found, pins = stood(case, frame, solution)
-            own = shares[name] if i in few else None
-            for owner, stress in pins.tried(own).items() if pins is not None and own is not None else ():
+            sought = shares[name] if i in few else None
+            for owner, stress in pins.tried(sought).items() if pins is not None and sought is not None else ():
                 tried.setdefault((name, *owner), {})[i] = stress
             for joint, wrench in wrenches[name].items():
                 wrench[i, 2:5] = found.joints[joint].wrench[2:5]
-    most = {key: max(found, key=found.__getitem__) for key, found in tried.items()}
+    most = {key: max(stresses, key=stresses.__getitem__) for key, stresses in tried.items()}
     for name, solved in moved.forces.items():
         own = wrenches[name]
         joints = {joint: replace(reaction, wrench=own[joint]) for joint, reaction in solved.joints.items()}
         forces[name] = replace(solved, joints=joints)
         poses = _worst_poses(moved, name, forces[name], evaluated)
         for link, pose in poses.items():
-            found = _answers(moved, name, link, pose, most.get((name, "link", link), pose))
-            if found is not None:
-                ways[name, link] = found
-    pins = {(name, joint): pose for (name, kind, joint), pose in most.items() if kind == "pin"}
-    return LayeredMotion(moved=replace(moved, forces=forces), ways=ways, pins=pins)
+            answers = _answers(moved, name, link, pose, most.get((name, "link", link), pose))
+            if answers is not None:
+                ways[name, link] = answers
+    of_pins = {(name, joint): pose for (name, kind, joint), pose in most.items() if kind == "pin"}
+    return LayeredMotion(moved=replace(moved, forces=forces), ways=ways, pins=of_pins)
 
 
 def _sought(moved: CaseMotion, load_case: str, counted: NDArray[np.int64]) -> NDArray[np.float64] | None:
