@@ -20,7 +20,7 @@ VARIANTS = [(law, transfer) for law in (WIDE, NARROW) for transfer in TRANSFERS]
 
 @pytest.fixture(scope="module")
 def mesh():
-    return mesh_body(BODY, MeshSettings(halves=False).scaled(1.5))
+    return mesh_body(BODY, MeshSettings(halves=False).scaled(2.0))
 
 
 @pytest.fixture(scope="module")
