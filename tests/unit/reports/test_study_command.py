@@ -114,6 +114,7 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.converged
 def test_the_lightest_part_of_a_catalogue_is_told(tmp_path: Path) -> None:
     """A rod of 4 mm has less of a section than a tube of 5 mm over 2.5 mm, 16 < 25 - 6.25, and passes as well."""
     wrong = programs.inside("size", "owl-wing-closed", "--choose", "parts.tube=rod-4mm,rod-5mm", folder=tmp_path)
