@@ -125,12 +125,12 @@ def of_sum(parts: Iterable[tuple[float, Scatter]], whole: float) -> Scatter:
     (first, *others) = known = tuple(parts)
     if not others:
         return first[1]
-    differs = float(together(known) / whole)
+    differs = float(differing(known) / whole)
     sources = distinct(*(one.told for _, one in known))
     return Scatter(low=max(1.0 - differs, 0.0), high=1.0 + differs, sources=sources)
 
 
-def together(parts: Iterable[tuple[float | Real, Scatter]]) -> float | Real:
+def differing(parts: Iterable[tuple[float | Real, Scatter]]) -> float | Real:
     """Return by how much the size of a sum of vectors may differ, of which each may be longer or shorter by itself.
 
     Parameters

@@ -17,7 +17,7 @@ from alula.fea.beam.cut_free import seat
 from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter, together
+from alula.fea.common.scatter import Scatter, differing, load_scatter, of_sum, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
@@ -291,7 +291,7 @@ def most_grown(
     of_one = np.full(whole.shape, growth(joint).high)
     if len(parts) == 1:
         return of_one
-    return np.asarray(1.0 + np.divide(together(parts), whole, out=of_one - 1.0, where=whole > 0.0))
+    return np.asarray(1.0 + np.divide(differing(parts), whole, out=of_one - 1.0, where=whole > 0.0))
 
 
 def _parts(

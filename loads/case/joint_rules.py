@@ -157,13 +157,13 @@ def _check_rubbing_pin(case: CoreCase, names: Sequence[str]) -> None:
     entry = f"joints.{name}.friction: its pin is that of {', '.join(map(repr, names))}"
     if stands is None:
         raise CaseError(
-            f"{entry}, which have no link in common, so that nothing tells in which link it stands while others rub on "
-            "it; let all of them have that link"
+            f"{entry}, which have no link in common, so that nothing tells in which link the pin stands while "
+            "others rub on it; let all of these joints have that link"
         )
     if tight and all(link != stands for _, link in tight):
         raise CaseError(
-            f"{entry} and is tight in '{tight[0][1]}', on which so all others rub, but the link that these joints have "
-            f"in common is '{stands}'; let all of them have '{tight[0][1]}'"
+            f"{entry} and is tight in '{tight[0][1]}', so that all other links rub there, but the link that these "
+            f"joints have in common is '{stands}'; let all of them have '{tight[0][1]}'"
         )
 
 

@@ -77,7 +77,7 @@ def test_the_drive_pays_for_what_rubs_on_the_link_in_which_the_pin_stands(stands
 def test_a_pin_that_is_tight_in_another_link_is_refused():
     """In coupler or rocker the losses differ eight times here."""
     with pytest.raises(
-        CaseError, match=r"is tight in 'rocker', on which so all others rub.* let all of them have 'rock"
+        CaseError, match=r"is tight in 'rocker', so that all other links rub there.* let all of them have 'rock"
     ):
         six_bars("coupler", B={"fit": {"rocker": "press"}})
     six_bars("rocker", B={"fit": {"rocker": "press"}})
