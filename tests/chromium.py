@@ -46,12 +46,17 @@ class Browser:
 
     def open(self, page: Path | str, size: tuple[int, int] = DESKTOP) -> None:
         """Open a page, a file or an address, in a viewport of a size; what the browser said before is forgotten."""
+        self.leave()
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
         self.command("Emulation.setDeviceMetricsOverride", **metrics)
         self.command("Emulation.setTouchEmulationEnabled", enabled=size == PHONE)
         self.messages(), self.requests()
         self.driver.get(page if isinstance(page, str) else page.as_uri())
+
+    def leave(self) -> None:
+        """Leave the page, which asks for nothing any more: a server that has ended is asked for again and again."""
+        self.driver.get("about:blank")
 
     def command(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Give a command of the DevTools protocol."""
@@ -157,7 +162,6 @@ def chromium(profile: Path, *arguments: str) -> Iterator[Browser]:
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service(driver_path))
     try:
-        driver.get("about:blank")  # in place of Chromium's own first page, which asks for much
         yield Browser(driver)
     finally:
         driver.quit()

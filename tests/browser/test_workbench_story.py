@@ -44,7 +44,7 @@ def opened(browser, folder, name, size=WIDE):
             browser.wait("document.querySelector('#start button, .handles circle')")
             yield Page(browser, server)
             assert [one for one in browser.requests() if not one.startswith((address, "blob:"))] == []
-            browser.driver.get("about:blank")
+            browser.leave()
             assert browser.messages() == []
         finally:
             server.terminate()
@@ -350,5 +350,5 @@ def test_what_is_begun_from_is_legible_on_a_phone_and_refuses_in_a_sentence(brow
         assert verdict.location["y"] + verdict.size["height"] < PHONE[1], "it is seen without scrolling"
         page.server.kill()
         page.browser.wait("document.querySelector('#notice').innerText.includes('alula open mine.toml')")
-        page.browser.driver.get("about:blank")
+        page.browser.leave()
         page.browser.messages()  # that nobody answered
