@@ -29,14 +29,14 @@ def alike(name: str, known: Iterable[str]) -> str:
     name : str
         What stands there.
     known : iterable of str
-        The names that may.
+        The names that may; one that does not print is offered to nobody.
 
     Returns
     -------
     str
         ``; did you mean 'width'?`` with the name most like it, or an empty text.
     """
-    folded = {other.casefold(): other for other in known}
+    folded = {other.casefold(): other for other in known if other.isprintable()}
     found = difflib.get_close_matches(name[:80].casefold(), folded, n=1)
     return f"; did you mean '{folded[found[0]]}'?" if found else ""
 

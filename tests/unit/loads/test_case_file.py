@@ -342,6 +342,18 @@ def test_any_override_is_taken_or_explained(override: str) -> None:
     assert said.isprintable()
 
 
+def test_a_name_that_does_not_print_is_offered_to_nobody(tmp_path: Path) -> None:
+    """The fuzzer's case: the rules of the ornithopter set points of the crank, and a link has almost its name."""
+    text = read_text("ornithopter")[0]
+    assert "[links.crank]" in text
+    for renamed, offered in (('"crank\\u0000"', False), ("cranks", True)):
+        file = _file(tmp_path, text.replace("[links.crank]", f"[links.{renamed}]").encode())
+        with pytest.raises(CaseError, match=r"ornithopter sets links\.crank") as caught:
+            read_case(str(file))
+        assert str(caught.value).isprintable()
+        assert ("did you mean" in str(caught.value)) is offered
+
+
 # ---- files -------------------------------------------------------------------------------------------------
 
 
