@@ -50,7 +50,7 @@ verify: setup ## the converged studies, on fine meshes
 bench: setup ## measure speed, accuracy and growth: an hour or so (BENCH="--quick": minutes)
 	$(BIN)/python -m benchmarks.run $(BENCH)
 
-coverage: setup ## how many error bands of drawn links hold the truth, and how wide they are: an hour or so
+coverage: setup ## how many error bands of drawn links hold the truth, and how wide they are: a quarter of an hour
 	$(ONE_THREAD) $(BIN)/python -m benchmarks.coverage $(or $(COVERAGE),--anew)
 
 numbers: setup ## which printed numbers are older than the code (RENEW=stale, all or a name: measures them anew)
