@@ -198,7 +198,7 @@ def seat(linkage: Linkage, link: str, body: Body, pin: Pin) -> Seat | None:
     return Seat(
         young=linkage.moduli[link],
         pin_young=linkage.pin_moduli[joints[0]],
-        diameter=pin.diameter,
+        diameter=pin.pin_diameter,
         length=ring.thickness,
         eye=ring.diameter,
         away=_away(body, pin),

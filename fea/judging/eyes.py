@@ -116,8 +116,8 @@ def _modes(
     for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
         eye = RoundEye(
             radius=body.part.wall(body, pin),
-            hole=pin.diameter + clearance,
-            pin=pin.diameter,
+            hole=pin.pin_diameter + clearance,
+            pin=pin.pin_diameter,
             thickness=ring.thickness,
             wall=min(high - low for low, high in ring.walls),
         )

@@ -155,12 +155,15 @@ def _outside(case: Case, link: str) -> bool:
     return bool(uncalibrated(case.body(link), case.material_of(link).poissons_ratio))
 
 
-def _within(size: float, of: float, calibration: Calibration, proportion: str) -> str:
-    """Return the size nearest to one whose proportion lies in its range; "" where it does already."""
+def _within(size: float, of: float, calibration: Calibration, proportion: str, wider: float = 0.0) -> str:
+    """Return the size nearest to one whose proportion lies in its range; "" where it does already.
+
+    It is that of what fits in it, where that leaves a clearance.
+    """
     low, high = (end * of for end in calibration.ranges[proportion])
     if low * (1.0 - _INWARDS) <= size <= high * (1.0 + _INWARDS):
         return ""
-    return _text(low if size < low else high, up=size < low)
+    return _text((low if size < low else high) - wider, up=size < low)
 
 
 def _brought(case: Case, part: str) -> Sizes:
@@ -178,7 +181,8 @@ def _brought(case: Case, part: str) -> Sizes:
         pins = {pin.name: pin for pin in body.pins}
         for joint in case.linkage.joints_of(link):
             if (pin := pins.get(case.linkage.point_of(joint, link))) is not None:
-                size = _within(pin.diameter, body.ring(pin).diameter, calibration, "largest pin over eye")
+                eye, wider = body.ring(pin).diameter, pin.clearance
+                size = _within(pin.diameter, eye, calibration, "largest pin over eye", wider)
                 found |= {f"joints.{joint}.pin_diameter": size} if size else {}
         for end in body.ends:
             size = _within(end.patch, body.part.section.width, calibration, "patch over width")

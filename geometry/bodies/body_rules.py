@@ -8,7 +8,7 @@ import itertools
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.body import ON_AXIS, Body, apart, extent, patch_span
 from alula.geometry.bodies.eyes import eye_reach
-from alula.geometry.bodies.features import HoleRow, PlainEnd
+from alula.geometry.bodies.features import HoleRow, Pin, PlainEnd
 from alula.geometry.bodies.forks import check_forks
 
 SLENDEREST = 1e6
@@ -122,7 +122,7 @@ def _check_pins(body: Body) -> None:
         if eye > 0.0 and not 0.0 < pin.diameter < eye:
             raise CaseError(
                 f"the pin hole at {pin.name} has a diameter of {pin.diameter:.4g} mm, but must be positive and less "
-                f"than {entry} {eye:.4g} mm; reduce pin_diameter or increase {entry.removeprefix('2 ')}"
+                f"than {entry} {eye:.4g} mm; {_smaller(pin)} or increase {entry.removeprefix('2 ')}"
             )
         if pin.slot > 0.0 and body.part.is_beam and abs(pin.y) > ON_AXIS * pin.diameter:
             raise CaseError(
@@ -134,8 +134,14 @@ def _check_pins(body: Body) -> None:
         if apart(one, other) <= least:
             raise CaseError(
                 f"the pin holes at {one.name} and {other.name} overlap: move the pins more than {least:.4g} mm apart "
-                f"(now {apart(one, other):.4g} mm), or reduce pin_diameter"
+                f"(now {apart(one, other):.4g} mm), or {_smaller(one, other)}"
             )
+
+
+def _smaller(*pins: Pin) -> str:
+    """Say what makes holes smaller."""
+    wider = max(pin.clearance for pin in pins)
+    return f"reduce pin_diameter{f' or the clearance, {wider:.4g} mm' if wider else ''}"
 
 
 def _check_end(body: Body, end: PlainEnd) -> None:

@@ -228,7 +228,7 @@ class Pin:
     slot : float
         Distance of the centres of a slot's round ends [mm]; 0 for a hole.
     clearance : float
-        How much wider than the pin the slot is [mm].
+        How much wider than the pin it is [mm]; 0 where that is not told.
     foot : tuple of float, optional
         (x, y) of the pin on the link's axis from which an arm reaches to this one [mm]; None for a pin without arm.
     ring : Ring, optional

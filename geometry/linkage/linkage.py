@@ -257,6 +257,24 @@ class Linkage:
         """
         return self._pin_holes[name]
 
+    def wider(self, link: str, point: str) -> tuple[float, float, float]:
+        """Return how much wider than its pin a link's hole is, by what the joints there state.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        tuple of 3 float
+            At least, in the middle of what is stated, and at most [mm]; zeros where nothing is.
+        """
+        stated = [hole for name in self.joints_at(link, point) if (hole := self.pin_holes(name)[link]).stated]
+        ends = [(hole.low, hole.nominal, hole.high) for hole in stated] or [(0.0, 0.0, 0.0)]
+        least, middle, most = map(max, zip(*ends, strict=True))
+        return least, middle, most
+
     @cached_property
     def _pin_holes(self) -> Mapping[str, PinHoles]:
         found = {}

@@ -444,6 +444,9 @@ class CoreCase(Revisable):
     def body(self, link: str) -> Body:
         """Put together everything that shapes a link: part, pins, plain ends, holes.
 
+        Holes for pins are as wide as the case lets them be, so that the walls about them are the weakest: the link in
+        its least material condition (ISO 2692). Those of an imported part are as its file has them.
+
         Parameters
         ----------
         link : str
@@ -498,7 +501,7 @@ class CoreCase(Revisable):
                     place=(pin.x, pin.y),
                     diameter=pin.pin_diameter,
                     slot=pin.span if pin.slot > 0.0 else None,
-                    clearance=pin.clearance,
+                    clearance=pin.clearance if pin.slot > 0.0 else 0.0,
                 )
                 for pin in pins
             )
@@ -510,6 +513,27 @@ class CoreCase(Revisable):
                 self._imported[link] = replace(placed, ends=outside, holes=record.holes)
             return self._imported[link]
         return Body(part=part, pins=tuple(pins), ends=tuple(ends), holes=record.holes)
+
+    def body_to_make(self, link: str) -> Body:
+        """Put together the body of a link as it is to be made: each hole in the middle of what the case states of it.
+
+        Parameters
+        ----------
+        link : str
+            Name of a link with a part.
+
+        Returns
+        -------
+        Body
+            As ``body``, but for the widths of holes. Of a clearance that two holes share each has half.
+        """
+        body = self.body(link)
+        if isinstance(self._stated_part(link), FilePart):
+            return body
+        pins = [(pin, pin.clearance if pin.slot else self.linkage.wider(link, pin.name)[1]) for pin in body.pins]
+        return replace(
+            body, pins=tuple(replace(p, diameter=p.pin_diameter + wider, clearance=wider) for p, wider in pins)
+        )
 
     def face(self, link: str, point: str) -> FlatFace | None:
         """Return the flat face of an imported part that a point of its link stands for.
@@ -636,6 +660,13 @@ def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
         width = diameter + slot.wider
         pin = Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.wider)
     else:
-        foot = record.arms.get(name)
-        pin = Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
+        foot, (*_, wider) = record.arms.get(name), case.linkage.wider(link, name)
+        pin = Pin(
+            name=name,
+            x=x,
+            y=y,
+            diameter=diameter + wider,
+            clearance=wider,
+            foot=None if foot is None else record.points[foot],
+        )
     return with_eye(case.linkage, case.parts, case.body, link, pin)

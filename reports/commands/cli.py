@@ -393,7 +393,7 @@ def export(
     if not step:
         raise CaseError("export: no format is given; add --step")
     parsed = read_case(case, overrides or ())
-    bodies = {link: parsed.body(link) for link in parsed.checked_links}
+    bodies = {link: parsed.body_to_make(link) for link in parsed.checked_links}
     refuse_unusable(output, EXPORT, step_names(bodies))
     write_folder(output, EXPORT, lambda folder: export_step(bodies, folder))
     for name in step_names(bodies):
