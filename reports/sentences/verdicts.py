@@ -375,7 +375,7 @@ def _with_limit(check: CheckOutcome, *, several: bool) -> str:
 
 
 def told_speed(moved: "CaseMotion", load_case: str) -> str:
-    """Return the speed of the coordinate in a load case, at the first pose.
+    """Return the speed of the coordinate in a load case, from its least to its largest where it changes.
 
     Parameters
     ----------
@@ -387,9 +387,12 @@ def told_speed(moved: "CaseMotion", load_case: str) -> str:
     str
         In rpm, or in mm/s of a travel.
     """
-    speed = moved.case.load_cases[load_case].speed or float(moved.moved[load_case].speed[0])
-    return (
-        f"{number(speed)} mm/s"
-        if moved.motion.coordinate.slides
-        else f"{plain(float(f'{speed * 30.0 / math.pi:.4g}'))} rpm"
+    speed = moved.moved[load_case].speed
+    ends = dict.fromkeys(
+        _speed(float(end), slides=moved.motion.coordinate.slides) for end in (speed.min(), speed.max())
     )
+    return f"{' to '.join(ends)} {'mm/s' if moved.motion.coordinate.slides else 'rpm'}"
+
+
+def _speed(speed: float, *, slides: bool) -> str:
+    return number(speed) if slides else plain(float(f"{speed * 30.0 / math.pi:.4g}"))
