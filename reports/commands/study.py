@@ -207,7 +207,7 @@ def show(
 
 
 def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:
-    from alula.geometry.base.errors import CannotRunError, CaseError
+    from alula.geometry.base.errors import CaseError, unwritable
 
     try:
         with path.open("x", encoding="utf-8", newline="") as stream:
@@ -215,4 +215,4 @@ def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:
     except FileExistsError:
         raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another name") from None
     except OSError as error:
-        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+        raise unwritable(f"'{path}' cannot be written ({error.strerror}); choose another place", error) from None
