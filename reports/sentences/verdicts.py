@@ -387,12 +387,6 @@ def told_speed(moved: "CaseMotion", load_case: str) -> str:
     str
         In rpm, or in mm/s of a travel.
     """
-    speed = moved.moved[load_case].speed
-    ends = dict.fromkeys(
-        _speed(float(end), slides=moved.motion.coordinate.slides) for end in (speed.min(), speed.max())
-    )
-    return f"{' to '.join(ends)} {'mm/s' if moved.motion.coordinate.slides else 'rpm'}"
-
-
-def _speed(speed: float, *, slides: bool) -> str:
-    return number(speed) if slides else plain(float(f"{speed * 30.0 / math.pi:.4g}"))
+    speed, slides = moved.moved[load_case].speed, moved.motion.coordinate.slides
+    told = [number(end) if slides else plain(float(f"{end * 30.0 / math.pi:.4g}")) for end in (speed.min(), speed.max())]
+    return f"{' to '.join(dict.fromkeys(told))} {'mm/s' if slides else 'rpm'}"

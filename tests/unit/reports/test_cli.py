@@ -104,6 +104,7 @@ def test_new_lists_the_built_in_cases() -> None:
     ("arguments", "words"),
     [
         (["check", "no-such-case"], ["no-such-case", "owl-wing-static"]),
+        (["check", "owlwing-static"], ["or one of finger, ", "; did you mean 'owl-wing-static'?"]),
         (["check", "owl-wing-static", "--set", "pose.angle=20"], ["pose.angle", "20", "unit", '"30 deg"']),
         (["check", "owl-wing-static", "--set", "nonsense"], ["nonsense", "path=value"]),
         (["check", "owl-wing-static", "--fidelity", "magic"], ["magic", "beam"]),
