@@ -388,5 +388,7 @@ def told_speed(moved: "CaseMotion", load_case: str) -> str:
         In rpm, or in mm/s of a travel.
     """
     speed, slides = moved.moved[load_case].speed, moved.motion.coordinate.slides
-    told = [number(end) if slides else plain(float(f"{end * 30.0 / math.pi:.4g}")) for end in (speed.min(), speed.max())]
+    told = [
+        number(end) if slides else plain(float(f"{end * 30.0 / math.pi:.4g}")) for end in (speed.min(), speed.max())
+    ]
     return f"{' to '.join(dict.fromkeys(told))} {'mm/s' if slides else 'rpm'}"
