@@ -73,7 +73,7 @@ def inside(*arguments: str, folder: Path | None = None) -> subprocess.CompletedP
         patch.object(ending, "end_cleanly_on_signals"),
     ):  # fmt: skip
         try:
-            ending.run(lambda: app(list(arguments), prog_name="alula"))
+            ending.run(lambda: app(list(arguments), prog_name="alula", standalone_mode=False))
         except SystemExit as stop:
             status = stop.code
     assert isinstance(status, int)

@@ -24,7 +24,7 @@ from typing import Any
 
 from alula.fea.common.verdict import Verdict
 from alula.fea.study.numbers import State, VariantNumber, VariantResult
-from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.errors import CannotRunError, CaseError, unwritable
 from alula.geometry.base.locks import locked
 
 NAME = "study.sqlite"
@@ -79,7 +79,8 @@ class Store:
         Raises
         ------
         CaseError
-            For a folder that another study is writing, and a file that is none of a study or of a newer version.
+            For a folder that cannot be made there or that another study is writing, and a file that is none of a study
+            or of a newer version.
         CannotRunError
             Where the disk refuses. What was finished before stands.
         """
@@ -96,7 +97,8 @@ class Store:
                 store._prepare()
                 yield store
         except OSError as error:
-            raise CannotRunError(f"output: '{folder}' cannot be written ({error.strerror}); choose another") from None
+            told = f"output: '{folder}' cannot be written ({error.strerror}); choose another"
+            raise unwritable(told, error) from None
         finally:
             if held is not None:
                 os.close(held)

@@ -121,9 +121,11 @@ def _check_heads(entry: str, joint: Joint, heads: Heads) -> None:
         raise CaseError(f"{entry}: a {kind} has no pin that turns in two holes, so heads hold none; leave them out")
     hole = (joint.pin_diameter or 0.0) + largest_clearance(joint)
     if heads.diameter <= hole:
+        wide = joint.clearance is not None and heads.diameter > (joint.pin_diameter or 0.0)
+        smaller = f"{entry.removesuffix('heads')}{'clearance' if wide else 'pin_diameter'}"
         raise CaseError(
             f"{entry}.diameter: it is {heads.diameter:g} mm, but must be larger than the hole, {hole:g} mm; make it "
-            "larger"
+            f"larger, or {smaller} smaller"
         )
     if heads.gap_ends[1] >= heads.diameter:
         raise CaseError(

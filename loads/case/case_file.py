@@ -124,7 +124,8 @@ def parse_tables(text: str, where: str) -> dict[str, Any]:
 def _toml_remedy(error: ValueError) -> str:
     if re.match(r"Cannot (declare .* twice|overwrite a value)", str(error)):
         return "TOML takes a heading or an entry once: write its lines under the one that is there, or remove one"
-    return "correct that line"
+    place = "the end of the file, where something is left open" if "at end of document" in str(error) else "that line"
+    return f"correct {place}"
 
 
 def stated_changes(overrides: Sequence[str]) -> tuple[Change, ...]:
@@ -304,7 +305,8 @@ def read_text(name_or_path: str) -> tuple[str, str]:
         name_or_path,
         "case",
         missing="there is no such file or built-in case; give a path to a case file or one of "
-        + ", ".join(built_in_cases()),
+        + ", ".join(built_in_cases())
+        + alike(name_or_path, built_in_cases()),
         empty="the file is empty; start from 'alula new'",
     )
     return text, printable(Path(name_or_path).name)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
 
-from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.errors import CaseError, unwritable
 from alula.loads.case.case_file import built_in_cases, read_tables
 from alula.loads.text.entries import alike
 from alula.loads.text.explain import printable
@@ -105,7 +105,7 @@ def write_new(contents: Mapping[Path, bytes]) -> None:
     Raises
     ------
     CaseError
-        Where one of them exists.
+        Where one of them exists, or its folder does not.
     CannotRunError
         Where the disk refuses.
     """
@@ -121,5 +121,6 @@ def write_new(contents: Mapping[Path, bytes]) -> None:
         if isinstance(error, FileExistsError):
             raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another place") from None
         if isinstance(error, OSError):
-            raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+            told = f"'{path}' cannot be written ({error.strerror}); choose another place"
+            raise unwritable(told, error) from None
         raise

@@ -17,6 +17,7 @@ from pydantic_core import PydanticCustomError
 from alula.geometry.base.errors import AlulaError, CaseError
 from alula.geometry.base.units import parse
 from alula.geometry.bodies.features import Slot
+from alula.geometry.imported.read import file_digest
 from alula.geometry.joints.joint import Joint
 from alula.geometry.parts.mesh_part import MeshPart
 from alula.geometry.parts.step import FilePart, StepPart
@@ -99,9 +100,14 @@ def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]
 def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> FilePart:
     kind = KINDS[stated["shape"]]
     try:
-        return kind.model_validate(stated, context=dict(context))
+        part = kind.model_validate(stated, context=dict(context))
     except ValidationError as error:
         raise CaseError(f"parts.{name}.{sentence(error, kind)}") from None
+    try:
+        file_digest(Path(part.file), mesh=part.mesh_unit is not None)
+    except CaseError as error:
+        raise CaseError(f"parts.{printable(name)}.file: {error}") from None
+    return part
 
 
 def _placed(name: str, link: dict[str, Any], part: FilePart, joints: object) -> dict[str, object]:

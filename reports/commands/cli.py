@@ -32,15 +32,22 @@ app = typer.Typer(
 )
 AccuracyOption = Annotated[
     str | None,
-    typer.Option(help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.'),
+    typer.Option(
+        metavar="<percent>",
+        help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.',
+    ),
 ]
-UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest number of unknowns of a refined mesh.")]
-TimeOption = Annotated[float, typer.Option(min=0.0, help="Time after which no finer mesh is started [s].")]
+UnknownsOption = Annotated[
+    int, typer.Option(metavar="<number>", min=1000, help="Largest number of unknowns of a refined mesh.")
+]
+TimeOption = Annotated[
+    float, typer.Option(metavar="<seconds>", min=0.0, help="Time after which no finer mesh is started [s].")
+]
 
 
 def main() -> NoReturn:
     """Run the command line."""
-    run(app)
+    run(partial(app, standalone_mode=False))
 
 
 def _version(wanted: bool) -> None:
@@ -69,7 +76,11 @@ def check(
     json: options.JsonOption = False,
     overrides: options.SetOption = None,
     fidelity: Annotated[
-        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam (also called frame) or solid.")
+        str,
+        typer.Option(
+            metavar="<model>",
+            help="Model that decides: auto (the cheapest that can), beam (also called frame) or solid.",
+        ),
     ] = "auto",
     threads: options.ThreadsOption = 2,
     memory: options.MemoryOption = None,
@@ -215,11 +226,19 @@ def envelope(
     overrides: options.SetOption = None,
     repetitions: Annotated[
         float | None,
-        typer.Option(min=1.0, help="Repetitions of the motion for fatigue; default: the cycles of the material card."),
+        typer.Option(
+            metavar="<number>",
+            min=1.0,
+            help="Repetitions of the motion for fatigue; default: the cycles of the material card.",
+        ),
     ] = None,
     growth: Annotated[
         float,
-        typer.Option(min=1.0, help="Growth of the drive torque towards a dead point above which poses are left out."),
+        typer.Option(
+            metavar="<number>",
+            min=1.0,
+            help="Growth of the drive torque towards a dead point above which poses are left out.",
+        ),
     ] = 20.0,
     threads: options.ThreadsOption = 2,
     memory: options.MemoryOption = None,
@@ -260,7 +279,9 @@ def claims(
     json: options.JsonOption = False,
     markdown: Annotated[bool, typer.Option("--markdown", help="Print a page of Markdown.")] = False,
     overrides: options.SetOption = None,
-    fidelity: Annotated[str, typer.Option(help="Model for claims on stress: solid or beam.")] = "solid",
+    fidelity: Annotated[
+        str, typer.Option(metavar="<model>", help="Model for claims on stress: solid or beam.")
+    ] = "solid",
     threads: options.ThreadsOption = 2,
     memory: options.MemoryOption = None,
 ) -> None:
@@ -301,11 +322,12 @@ def synth(
         list[str] | None,
         typer.Option(
             "--point",
+            metavar="<point>",
             help='A precision point "theta, psi"; give three. Default: those of Arango and Hurtado, '
             '"0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg".',
         ),
     ] = None,
-    ground: Annotated[str, typer.Option(help="Length d of the ground link.")] = "10 m",
+    ground: Annotated[str, typer.Option(metavar="<length>", help="Length d of the ground link.")] = "10 m",
     output: Annotated[
         Path | None,
         options.folder_option("Folder; result.json and the drawing go to its subfolder synth."),
@@ -342,9 +364,11 @@ app.add_typer(tolerance)
 @app.command()
 def inspect(
     file: Annotated[Path, typer.Argument(help="A STEP file, or a mesh (.msh, .inp, .vtu), of one solid.")],
-    material: Annotated[str | None, typer.Option(help="Material of the library, for the mass.")] = None,
+    material: Annotated[
+        str | None, typer.Option(metavar="<name>", help="Material of the library, for the mass.")
+    ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
+        str | None, typer.Option(metavar="<unit>", help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
     ] = None,
     output: Annotated[
         Path | None,

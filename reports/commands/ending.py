@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Collection
 from typing import NoReturn
 
-from alula.geometry.base.errors import AlulaError
+from alula.geometry.base.errors import AlulaError, CaseError
 
 INTERRUPTED = 130
 CRASHED = 4
@@ -37,7 +37,9 @@ def run(app: Callable[[], object]) -> NoReturn:
     place_for_matplotlib()
     try:
         try:
-            app()
+            status = app()
+            if isinstance(status, int) and status != 0:
+                sys.exit(status)  # as for an interruption; what else a command returns is none
         except SystemExit as stop:
             if _pipe_was_closed(stop):
                 raise BrokenPipeError from None
@@ -71,6 +73,8 @@ def run(app: Callable[[], object]) -> NoReturn:
             CRASHED,
         )
     except Exception as error:
+        if (mistake := _usage(error)) is not None:
+            _stop(mistake, CaseError.exit_status)
         if os.environ.get("ALULA_TRACEBACK"):
             raise
         _stop(
@@ -79,6 +83,21 @@ def run(app: Callable[[], object]) -> NoReturn:
             CRASHED,
         )
     sys.exit(0)
+
+
+def _usage(error: Exception) -> str | None:
+    """Return what typer says of a mistake on the command line, as a sentence; None for any other error."""
+    import typer
+
+    usage = typer.BadParameter.__mro__[1]  # UsageError, which typer does not export
+    if not isinstance(error, usage):
+        return None
+    if type(error).__name__ == "NoArgsIsHelpError":  # a command alone: its help, as it stands
+        error.show()  # type: ignore[attr-defined]
+        sys.exit(CaseError.exit_status)
+    message, context = error.format_message().strip().rstrip("."), getattr(error, "ctx", None)  # type: ignore[attr-defined]
+    see = "" if context is None else f"; see {context.command_path} --help"
+    return f"{message[:1].lower()}{message[1:]}{see}"
 
 
 def make_writable() -> None:

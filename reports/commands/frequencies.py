@@ -24,8 +24,12 @@ def frequencies(
     ] = None,
     json: options.JsonOption = False,
     overrides: options.SetOption = None,
-    poses: Annotated[int, typer.Option(min=2, max=1000, help="Poses over the motion, ends included.")] = 25,
-    count: Annotated[int, typer.Option(min=1, max=20, help="Natural frequencies of every pose and link.")] = 4,
+    poses: Annotated[
+        int, typer.Option(metavar="<number>", min=2, max=1000, help="Poses over the motion, ends included.")
+    ] = 25,
+    count: Annotated[
+        int, typer.Option(metavar="<number>", min=1, max=20, help="Natural frequencies of every pose and link.")
+    ] = 4,
     solid: Annotated[bool, typer.Option("--solid", help="Links by themselves as solids in place of beams.")] = False,
     threads: options.ThreadsOption = 2,
 ) -> None:

@@ -18,7 +18,9 @@ def open_case(
         Path | None,
         typer.Argument(help="Path to a case file; without it, or for a new one, the page offers what to start from."),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of 127.0.0.1; 0: one that is free.")] = 0,
+    port: Annotated[
+        int, typer.Option(metavar="<number>", min=0, max=65535, help="Port of 127.0.0.1; 0: one that is free.")
+    ] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
     threads: options.ThreadsOption = 2,
     memory: options.MemoryOption = None,

@@ -9,31 +9,47 @@ import typer
 CaseArgument = Annotated[str, typer.Argument(help="Path to a case file, or the name of a built-in case.")]
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
+    typer.Option(
+        "--set",
+        metavar="<entry=value>",
+        help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".',
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
-ThreadsOption = Annotated[int, typer.Option(min=1, max=256, help="Threads per library, and child processes at a time.")]
+ThreadsOption = Annotated[
+    int, typer.Option(metavar="<number>", min=1, max=256, help="Threads per library, and child processes at a time.")
+]
 VariantsOption = Annotated[
     int | None,
     typer.Option(
-        min=1, max=256, help="Variants at a time, each computed by a process of one thread; default: one a core."
+        metavar="<number>",
+        min=1,
+        max=256,
+        help="Variants at a time, each computed by a process of one thread; default: one a core.",
     ),
 ]
-WorkersOption = Annotated[int | None, typer.Option(min=1, max=256, hidden=True)]
+WorkersOption = Annotated[int | None, typer.Option(metavar="<number>", min=1, max=256, hidden=True)]
 """What ``VariantsOption`` was called; it goes with the version after 0.1."""
 VaryOption = Annotated[
     list[str] | None,
     typer.Option(
-        help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".'
+        metavar="<entry=values>",
+        help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".',
     ),
 ]
 LinkOption = Annotated[
     list[str] | None,
-    typer.Option(help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'),
+    typer.Option(
+        metavar="<entry=formula>",
+        help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".',
+    ),
 ]
-AccuracyOption = Annotated[str | None, typer.Option(help='Discretisation error of solids, such as "5 %".')]
+AccuracyOption = Annotated[
+    str | None, typer.Option(metavar="<percent>", help='Discretisation error of solids, such as "5 %".')
+]
 MemoryOption = Annotated[
-    str | None, typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.')
+    str | None,
+    typer.Option(metavar="<memory>", help='Memory limit, such as "4 GB"; default: the free memory of the system.'),
 ]
 
 

@@ -29,32 +29,39 @@ def size(
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.'
+            metavar="<entry=range>",
+            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.',
         ),
     ] = None,
     choose: Annotated[
         list[str] | None,
         typer.Option(
+            metavar="<entry=values>",
             help="An entry and its values, or a part and those of the case that may stand for it: "
-            "parts.tube=tube-4,tube-5."
+            "parts.tube=tube-4,tube-5.",
         ),
     ] = None,
     minimise: Annotated[
-        str | None, typer.Option(help='What shall be least: mass, or "largest drive torque" and the like.')
+        str | None,
+        typer.Option(metavar="<number>", help='What shall be least: mass, or "largest drive torque" and the like.'),
     ] = None,
-    maximise: Annotated[str | None, typer.Option(help="What shall be greatest instead.")] = None,
+    maximise: Annotated[str | None, typer.Option(metavar="<number>", help="What shall be greatest instead.")] = None,
     most: Annotated[
-        int, typer.Option(min=1, help="Combinations of several entries that the model that decides solves.")
+        int,
+        typer.Option(
+            metavar="<number>", min=1, help="Combinations of several entries that the model that decides solves."
+        ),
     ] = 24,
-    seed: Annotated[int, typer.Option(min=0, help="Of the search over several entries.")] = 0,
+    seed: Annotated[int, typer.Option(metavar="<number>", min=0, help="Of the search over several entries.")] = 0,
     step: Annotated[
-        str | None, typer.Option(help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
+        str | None,
+        typer.Option(metavar="<step>", help='Distance of two values, such as "0.5 mm"; default: a hundredth.'),
     ] = None,
     link: options.LinkOption = None,
     overrides: options.SetOption = None,
-    fidelity: Annotated[str, typer.Option(help="Model that decides: auto, beam or solid.")] = "auto",
+    fidelity: Annotated[str, typer.Option(metavar="<model>", help="Model that decides: auto, beam or solid.")] = "auto",
     accuracy: options.AccuracyOption = None,
-    analysis: Annotated[str, typer.Option(help="check or envelope.")] = "check",
+    analysis: Annotated[str, typer.Option(metavar="<analysis>", help="check or envelope.")] = "check",
     threads: options.VariantsOption = None,
     workers: options.WorkersOption = None,
     output: Annotated[Path | None, options.folder_option("Folder that keeps what was computed, as of a study.")] = None,

@@ -45,21 +45,30 @@ def run(
     output: Annotated[Path, options.folder_option("Folder for study.sqlite, on a local disk.")],
     vary: options.VaryOption = None,
     link: options.LinkOption = None,
-    points: Annotated[str, typer.Option(help="CSV file of points; entries in its first line.")] = "",
-    sample: Annotated[str, typer.Option(help="latin-hypercube or sobol, and how many: sobol:64.")] = "",
-    seed: Annotated[int, typer.Option(min=0, help="Of the sample.")] = 0,
+    points: Annotated[str, typer.Option(metavar="<file>", help="CSV file of points; entries in its first line.")] = "",
+    sample: Annotated[
+        str, typer.Option(metavar="<method:count>", help="latin-hypercube or sobol, and how many: sobol:64.")
+    ] = "",
+    seed: Annotated[int, typer.Option(metavar="<number>", min=0, help="Of the sample.")] = 0,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override an entry of the case in all variants.")
+        list[str] | None,
+        typer.Option("--set", metavar="<entry=value>", help="Override an entry of the case in all variants."),
     ] = None,
-    analysis: Annotated[str | None, typer.Option(help="check (default), motion or envelope.")] = None,
-    fidelity: Annotated[str | None, typer.Option(help="Model of a check: auto (default), beam or solid.")] = None,
+    analysis: Annotated[
+        str | None, typer.Option(metavar="<analysis>", help="check (default), motion or envelope.")
+    ] = None,
+    fidelity: Annotated[
+        str | None, typer.Option(metavar="<model>", help="Model of a check: auto (default), beam or solid.")
+    ] = None,
     accuracy: options.AccuracyOption = None,
     mass: Annotated[
         bool | None, typer.Option("--mass/--no-mass", help="Weigh the links; default: where solids are built.")
     ] = None,
     threads: options.VariantsOption = None,
     workers: options.WorkersOption = None,
-    scheduler: Annotated[str, typer.Option(help="Dask scheduler whose workers compute, tcp://host:8786.")] = "",
+    scheduler: Annotated[
+        str, typer.Option(metavar="<address>", help="Dask scheduler whose workers compute, tcp://host:8786.")
+    ] = "",
     retry: Annotated[bool, typer.Option("--retry", help="Try crashed points again that had three attempts.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
     pictures: Annotated[
@@ -178,14 +187,14 @@ def show(
         Path | None, typer.Option("--csv", help="Write all points and numbers to a CSV file.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print points as JSON.")] = False,
-    most: Annotated[int, typer.Option(min=1, help="Rows of the table.")] = 40,
+    most: Annotated[int, typer.Option(metavar="<number>", min=1, help="Rows of the table.")] = 40,
     output: Annotated[
         Path | None,
         options.folder_option("Folder for study.html and pictures, in its subfolder study."),
     ] = None,
     numbers: Annotated[
         list[str] | None,
-        typer.Option("--number", help='Show numbers of this name as well, such as "drive torque".')
+        typer.Option("--number", metavar="<name>", help='Show numbers of this name as well, such as "drive torque".')
     ] = None,
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
@@ -207,7 +216,7 @@ def show(
 
 
 def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:
-    from alula.geometry.base.errors import CannotRunError, CaseError
+    from alula.geometry.base.errors import CaseError, unwritable
 
     try:
         with path.open("x", encoding="utf-8", newline="") as stream:
@@ -215,4 +224,4 @@ def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:
     except FileExistsError:
         raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another name") from None
     except OSError as error:
-        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+        raise unwritable(f"'{path}' cannot be written ({error.strerror}); choose another place", error) from None

@@ -30,10 +30,16 @@ def tolerance(
     overrides: options.SetOption = None,
     tolerances: Annotated[
         list[str] | None,
-        typer.Option("--tolerance", help='Besides those of the case: pins="0.2 mm", links.AE.points.E="0.1 mm".'),
+        typer.Option(
+            "--tolerance",
+            metavar="<entry=size>",
+            help='Besides those of the case: pins="0.2 mm", links.AE.points.E="0.1 mm".',
+        ),
     ] = None,
-    samples: Annotated[int, typer.Option(min=100, max=10_000_000, help="Independent samples.")] = 100_000,
-    seed: Annotated[int, typer.Option(min=0, help="Of the samples.")] = 0,
+    samples: Annotated[
+        int, typer.Option(metavar="<number>", min=100, max=10_000_000, help="Independent samples.")
+    ] = 100_000,
+    seed: Annotated[int, typer.Option(metavar="<number>", min=0, help="Of the samples.")] = 0,
     threads: options.ThreadsOption = 2,
     memory: options.MemoryOption = None,
     accuracy: options.AccuracyOption = None,

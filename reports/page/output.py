@@ -18,7 +18,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from alula.geometry.base import child
-from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.errors import AlulaError, CannotRunError, CaseError, unwritable
 from alula.geometry.base.locks import locked
 from alula.geometry.base.tidying import tidied
 
@@ -89,7 +89,7 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
     Raises
     ------
     CaseError
-        For a file in the way.
+        For a file in the way, and a folder that cannot be made there.
     CannotRunError
         Where the disk refuses; nothing is changed then.
     """
@@ -164,8 +164,8 @@ def refuse_unusable(output: Path | None, command: str, names: Iterable[str] = (M
         raise _unwritable(target, error) from None
 
 
-def _unwritable(target: Path, error: OSError) -> CannotRunError:
-    return CannotRunError(f"output: '{target}' cannot be written ({error.strerror}); choose another folder")
+def _unwritable(target: Path, error: OSError) -> AlulaError:
+    return unwritable(f"output: '{target}' cannot be written ({error.strerror}); choose another folder", error)
 
 
 def _refuse_no_folder(output: Path, target: Path) -> None:

@@ -375,7 +375,7 @@ def _with_limit(check: CheckOutcome, *, several: bool) -> str:
 
 
 def told_speed(moved: "CaseMotion", load_case: str) -> str:
-    """Return the speed of the coordinate in a load case, at the first pose.
+    """Return the speed of the coordinate in a load case, from its least to its largest where it changes.
 
     Parameters
     ----------
@@ -387,9 +387,8 @@ def told_speed(moved: "CaseMotion", load_case: str) -> str:
     str
         In rpm, or in mm/s of a travel.
     """
-    speed = moved.case.load_cases[load_case].speed or float(moved.moved[load_case].speed[0])
-    return (
-        f"{number(speed)} mm/s"
-        if moved.motion.coordinate.slides
-        else f"{plain(float(f'{speed * 30.0 / math.pi:.4g}'))} rpm"
-    )
+    speed, slides = moved.moved[load_case].speed, moved.motion.coordinate.slides
+    told = [
+        number(end) if slides else plain(float(f"{end * 30.0 / math.pi:.4g}")) for end in (speed.min(), speed.max())
+    ]
+    return f"{' to '.join(dict.fromkeys(told))} {'mm/s' if slides else 'rpm'}"

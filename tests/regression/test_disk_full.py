@@ -132,7 +132,7 @@ def test_a_folder_that_may_not_be_written(tmp_path: Path, parent: str, own: str)
     done = programs.script(READ_ONLY, str(place), parent, own)
     place.chmod(0o755)
     (place / "out").chmod(0o755)
-    assert done.stdout.startswith("CannotRunError output: "), (done.stdout, done.stderr)
+    assert done.stdout.startswith("CaseError output: "), (done.stdout, done.stderr)
     assert "Permission denied" in done.stdout
     assert programs.text_of(place / "out") == "old"
     assert programs.hidden(place) == []

@@ -372,6 +372,8 @@ def _file(folder: Path, content: bytes, name: str = "case.toml") -> str:
         (b"\xff\xfet\x00i\x00t\x00", ["not UTF-8"]),
         (b"a" * (LARGEST_FILE + 1), ["larger than 1 MiB"]),
         (b"title = = 1\n", ["not valid TOML", "line 1", "correct that line"]),
+        (b'title = "a\nb = 1\n', ["line 1", "correct that line"]),
+        (b'b = 1\ntitle = """a', ["at end of document", "correct the end of the file, where something is left open"]),
         (b"a = 1\nb = 2\na = 2\n", ["not valid TOML", "line 3", "takes a heading or an entry once"]),
         (b"[links.a]\nb = 1\n[links.a]\nc = 2\n", ["('links', 'a') twice (at line 3", "under the one that is there"]),
         (b"a = " + b"1" * 5000, ["not valid TOML"]),

@@ -36,6 +36,7 @@ from alula.loads.states.clearance import way_of
 from alula.reports.figures.motion.motion_figures import torque_figure
 from alula.reports.motion.linkage import linkage_text
 from alula.reports.sentences import told as sentence_of
+from alula.reports.sentences.verdicts import told_speed
 from alula.reports.turnable.moving import motion_linkage
 
 GAIT = """cycle [%];flexion [deg];Fy [N];M [N*m]
@@ -418,6 +419,14 @@ def test_no_cycle_goes_there_and_back(tmp_path, monkeypatch):
         assert not moved.motion.returns
         over = envelope._Envelope(moved, np.ones(len(moved.motion.angles), dtype=bool), 1, lambda told: None)
         assert over._motion("rear", None) is returns
+
+
+def test_a_speed_that_changes_is_told_from_its_least_to_its_largest(tmp_path):
+    """By parabolas the crank turns at -20, 80, 20 and -80 deg/s; that of the first row alone is true of no cycle."""
+    turned = four_bar(tmp_path, [40, 60, 80, 70, 40], [0, 25, 50, 75, 100], [1] * 5, {"period": "1 s"})
+    assert told_speed(solve_case_motion(turned), "lift") == "−13.33 to 13.33 rpm"
+    ordinary = validate(tables("knee", motion={"range": ["-20 deg", "5 deg"], "poses": 3, "speed": "6 rpm"}))
+    assert told_speed(solve_case_motion(ordinary), "late-stance") == "6 rpm"
 
 
 def test_reports_tell_where_in_the_cycle(tmp_path):

@@ -102,7 +102,8 @@ LAYERED_REFUSED = {
     "a fit in a tight hole": (['fit={AG="H8/f7"}', 'tight_in="AG"'], "A.fit.AG: it gives the pin play, but tight_in"),
     "heads that fall through": (
         ['heads={diameter="1.7 mm", gap="0.1 mm"}', 'clearance="0.2 mm"'],
-        "A.heads.diameter: it is 1.7 mm, but must be larger than the hole, 1.7 mm",
+        "A.heads.diameter: it is 1.7 mm, but must be larger than the hole, 1.7 mm; make it larger, "
+        "or joints.A.clearance smaller",
     ),
     "a gap as wide as heads": (
         ['heads={diameter="3 mm", gap=["0 mm", "3 mm"]}'],

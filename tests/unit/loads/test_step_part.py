@@ -78,7 +78,7 @@ def test_a_plate_says_that_it_is_no_beam(case):
     ("change", "said"),
     [
         ({"file": "shell.step"}, "holds only surfaces without volume"),
-        ({"file": "nothing.step"}, "there is no file"),
+        ({"file": "nothing.step"}, r"^parts\.own\.file: there is no file"),
         ({"file": "case.toml"}, "is no STEP file"),
         ({"points": '{ O4 = ["0 mm", "0 mm"], B = ["41 mm", "0 mm"] }'}, "no parallel bores lie as the link's points"),
         ({"points": FROM_PART}, "it must name two points or more"),

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -104,6 +105,7 @@ def test_new_lists_the_built_in_cases() -> None:
     ("arguments", "words"),
     [
         (["check", "no-such-case"], ["no-such-case", "owl-wing-static"]),
+        (["check", "owlwing-static"], ["or one of finger, ", "; did you mean 'owl-wing-static'?"]),
         (["check", "owl-wing-static", "--set", "pose.angle=20"], ["pose.angle", "20", "unit", '"30 deg"']),
         (["check", "owl-wing-static", "--set", "nonsense"], ["nonsense", "path=value"]),
         (["check", "owl-wing-static", "--fidelity", "magic"], ["magic", "beam"]),
@@ -111,11 +113,21 @@ def test_new_lists_the_built_in_cases() -> None:
         (["check", "owl-wing-static", "--memory", "4"], ["memory", "needs its unit", '"4 GB"']),
         (["envelope", "owl-wing-static", "--memory", "-4 GB"], ["memory", "-4 GB", "must be positive"]),
         (["export", "owl-wing-static"], ["--step"]),
-        (["frobnicate"], ["frobnicate"]),
+        (["frobnicate"], ["alula: no such command 'frobnicate'; see alula --help"]),
+        ([], ["Usage: alula [OPTIONS] COMMAND", "\n  check "]),
         (["new"], ["PATH", "missing", "alula new my-case.toml"]),
         (["new", "--from", "fourbar", "a.toml"], ["no built-in case 'fourbar'", "did you mean 'four-bar'?"]),
         (["new", "--from", "qqq", "a.toml"], ["no built-in case 'qqq'", "alula new --list"]),
         (["new", "--from", "four-bar", "--study", "a.toml"], ["--from", "leave out one"]),
+        (["new", "none/a.toml"], ["'none/a.toml' cannot be written (No such file or directory)", "another place"]),
+        (["check", "four-bar", "--sett", "a"], ["alula: no such option: --sett", "--set", "; see alula check --help"]),
+        (["check"], ["alula: missing argument 'case'; see alula check --help"]),
+        (
+            ["check", "four-bar", "--threads", "0"],
+            ["alula: invalid value for '--threads': ", "; see alula check --help"],
+        ),
+        (["synth", "-o", f"{__file__}/out"], ["output: ", "(Not a directory)", "choose another folder"]),
+        (["study", "four-bar", "--vary", "parts.bar.width=8 mm", "-o", f"{__file__}/out"], ["(Not a directory)"]),
         (["new", "--list", "a.toml"], ["--list", "leave out all else"]),
         (["new", "--from", "owl-wing-anchor", "owl-wing-anchor.step"], ["a file that the case names"]),
     ],
@@ -127,6 +139,13 @@ def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: 
     assert "Traceback" not in done.stderr
     for word in words:
         assert word in done.stderr
+
+
+def test_help_names_what_an_option_takes_and_no_type_of_python() -> None:
+    for command in ("check", "claims", "envelope", "inspect", "size", "study", "synth", "tolerance"):
+        told = programs.inside(*(["study", "run"] if command == "study" else [command]), "--help").stdout
+        assert "Options:" in told
+        assert not re.search(r"--\S+ <(list|str|int|float)|<list\[", told), told
 
 
 def test_a_fault_of_the_program_is_status_4_without_traceback(tmp_path: Path) -> None:

@@ -168,10 +168,11 @@ def test_the_record_is_as_documented():
     )  # fmt: skip
 
 
-def test_without_a_renderer_there_is_no_picture_and_a_reason(monkeypatch):
+def test_without_a_renderer_there_is_no_picture_and_a_reason(tmp_path, monkeypatch):
     monkeypatch.setattr(figures, "_ask", lambda *arguments: ({}, "rendering crashed (signal 11)"))
     file = FILES / "inch.step"
     assert part_picture(part_facts(file), part_surface(file)) == (None, "rendering crashed (signal 11)")
+    assert f"Record and entries: {tmp_path}" in inspect(file, "-o", tmp_path).stdout
 
 
 def test_triangles_close_about_the_volume():
