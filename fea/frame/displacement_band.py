@@ -141,7 +141,8 @@ def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
     """Return how far every pin moves at the most in its bore or slot per unit of what it bears.
 
     It sinks by ``SINK`` F/(E t), tilts as that along its length lets it, and turns about itself as the ring bends and,
-    held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t).
+    held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t). The ring is that of the hole, the widest that
+    the case allows, and r the pin's, as in the narrowest.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
         slender = (mean / (outer - inner)) ** 3
         sink = (SINK[0] + SINK[1] * slender) / (young * thick)
         tilt = TILT * sink * thick / ring.second
-        turn = TURN[0] * (1.0 / inner**2 - 1.0 / outer**2) / (4.0 * math.pi * shear * thick)
+        turn = TURN[0] * (4.0 / pin.pin_diameter**2 - 1.0 / outer**2) / (4.0 * math.pi * shear * thick)
         turn += TURN[1] * slender / (young * thick * mean**2)
         found[pin.name] = np.array([sink, sink, TILT * sink, tilt, tilt, turn])
     return found

@@ -126,7 +126,8 @@ def test_wherever_pins_with_play_stand_the_solid_bears_no_more(link):
     assert found["von_mises"].low <= least
     assert found["von_mises"].high >= most
     assert most > 1.01  # play tells
-    assert found["von_mises"].high < 1.6
+    narrower = max(pin.diameter / pin.pin_diameter for pin in case.body(link).pins)
+    assert found["von_mises"].high < 1.6 * narrower
 
 
 def test_of_an_idle_plate_nothing_is_known_of_the_low_end():

@@ -89,7 +89,7 @@ def collapses(result):
 
 
 def test_what_stays_elastic_is_told_by_hand():
-    collapse = 'collapse={ type = "plastic-collapse", minimum = 2.4, links = ["crank"] }'
+    collapse = 'collapse={ type = "plastic-collapse", minimum = 2.3, links = ["crank"] }'
     checks = f'checks={{ strength={{ type = "safety-factor", links = ["crank"] }}, {collapse} }}'
     result = check_case(edited("slider-crank", [checks]), fidelity="beam")
     own = collapses(result)

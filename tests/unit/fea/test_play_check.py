@@ -57,7 +57,7 @@ def test_a_lever_sags_by_half_of_its_play_more() -> None:
     """Down with its load at rest; its pin may stand anywhere, so that both ends are half of the play off."""
     plain, loose = lever("0 mm").checks[0], lever("0.4 mm").checks[0]
     assert loose.value.value == pytest.approx(plain.value.value + 0.2, abs=1e-9)
-    assert loose.value.high == pytest.approx(plain.value.high + 0.2, rel=1e-5)
+    assert loose.value.high == pytest.approx(plain.value.high + 0.2, rel=2e-3)  # the hole is wider
     assert loose.value.low == pytest.approx(max(plain.value.low - 0.2, 0.0), abs=1e-5)
     assert SourceKind.PLAY in {source.kind for source in loose.value.sources}
     assert SourceKind.PLAY not in {source.kind for source in plain.value.sources}
@@ -78,7 +78,10 @@ def test_the_reason_says_where_play_decides() -> None:
 
 def test_play_of_a_lever_changes_no_force() -> None:
     plain, loose = lever("0 mm").links["arm"], lever("0.4 mm").links["arm"]
-    assert loose.safety_factor == plain.safety_factor
+    one, other = plain.safety_factor, loose.safety_factor
+    assert other.value == one.value
+    assert other.low == pytest.approx(one.low * 3.0 / 3.4)  # by a hole of 3 mm in place of 3.4 mm
+    assert one.high < other.high
 
 
 def test_bands_hold_the_linkage_with_another_coupler() -> None:
@@ -188,7 +191,7 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
         solved=lambda slopes: SimpleNamespace(names=["most", "least"] * 4, sound=[reached] * len(slopes["B"])),
         loose=SimpleNamespace(radii={"B": 0.05, "C": 0.1}, ways=ways, at_rims=lambda slopes: slopes),
     )
-    case = SimpleNamespace(checked_links=["arm"], body=lambda link: None, layered=False)
+    case = SimpleNamespace(checked_links=["arm"], body=lambda link: SimpleNamespace(pins=()), layered=False)
     found = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
     stress, displacement = found.stress["arm"], found.displacement["arm"]
     assert (stress.low, stress.high) == pytest.approx((0.25, 1.9) if reached else (0.3, 1.7))

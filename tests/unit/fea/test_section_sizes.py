@@ -24,12 +24,12 @@ def test_nothing_follows_a_section_that_is_calibrated():
     ("width", "thickness", "entries"),
     [
         ("9 mm", "2 mm", {"parts.bar.thickness": "3.6 mm", "joints.O2.pin_diameter": "3.4 mm"}),
-        ("4 mm", "4 mm", {"parts.bar.fillet_radius": "1.2 mm", "joints.O2.pin_diameter": "2.5 mm"}),
+        ("3 mm", "3 mm", {"parts.bar.fillet_radius": "0.9 mm", "joints.O2.pin_diameter": "2.3 mm"}),
         ("20 mm", "8 mm", {"parts.bar.width": "8 mm"}),  # the crank of 40 mm takes no wider eyes
     ],
 )
 def test_what_follows_a_section_is_brought_to_the_ends_of_its_range(width, thickness, entries):
-    """Thickness 0.4 and fillet 0.3 of the width, pins 0.23 and 0.4 of the eye, which is 1.6 times as wide."""
+    """Thickness 0.4 and fillet 0.3 of the width, pins 0.23 and 0.486 of the eye, which is 1.6 times as wide."""
     case = read_case("four-bar").with_values({"parts.bar.width": width, "parts.bar.thickness": thickness})
     assert outside(case, *LINKS)
     found = following(case, "bar")
