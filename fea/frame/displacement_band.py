@@ -141,8 +141,8 @@ def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
     """Return how far every pin moves at the most in its bore or slot per unit of what it bears.
 
     It sinks by ``SINK`` F/(E t), tilts as that along its length lets it, and turns about itself as the ring bends and,
-    held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t). The ring is that of the hole, the widest that
-    the case allows, and r the pin's, as in the narrowest.
+    held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t). The ring is that of the hole, the widest
+    that the case allows, and r the pin's, as in the narrowest.
 
     Parameters
     ----------

@@ -369,8 +369,7 @@ def examine(
         pins=forces.pins,
         reason=reason("moves_little", linear=farthest, where=where, share=farthest / size, span=size, limit=LARGE),
     )
-    told = max(LEAST_FACTOR, SNAP * eyes.high) * scatter.high
-    if scatter.high * farthest <= LARGE * size and min(factor, near) >= told:
+    if scatter.high * small.share <= LARGE and min(factor, near) >= _linear_from(small):
         return small
     return _deformed(case, title, frame, small, loads)
 
@@ -460,6 +459,14 @@ def _leaning(load: PointLoad, frame: LinkageFrame, found: CorotationalSolution) 
     return PointLoad(link=load.link, point=load.point, wrench=np.concatenate([np.zeros(3), gained]))
 
 
+def _linear_from(small: LargeDisplacement) -> float:
+    """Return the factor on the loads of instability from which on linear theory is taken.
+
+    At the most that load over stiffness may be, and as soft as eyes may be, which shallow toggles tell of most.
+    """
+    return max(LEAST_FACTOR, SNAP * small.eyes.high) * small.scatter.high
+
+
 def _deformed(
     case: Case,
     title: str,
@@ -468,13 +475,14 @@ def _deformed(
     loads: Sequence[Load],
 ) -> LargeDisplacement:
     assert small.buckling is not None
-    if small.share > LARGE:
-        share, where = small.share, small.where
-        why = reason("moves_too_far", linear=small.linear, where=where, share=share, span=small.span, limit=LARGE)
+    times = small.scatter.high
+    if times * small.share > LARGE:
+        share, where, limit = small.share, small.where, LARGE / times
+        why = reason("moves_too_far", linear=small.linear, where=where, share=share, span=small.span, limit=limit)
     elif small.buckling <= small.dead_point:
-        why = reason("buckles_too_near", factor=small.buckling, limit=LEAST_FACTOR)
+        why = reason("buckles_too_near", factor=small.buckling, limit=_linear_from(small))
     else:
-        why = reason("dead_point_too_near", factor=small.dead_point, limit=LEAST_FACTOR)
+        why = reason("dead_point_too_near", factor=small.dead_point, limit=_linear_from(small))
     try:
         found = followed(frame, 1.0)
     except UnfollowedError as error:

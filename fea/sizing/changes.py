@@ -173,8 +173,8 @@ def _load(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> float |
         return None
     if _by_definition(check) or check.quantity in MOTOR_QUANTITIES:
         return check.margin
-    straight = load_case.large_displacement.state == "small" and str(check.subject) != case.linkage.ground
-    if not straight or check.quantity in (*FATIGUE_QUANTITIES, Quantity.PERMANENT_SET):
+    held = load_case.large_displacement.state in ("small", "deformed") and str(check.subject) != case.linkage.ground
+    if not held or check.quantity in (*FATIGUE_QUANTITIES, Quantity.PERMANENT_SET):
         return None
     if check.quantity is Quantity.LINE_CONTACT:
         return check.margin**2  # its stress goes with the root of the force

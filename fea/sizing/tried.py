@@ -366,8 +366,9 @@ def _margins(
 
 
 def _left_open(check: CheckOutcome) -> bool:
-    """True of a check that its band would decide, and its model may not."""
-    return check.verdict is Verdict.UNDECIDED and check.margin >= 1.0
+    """True of a check that its band would decide, one way or the other, and its model may not."""
+    _, least, most = check.quantity.margins(check.value.value, check.value.low, check.value.high, check.limit)
+    return check.verdict is Verdict.UNDECIDED and not least < 1.0 <= most
 
 
 def _outcomes(result: LoadCaseResult) -> dict[_Key, CheckOutcome]:

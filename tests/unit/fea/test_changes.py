@@ -5,7 +5,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from edited_cases import PLANAR
+from edited_cases import PLANAR, edited
 from solved import by_hand
 
 from alula.fea.check.run import check_case
@@ -15,6 +15,7 @@ from alula.fea.common.source import CONTACT, PIN_PRESSURE, TORQUE_TRANSFER, Sour
 from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.frame.displacement_band import shares_of_work
 from alula.fea.links.solid_result import _width
+from alula.fea.refine.refinement import Effort
 from alula.fea.sizing.changes import _change, changes
 from alula.fea.sizing.size_range import _entry, _taken, size_range
 from alula.fea.sizing.tried import Resized, Trials
@@ -332,3 +333,24 @@ def test_a_family_is_told_by_its_density_and_its_strongest_card_bounds_what_is_t
     assert (most["pla-fdm-xy"], most["aluminium-6061-t6"], most["steel-s235"]) == (41.4, 460.0, 1330.0)
     assert most_of_family(cards, cards["pla-fdm-xy"], "ultimate_strength") == 52.0
     assert most_of_family({}, cards["pla-fdm-xy"], "sustained_stress") == 0.0
+
+
+def test_a_load_is_tried_of_a_link_that_hand_calculation_alone_does_not_decide():
+    """On its deformed shape; by hand the rocker's band is below the limit, too, and its end is not calibrated."""
+    case = edited("four-bar", ['load_cases.lift.forces=[{link="rocker", at="P", force=["0 N", "-20 N"]}]'])
+    result = check_case(case, fidelity="solid", effort=Effort(max_meshes=1))
+    assert result.load_cases["lift"].large_displacement.state == "deformed"
+    [change] = changes(result)
+    assert (change.check.subject.name, change.check.verdict) == ("rocker", Verdict.FAIL)
+    assert change.load == pytest.approx(change.check.margin, rel=0.05)
+
+
+def test_the_limit_that_is_told_is_the_one_that_was_passed():
+    """Eyes as soft as they may be raise it above 10."""
+    case = edited("four-bar", ['load_cases.lift.forces=[{link="rocker", at="P", force=["0 N", "-2.2 N"]}]'])
+    moved = check_case(case, fidelity="beam").load_cases["lift"].large_displacement
+    assert moved.state == "deformed"
+    assert f"buckles at {moved.buckling:.3g} times its load, too near for linear theory (limit 12.5)" in in_words(
+        moved.reason
+    )
+    assert 10.0 < moved.buckling < 12.5

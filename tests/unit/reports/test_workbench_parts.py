@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from alula.geometry.base.errors import CannotRunError, CaseError
+from alula.geometry.base.errors import CaseError
 from alula.geometry.imported import read
 from alula.geometry.imported.read import part_facts
 from alula.loads.case.case_file import read_text, validate
@@ -88,7 +88,7 @@ def test_the_page_refuses_no_file_that_is_taken() -> None:
 
 
 def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
-    with pytest.raises(CannotRunError, match="cannot be written"):
+    with pytest.raises(CaseError, match="cannot be written"):
         parts.dropped("arm.step", BELL_CRANK, tmp_path / "gone")
 
 
