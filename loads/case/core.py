@@ -144,7 +144,7 @@ class CoreCase(Revisable):
         """Return a load case with what it leaves to the motion and to the masses that links carry."""
         stated, found = load_case.model_fields_set, dict[str, object]()
         if "speed" not in stated and self.motion is not None and self.inert and self.turns_steadily:
-            found["speed"] = self.motion.speed
+            found["speed"] = self.motion.velocity
         if "own_weight" not in stated and "gravity_direction" in stated and self.carried and load_case.carried:
             found["own_weight"] = True
         return load_case.model_copy(update=found) if found else load_case

@@ -42,6 +42,11 @@ class MotionSpec(CaseModel):
     _states: CycleMotion | None = PrivateAttr(None)
 
     @property
+    def velocity(self) -> float:
+        """The angular speed with the sign of the way that the range goes [rad/s]."""
+        return self.speed if self.ends is None else math.copysign(self.speed, self.ends[1] - self.ends[0])
+
+    @property
     def states(self) -> CycleMotion | None:
         """What a cycle's table says of the motion, in place of range and speed; None without one."""
         return self._states

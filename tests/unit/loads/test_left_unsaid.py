@@ -10,6 +10,7 @@ import pytest
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, validate
+from alula.loads.states.case_motion import solve_case_motion
 
 FAST = 600.0 * 3.141592653589793 / 30.0
 CARRIED = [{"link": "rocker", "at": "P", "mass": "50 kg"}]
@@ -34,6 +35,17 @@ def test_the_speed_of_the_motion_is_that_of_load_cases_without_one() -> None:
     assert speeds(starter({"inertia": False})) == {"lift": 0.0, "held": 0.0}
     turned = read_case("four-bar", ['motion.speed="1200 rpm"']).with_values({"motion.speed": "600 rpm"})
     assert speeds(turned) == {"lift": round(FAST, 9)}
+
+
+def test_a_range_that_goes_back_is_run_backward() -> None:
+    """With friction and drive power of that way; a load case went forward over it all the same."""
+    there, back = (
+        starter({"turn": False, "range": ends, "poses": 3}) for ends in (["20 deg", "40 deg"], ["40 deg", "20 deg"])
+    )
+    for case, speed in ((there, FAST), (back, -FAST)):
+        assert speeds(case) == {"lift": round(speed, 9), "held": 0.0}
+        moved = solve_case_motion(case)
+        assert moved.forces["lift"].motion.speed == pytest.approx(moved.motion.speed)
 
 
 @pytest.mark.parametrize(
