@@ -213,7 +213,7 @@ def test_the_wheel_alone_checks_composes_draws_and_serves(installed, tmp_path):
     snippets = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
     [composed] = (text for text in snippets if "alula.Case(" in text)
     (tmp_path / "composed.py").write_text(composed, encoding="utf-8")
-    assert run(installed / "bin" / "python", "composed.py", cwd=tmp_path).endswith("2.12, at least 1.11\n")
+    assert run(installed / "bin" / "python", "composed.py", cwd=tmp_path).endswith("2.12, at least 1.04\n")
     command = [alula, "open", "my-case.toml", "--no-browser"]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as served:
         try:

@@ -10,13 +10,14 @@ import pytest
 from edited_cases import PLANAR, edited
 from rocker_case import TOML
 
+from alula.fea.beam.cut_free import seat
 from alula.fea.check.run import check_case
-from alula.fea.common.source import SourceKind
+from alula.fea.common.source import SourceKind, play_source
 from alula.fea.common.verdict import Verdict
 from alula.fea.doubts import play_doubt as doubt_of_play
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.geometry.linkage.play import LooseJoints
-from alula.loads.case.case_file import validate
+from alula.loads.case.case_file import read_case, validate
 from alula.loads.states.play import Span
 from alula.reports.sections.play import play_record
 from alula.reports.sentences import told as in_words
@@ -239,3 +240,24 @@ def test_at_the_joint_of_the_drive_the_torque_counts_beside_the_force(ends, shar
     alone, driven = (doubt_of_play.play_at_joint(play, "O", driven=one) for one in (False, True))
     assert (alone.low, alone.high) == pytest.approx((0.9, 1.1))
     assert (driven.low, driven.high) == pytest.approx(shares)
+
+
+@pytest.mark.parametrize("holes", [("1 mm", "0.2 mm"), ("0.2 mm", "1 mm")])
+def test_of_two_loose_holes_the_worse_counts(holes: tuple[str, str]) -> None:
+    """Eyes of 12.8 mm about pins of 3 mm, of which one hole may be up to 1 mm wider."""
+    entries = [
+        f'joints.{name}.clearance={{crank=["0 mm", "{play}"]}}' for name, play in zip(("O2", "A"), holes, strict=True)
+    ]
+    found = doubt_of_play._narrower(edited("four-bar", entries), "crank", play_source({"A": 1.0}))
+    assert found.high == pytest.approx(4.0 / 3.0)
+    assert found.low == pytest.approx(15.8 / 16.8 * (8.8 / 9.8) ** 2)
+
+
+def test_a_seat_has_the_pin_and_not_its_hole() -> None:
+    """Whose bending stiffness goes with the fourth power of its diameter."""
+    case = read_case("owl-wing-static")
+    body = case.body("GF")
+    assert body.pin("G").diameter == pytest.approx(1.65)
+    found = seat(case.linkage, "GF", body, body.pin("G"))
+    assert found is not None
+    assert found.diameter == pytest.approx(1.5)
