@@ -38,8 +38,7 @@ def run(app: Callable[[], object]) -> NoReturn:
     try:
         try:
             status = app()
-            if isinstance(status, int) and status != 0:
-                sys.exit(status)  # as for an interruption; what else a command returns is none
+            sys.exit(status if isinstance(status, int) else 0)  # what else a command returns is no status
         except SystemExit as stop:
             if _pipe_was_closed(stop):
                 raise BrokenPipeError from None
@@ -82,7 +81,6 @@ def run(app: Callable[[], object]) -> NoReturn:
             "set ALULA_TRACEBACK=1 to see where, and please report it",
             CRASHED,
         )
-    sys.exit(0)
 
 
 def _usage(error: Exception) -> str | None:

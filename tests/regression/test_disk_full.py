@@ -84,9 +84,12 @@ def test_parts_that_do_not_fit(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
-def test_standard_output_on_a_full_disk(tmp_path: Path) -> None:
+@pytest.mark.parametrize("command", ["cases", "--version"], ids=["of pages", "of a line"])
+def test_standard_output_on_a_full_disk(tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also what is written at the end alone, as where nothing asks Python to write each line at once."""
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)
     with Path("/dev/full").open("w") as full:
-        done = programs.run("cases", scratch=tmp_path / "scratch", stdout=full)
+        done = programs.run(command, scratch=tmp_path / "scratch", stdout=full)
     assert done.returncode == 4
     assert done.stderr.startswith("alula: standard output failed (No space left on device)")
     assert len(done.stderr.splitlines()) == 1
