@@ -168,6 +168,11 @@ class LargeDisplacement:
         return self.linear / self.span
 
     @property
+    def linear_from(self) -> float:
+        """The ``factor`` from which on linear theory is enough, with load over stiffness and eyes at their softest."""
+        return max(LEAST_FACTOR, SNAP * self.eyes.high) * self.scatter.high
+
+    @property
     def factor(self) -> float | None:
         """The lesser of the factors to buckling and to a dead point; None where there is no frame."""
         return None if self.buckling is None else min(self.buckling, self.dead_point)
@@ -369,7 +374,7 @@ def examine(
         pins=forces.pins,
         reason=reason("moves_little", linear=farthest, where=where, share=farthest / size, span=size, limit=LARGE),
     )
-    if scatter.high * small.share <= LARGE and min(factor, near) >= _linear_from(small):
+    if scatter.high * small.share <= LARGE and min(factor, near) >= small.linear_from:
         return small
     return _deformed(case, title, frame, small, loads)
 
@@ -459,14 +464,6 @@ def _leaning(load: PointLoad, frame: LinkageFrame, found: CorotationalSolution) 
     return PointLoad(link=load.link, point=load.point, wrench=np.concatenate([np.zeros(3), gained]))
 
 
-def _linear_from(small: LargeDisplacement) -> float:
-    """Return the factor on the loads of instability from which on linear theory is taken.
-
-    At the most that load over stiffness may be, and as soft as eyes may be, which shallow toggles tell of most.
-    """
-    return max(LEAST_FACTOR, SNAP * small.eyes.high) * small.scatter.high
-
-
 def _deformed(
     case: Case,
     title: str,
@@ -480,9 +477,9 @@ def _deformed(
         share, where, limit = small.share, small.where, LARGE / times
         why = reason("moves_too_far", linear=small.linear, where=where, share=share, span=small.span, limit=limit)
     elif small.buckling <= small.dead_point:
-        why = reason("buckles_too_near", factor=small.buckling, limit=_linear_from(small))
+        why = reason("buckles_too_near", factor=small.buckling, limit=small.linear_from)
     else:
-        why = reason("dead_point_too_near", factor=small.dead_point, limit=_linear_from(small))
+        why = reason("dead_point_too_near", factor=small.dead_point, limit=small.linear_from)
     try:
         found = followed(frame, 1.0)
     except UnfollowedError as error:

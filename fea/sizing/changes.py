@@ -38,8 +38,8 @@ from alula.fea.common.verdict import (
     Verdict,
     deciding,
 )
-from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement
-from alula.fea.nonlinear.stability import LARGE, SNAP
+from alula.fea.nonlinear.large_displacement import LargeDisplacement
+from alula.fea.nonlinear.stability import LARGE
 from alula.fea.outcomes.result import CheckResult, LoadCaseResult
 from alula.fea.sizing.size_range import size_range
 from alula.fea.sizing.tried import Scaled, Trials, goes_with_load
@@ -196,7 +196,7 @@ def _linear_until(moved: LargeDisplacement) -> float:
     """Return the factor on the loads from which on equilibrium is sought on the deformed shape."""
     factor, scatter = moved.factor, moved.scatter.high
     far = LARGE * moved.span / (scatter * moved.linear) if moved.linear > 0.0 else math.inf
-    return far if factor is None else min(far, factor / (max(LEAST_FACTOR, SNAP * moved.eyes.high) * scatter))
+    return far if factor is None else min(far, factor / moved.linear_from)
 
 
 def _material(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> MaterialChange | None:

@@ -366,9 +366,8 @@ def _margins(
 
 
 def _left_open(check: CheckOutcome) -> bool:
-    """True of a check that its band would decide, one way or the other, and its model may not."""
-    _, least, most = check.quantity.margins(check.value.value, check.value.low, check.value.high, check.limit)
-    return check.verdict is Verdict.UNDECIDED and not least < 1.0 <= most
+    """True of a check that its model may not decide, wherever its band lies: not calibrated, or kept from it."""
+    return check.verdict is Verdict.UNDECIDED and (bool(check.value.without) or check.margin >= 1.0)
 
 
 def _outcomes(result: LoadCaseResult) -> dict[_Key, CheckOutcome]:

@@ -43,9 +43,9 @@ def size(
     ] = None,
     minimise: Annotated[
         str | None,
-        typer.Option(metavar="<number>", help='What shall be least: mass, or "largest drive torque" and the like.'),
+        typer.Option(metavar="<name>", help='What shall be least: mass, or "largest drive torque" and the like.'),
     ] = None,
-    maximise: Annotated[str | None, typer.Option(metavar="<number>", help="What shall be greatest instead.")] = None,
+    maximise: Annotated[str | None, typer.Option(metavar="<name>", help="What shall be greatest instead.")] = None,
     most: Annotated[
         int,
         typer.Option(
