@@ -94,7 +94,8 @@ def _usage(error: Exception) -> str | None:
         error.show()  # type: ignore[attr-defined]
         sys.exit(CaseError.exit_status)
     message, context = error.format_message().strip().rstrip("."), getattr(error, "ctx", None)  # type: ignore[attr-defined]
-    see = "" if context is None else f"; see {context.command_path} --help"
+    after = " See" if message.endswith("?") else "; see"
+    see = "" if context is None else f"{after} {context.command_path} --help"
     return f"{message[:1].lower()}{message[1:]}{see}"
 
 
