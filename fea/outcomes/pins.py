@@ -452,7 +452,7 @@ class _EyesOnPin:
         for name in joints_of_pin(case, joint):
             for link, ring in zip(case.joints[name].links, eyes(case, name), strict=True):
                 eye = link, linkage.point_of(name, link)
-                if eye not in rings or case.links[link].part is not None:
+                if eye not in rings or ring.height < rings[eye].height:  # without a part: like the shortest there
                     rings[eye] = ring
         borne = in_eyes(case, joint, wrenches)
         levels = {eye: linkage.heights.get(eye[0], 0.0) for eye in rings}
