@@ -650,7 +650,7 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
             inner = eye_of(case, joint, mate)
         else:
             (low, high), *_ = outer.gaps
-            half = (high - low) / 2.0 - gap
+            half = min((high - low) / 2.0 - gap, (case.links[mate].thickness or math.inf) / 2.0)
             inner = Ring(diameter=0.0, low=outer.middle - half, high=outer.middle + half)
         return fork_pin_stress(force, diameter, outer, inner, moment=moment, poisson=poisson)
     return pin_stress(force, diameter, eyes(case, joint), gap, moment=moment, poisson=poisson)
