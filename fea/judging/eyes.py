@@ -108,7 +108,8 @@ def _modes(
     material, body = case.material_of(link), case.body(link)
     ring, eyes = body.ring(pin), []
     own, hole = strength_scatter(material), case.linkage.pin_holes(joints[0])[link]
-    pin_yield = min(case.pin_material(joint).yield_strength or math.inf for joint in joints)
+    pins = [case.pin_material(joint) for joint in joints]
+    pin_yield = min(pin.yield_strength or pin.allowable for pin in pins)
     assert material.yield_strength is not None
     clearances = (hole.nominal, hole.low, hole.high if math.isfinite(hole.high) else hole.nominal)
     play = (play_source({joints[0]: clearances[2]}),) if clearances[1] < clearances[2] else ()
