@@ -21,6 +21,7 @@ from alula.fea.modes.eye_modes import STRAIGHT, EyeFactors, EyeMode, EyeStrength
 from alula.fea.modes.eye_scatter import eye_scatter
 from alula.geometry.bodies.body import Body, extent
 from alula.geometry.bodies.features import Pin
+from alula.geometry.materials.material import Material
 from alula.geometry.parts.plate import Plate
 from alula.geometry.parts.straight import Straight
 from alula.loads.case.case import Case
@@ -108,11 +109,14 @@ def _modes(
     material, body = case.material_of(link), case.body(link)
     ring, eyes = body.ring(pin), []
     own, clearances = strength_scatter(material), _clearances(case, link, joints)
-    pin_yield = min(case.pin_material(joint).yield_strength or math.inf for joint in joints)
+    pins = [_pin_yield(case.pin_material(joint)) for joint in joints]
+    least = [min(ends) for ends in zip(*((band.value, band.low, band.high) for band in pins), strict=True)]
     assert material.yield_strength is not None
     play = (play_source(dict.fromkeys(joints, clearances[2])),) if clearances[1] < clearances[2] else ()
     found = []
-    for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
+    for clearance, (share, pin_yield) in itertools.product(
+        clearances, zip((1.0, own.low, own.high), least, strict=True)
+    ):
         eye = RoundEye(
             radius=body.part.wall(body, pin),
             hole=pin.pin_diameter + clearance,
@@ -127,8 +131,19 @@ def _modes(
             found.append(asme_bth_1(eye, strength, material.ultimate_strength))
         else:
             found.append(en_1993_1_8(eye, strength, pin_yield))
-    bands = {mode: Band.around(found[0][mode], tuple(x[mode] for x in found), *own.told, *play) for mode in found[0]}
+    told = dict.fromkeys(found[0], own.told)
+    if check.standard != BTH_1:
+        weak = [band.sources for band in pins if band.low < own.high * material.yield_strength]
+        told[EyeMode.BEARING] = distinct(own.told, *weak)
+    bands = {
+        mode: Band.around(value, tuple(x[mode] for x in found), *told[mode], *play) for mode, value in found[0].items()
+    }
     return bands, eyes
+
+
+def _pin_yield(material: Material) -> Band:
+    """Return the stress at which a pin yields or, where it is brittle, breaks [MPa]."""
+    return strength_scatter(material).on(Band.exact(material.yield_strength or material.allowable))
 
 
 def _clearances(case: Case, link: str, joints: Sequence[str]) -> tuple[float, float, float]:

@@ -452,7 +452,7 @@ class _EyesOnPin:
         for name in joints_of_pin(case, joint):
             for link, ring in zip(case.joints[name].links, eyes(case, name), strict=True):
                 eye = link, linkage.point_of(name, link)
-                if eye not in rings or case.links[link].part is not None:
+                if eye not in rings or ring.height < rings[eye].height:  # without a part: like the shortest there
                     rings[eye] = ring
         borne = in_eyes(case, joint, wrenches)
         levels = {eye: linkage.heights.get(eye[0], 0.0) for eye in rings}
@@ -650,7 +650,7 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
             inner = eye_of(case, joint, mate)
         else:
             (low, high), *_ = outer.gaps
-            half = (high - low) / 2.0 - gap
+            half = min((high - low) / 2.0 - gap, (case.links[mate].thickness or math.inf) / 2.0)
             inner = Ring(diameter=0.0, low=outer.middle - half, high=outer.middle + half)
         return fork_pin_stress(force, diameter, outer, inner, moment=moment, poisson=poisson)
     return pin_stress(force, diameter, eyes(case, joint), gap, moment=moment, poisson=poisson)

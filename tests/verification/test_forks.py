@@ -220,6 +220,14 @@ def test_a_link_without_part_fills_the_gap_but_for_pin_gap():
     assert stress_of(case, "B", 100.0).moment.high == pytest.approx(50.0 * (CHEEK / 2.0 + 0.5 + 0.5))
 
 
+@pytest.mark.parametrize(("thickness", "pin_gap", "half"), [(2.0, 0.0, 1.0), (1.0, 0.5, 0.5), (2.8, 0.5, 1.0)])
+def test_a_link_without_part_fills_no_more_of_the_gap_than_its_thickness(thickness, pin_gap, half):
+    data = entries(other=None, joint={"pin_gap": f"{pin_gap} mm"}, fork_depth="12 mm")
+    data["links"]["tip"]["thickness"] = f"{thickness} mm"
+    expected = 50.0 * (CHEEK / 2.0 + GAP / 2.0 - half + half / 2.0)
+    assert stress_of(validate(data), "B", 100.0).moment.high == pytest.approx(expected)
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [

@@ -355,6 +355,50 @@ def test_what_bends_a_pin_of_three_links_is_what_all_of_them_press(joints, force
         assert (found.moment.value, sheared) == pytest.approx(expected[side], rel=5e-3)
 
 
+ON_GROUND = """
+schema_version = 1
+title = "A thin and a thick lever on one pin of a ground without part"
+layer_spacing = "7 mm"
+links.base = { ground = true, layer = 0, points = { O = ["0 mm", "0 mm"], R = ["0 mm", "-60 mm"] } }
+links.near = { part = "thin", layer = 1, points = { O = ["0 mm", "0 mm"], B = ["60 mm", "0 mm"] } }
+links.far = { part = "thick", layer = 2, points = { O = ["0 mm", "0 mm"], D = ["60 mm", "0 mm"] } }
+links.low = { part = "thin", layer = 1, points = { R = ["0 mm", "0 mm"], D = ["60 mm", "0 mm"] } }
+links.high = { part = "thin", layer = 3, points = { R = ["0 mm", "0 mm"], B = ["84.85281374 mm", "0 mm"] } }
+pose.near = { near = "0 deg", far = "-30 deg", low = "30 deg", high = "45 deg" }
+parts.thin = { shape = "bar", material = "steel-s235", width = "8 mm", thickness = "2 mm", fillet_radius = "1 mm" }
+parts.thick = { shape = "bar", material = "steel-s235", width = "8 mm", thickness = "6 mm", fillet_radius = "1 mm" }
+[joints]
+O = { links = ["base", "near"], pin_diameter = "5 mm" }
+O2 = { links = ["base", "far"], points = ["O", "O"], pin_diameter = "5 mm" }
+B = { links = ["near", "high"], pin_diameter = "5 mm" }
+D = { links = ["far", "low"], pin_diameter = "5 mm" }
+R = { links = ["base", "low"], pin_diameter = "5 mm" }
+R2 = { links = ["base", "high"], points = ["R", "R"], pin_diameter = "5 mm" }
+[[load_cases.l.forces]]
+link = "near"
+at = "B"
+force = ["100 N", "50 N"]
+[[load_cases.l.forces]]
+link = "far"
+at = "D"
+force = ["-60 N", "110 N"]
+"""
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_hole_of_a_ground_without_part_is_as_long_as_the_shortest_on_its_pin(turned):
+    """In either order of the joints: the longer of both gave the pin O a third less stress."""
+    tables = tomllib.loads(ON_GROUND)
+    if turned:
+        tables["joints"] = dict(reversed(tables["joints"].items()))
+    known = tomllib.loads(ON_GROUND)
+    known["links"]["base"]["thickness"] = "2 mm"
+    reactions = forces_of(checked(known)).reactions.joints
+    for name in ("O", "O2"):
+        found, expected = (stress_at(checked(one), name, reactions).equivalent.value for one in (tables, known))
+        assert found == pytest.approx(expected)
+
+
 @pytest.mark.parametrize("joints", ONE_PIN)
 @pytest.mark.parametrize(("lower", "crank"), [(20.0, 40.0), (-20.0, 0.0), (-5.0, 15.0)])
 def test_an_eye_bears_what_all_joints_of_its_pin_press(joints, lower, crank):

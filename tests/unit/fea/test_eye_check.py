@@ -303,6 +303,20 @@ def test_without_an_ultimate_strength_the_sentence_says_what_to_state():
     assert level(by_yield).value.value == pytest.approx(2.0 * 2.0 * 240.0 * (3.5 - 10.0 / 3.0) / 500.0)
 
 
+@pytest.mark.parametrize(("material", "strength"), [("pvc-u", 41.4), ("pla-fdm-xy", 33.0), ("steel-wire", 240.0)])
+def test_a_pin_weaker_than_its_eye_decides_bearing_though_it_breaks_before_it_yields(material, strength):
+    def pinned(tables):
+        tables["checks"]["eye"]["standard"] = "EN 1993-1-8"
+        tables["joints"]["O"]["pin_material"] = material
+
+    [eye] = eyes_of_level(checked(eyes(pinned)), "O")
+    bearing = eye.factors[EyeMode.BEARING]
+    assert bearing.value == pytest.approx(1.5 * 2.0 * 5.0 * strength / 500.0)
+    low, high = eyes(pinned).all_materials[material].strength_range or (strength, strength)
+    assert (bearing.low, bearing.high) == pytest.approx((low * 7.5 * 2.0 / 500.0, min(high, 240.0) * 7.5 * 2.0 / 500.0))
+    assert [source.kind for source in bearing.sources] == [SourceKind.STRENGTH] * (low < high)
+
+
 @pytest.mark.parametrize(
     ("change", "what", "instead"),
     [
