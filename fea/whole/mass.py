@@ -3,9 +3,11 @@
 from alula.fea.asked.asked import GRAMS, asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
+from alula.fea.common.source import play_source
 from alula.fea.common.verdict import CheckOutcome
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import MassCheck
+from alula.loads.states.masses import masses_by_holes
 from alula.loads.states.weighed import Weighed
 
 
@@ -27,9 +29,17 @@ def mass_outcomes(case: Case, found: Weighed | None) -> tuple[CheckOutcome, ...]
     outcomes = []
     for one in asked(case, MassCheck):
         others = one.check.others if isinstance(one.check, MassCheck) else None
-        total = Band.exact(GRAMS * (found.total.total + (others or 0.0)))
+        whole = found.total.total + (others or 0.0)
+        ends = [GRAMS * (whole - found.total.part + parts) for parts in masses_by_holes(case)]
+        holes = (play_source(_plays(case)),) if ends[0] < ends[1] else ()
+        total = Band.around(GRAMS * whole, (GRAMS * whole, *ends), *holes)
         outcomes.append(one.for_all(case, total, mass_reason(found, others)))
     return tuple(outcomes)
+
+
+def _plays(case: Case) -> dict[str, float]:
+    plays = {joint: case.linkage.pin_holes(joint).play for joint in case.joints}
+    return {joint: play for joint, play in plays.items() if play > 0.0}
 
 
 def mass_reason(found: Weighed, others: float | None = None) -> Reason:

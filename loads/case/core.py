@@ -527,10 +527,29 @@ class CoreCase(Revisable):
         Body
             As ``body``, but for the widths of holes. Of a clearance that two holes share each has half.
         """
+        return self._with_holes(link, 1)
+
+    def narrowest_body(self, link: str) -> Body:
+        """Put together the body of a link whose holes are as narrow as the case allows; ``body`` has the widest.
+
+        Parameters
+        ----------
+        link : str
+            Name of a link with a part.
+
+        Returns
+        -------
+        Body
+            As ``body``, but for the widths of holes.
+        """
+        return self._with_holes(link, 0)
+
+    def _with_holes(self, link: str, end: int) -> Body:
+        """Return a body with holes at their least (0), in the middle (1) or at their most (2); a file keeps its own."""
         body = self.body(link)
         if isinstance(self._stated_part(link), FilePart):
             return body
-        pins = [(pin, pin.clearance if pin.slot else self.linkage.wider(link, pin.name)[1]) for pin in body.pins]
+        pins = [(pin, pin.clearance if pin.slot else self.linkage.wider(link, pin.name)[end]) for pin in body.pins]
         return replace(
             body, pins=tuple(replace(p, diameter=p.pin_diameter + wider, clearance=wider) for p, wider in pins)
         )

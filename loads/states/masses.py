@@ -41,6 +41,7 @@ def part_mass(case: Case, link: str) -> PartMass:
     Returns
     -------
     PartMass
+        With each hole in the middle of what the case states of it.
 
     Raises
     ------
@@ -49,16 +50,44 @@ def part_mass(case: Case, link: str) -> PartMass:
     CannotRunError
         Where the kernel fails.
     """
-    try:
-        solid, density = _of_shape(case.body(link)), case.material_of(link).density
-    except AlulaError as error:
-        raise type(error)(f"{link}: {error}") from None
-    weight = case.links[link].count * density
+    solid, weight = _solid(case, link, case.body_to_make(link)), case.links[link].count * case.material_of(link).density
     return PartMass(
         mass=solid.volume * weight,
         centroid=np.asarray(solid.centroid)[:2],
         inertia=float(solid.inertia[2, 2]) * weight,
     )
+
+
+def _solid(case: Case, link: str, body: Body) -> MassProperties:
+    try:
+        return _of_shape(body)
+    except AlulaError as error:
+        raise type(error)(f"{link}: {error}") from None
+
+
+def masses_by_holes(case: Case) -> tuple[float, float]:
+    """Return what all parts weigh with the widest holes that the case allows, and with the narrowest.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    tuple of 2 float
+        Least and largest mass [tonne].
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``part_mass``.
+    """
+    least = most = 0.0
+    for link in case.checked_links:
+        weight = case.links[link].count * case.material_of(link).density
+        least += weight * _solid(case, link, case.body(link)).volume
+        most += weight * _solid(case, link, case.narrowest_body(link)).volume
+    return least, most
 
 
 def part_masses(case: Case) -> dict[str, PartMass]:
@@ -90,7 +119,7 @@ def rough_masses(case: Case) -> dict[str, float]:
     """
     found = {}
     for link in case.checked_links:
-        body = case.body(link)
+        body = case.body_to_make(link)
         volume = body.part.rough_volume(body)
         weight = case.links[link].count * case.material_of(link).density
         found[link] = part_mass(case, link).mass if volume is None else volume * weight

@@ -8,6 +8,7 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
+from eye_case import eyes
 from imported_case import imported_case
 from told import render, result_record, tables
 
@@ -101,6 +102,28 @@ def test_a_mass_keeps_or_misses_its_limit_with_what_is_stated_besides():
         assert outcomes[0].value.value == pytest.approx(total + (others or 0.0), rel=1e-9)
         told = "others as stated 0.2 g, which stand for base" if others else "; not counted: base (no part)"
         assert told in in_words(outcomes[0].reason)
+
+
+@pytest.mark.parametrize(
+    ("clearance", "ends"),
+    [(["0 mm", "0.5 mm"], (0.0, 0.125, 0.5)), ({"level": ["0.2 mm", "0.6 mm"]}, (0.2, 0.4, 0.6))],
+)
+def test_a_mass_holds_all_widths_of_holes(clearance, ends):
+    """A plain clearance may lie in either eye, half of it in each in the middle; one of a link is that of its eye."""
+
+    def mass(stated):
+        def loose(tables):
+            tables["joints"]["B"]["clearance"] = stated
+            tables["checks"]["mass"] = {"type": "mass", "maximum": "14 g"}
+
+        [found] = [one for one in unloaded_outcomes(whole_numbers(eyes(loose))) if one.quantity is Quantity.MASS]
+        return found.value.told
+
+    tight, found = mass("0 mm").value, mass(clearance)
+    holes = [2.7e-3 * 2.0 * math.pi / 4.0 * ((5.0 + wider) ** 2 - 25.0) for wider in ends]
+    least, middle, most = (tight - (1 if "level" in clearance else 2) * hole for hole in holes)
+    assert (found.high, found.value, found.low) == pytest.approx((least, middle, most), rel=1e-9)
+    assert found.low < found.value < found.high
 
 
 def bars(layers: tuple[int, int, int, int], edits: dict[str, str], more: str) -> Case:
