@@ -17,7 +17,7 @@ from alula.fea.beam.cut_free import seat
 from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
-from alula.fea.common.scatter import Scatter, differing, load_scatter, of_sum, strength_scatter
+from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter
 from alula.fea.common.sought import sought
 from alula.fea.common.source import COUPLES
 from alula.fea.common.verdict import CheckOutcome
@@ -267,40 +267,43 @@ def grown(
     Scatter
         That of the joint where nothing presses in the eye.
     """
-    parts, whole = _parts(case, joint, link, joints, growth)
-    return of_sum([(float(size), own) for size, own in parts], float(whole)) if whole > 0.0 else growth(joint)
+    parts, whole = _parts(case, joint, link, joints)
+    sizes = [(float(size), growth(name)) for name, size in parts.items()]
+    return of_sum(sizes, float(whole)) if whole > 0.0 else growth(joint)
 
 
-def most_grown(
-    case: Case, joint: str, link: str, joints: Mapping[str, JointReaction], growth: Callable[[str], Scatter]
-) -> Real:
+def most_grown(case: Case, joint: str, link: str, joints: Mapping[str, JointReaction], over: OverMotion) -> Real:
     """Return the high end of ``grown`` at each pose.
 
     Parameters
     ----------
-    case, joint, link, growth
+    case, joint, link
         As of ``grown``.
     joints : mapping of str to JointReaction
         Of all joints, with wrenches (n, 6).
+    over : OverMotion
+        Whose forces may grow.
 
     Returns
     -------
     ndarray, shape (n,)
     """
-    parts, whole = _parts(case, joint, link, joints, growth)
-    of_one = np.full(whole.shape, growth(joint).high)
+    parts, whole = _parts(case, joint, link, joints)
+    of_one = np.broadcast_to(over.most_growth(joint), whole.shape)
     if len(parts) == 1:
         return of_one
-    return np.asarray(1.0 + np.divide(differing(parts), whole, out=of_one - 1.0, where=whole > 0.0))
+    slack = sum(
+        size * np.maximum(over.most_growth(name) - 1.0, 1.0 - over.joint_growth(name).low)
+        for name, size in parts.items()
+    )
+    return np.asarray(1.0 + np.divide(slack, whole, out=of_one - 1.0, where=whole > 0.0))
 
 
-def _parts(
-    case: Case, joint: str, link: str, joints: Mapping[str, JointReaction], growth: Callable[[str], Scatter]
-) -> tuple[list[tuple[Real, Scatter]], Real]:
-    """Return the size of each joint's force in an eye with its growth, and that of their sum (...)."""
+def _parts(case: Case, joint: str, link: str, joints: Mapping[str, JointReaction]) -> tuple[dict[str, Real], Real]:
+    """Return the size of each joint's force in an eye, and that of their sum (...)."""
     eye = link, case.linkage.point_of(joint, link)
     names = set(case.linkage.joints_at(*eye)).intersection(joints_of_pin(case, joint))
-    parts = [(np.linalg.norm(joints[name].wrench[..., :2], axis=-1), growth(name)) for name in sorted(names)]
+    parts = {name: np.asarray(np.linalg.norm(joints[name].wrench[..., :2], axis=-1)) for name in sorted(names)}
     return parts, np.asarray(np.linalg.norm(in_own_eyes(case, joint, joints)[link][..., :2], axis=-1))
 
 
@@ -339,7 +342,7 @@ def least_of_bearing(over: OverMotion, one: Asked) -> Real:
     borne = in_own_eyes(case, joint, way.joints)
     with np.errstate(divide="ignore"):  # without a force there is no end
         every = [
-            own.low * bears / pressing(case, link, borne[link])
+            own.low * bears / (pressing(case, link, borne[link]) * most_grown(case, joint, link, way.joints, over))
             for link, (bears, own) in eyes_bear(case, one.name, joint).items()
         ]
     return np.asarray(np.min(every, axis=0))

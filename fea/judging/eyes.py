@@ -295,7 +295,7 @@ def least_of_eyes(over: OverMotion, one: Asked) -> NDArray[np.float64]:
     link, least = one.subject.name, np.full(len(over.evaluated), np.inf)
     [way], eyes = over.ways(), eyes_of(over.case, link)
     for strength in strengths(over.case, link, one.check):
-        most = most_grown(over.case, eyes[strength.name][0], link, way.joints, over.joint_growth)
+        most = most_grown(over.case, eyes[strength.name][0], link, way.joints, over)
         for plate in over.loads(link):
             force = next(pin.wrench[..., :2] for pin in plate.pins if pin.name == strength.name)
             for _, low, _ in strength.factors(np.broadcast_to(force, (*least.shape, 2)))[0].values():

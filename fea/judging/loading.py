@@ -103,11 +103,14 @@ class OverMotion(Loading):
         Of the number of a pose, to what acts there.
     pin_growth : callable
         Of a joint, to how the stress of its pin grows beside scattered loads.
+    most_growth : callable
+        Of a joint, to the high end of how its force may grow at each pose (n,).
     """
 
     evaluated: NDArray[np.bool_]
-    at: Callable[[int], Loading]
+    at: Callable[[int], "OverMotion"]
     pin_growth: Callable[[str], Scatter]
+    most_growth: Callable[[str], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, kw_only=True)

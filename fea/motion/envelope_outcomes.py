@@ -258,7 +258,7 @@ def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked, most: int | None
     def at(pose: int) -> CheckOutcome:
         reactions = solved.at(pose).joints
         shared = shared_stress(case, joint, reactions, forces_at(moved, load_case, pose))
-        growth = pin_growth(case, joint, reactions, over.pin_growth)
+        growth = pin_growth(case, joint, reactions, over.at(pose).pin_growth)
         return pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
 
     pose = first_largest(np.array(bent))

@@ -13,7 +13,7 @@ from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.loading import Demand, OverMotion, Real
 from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
 from alula.fea.motion.layered import forces_at, has_couples
-from alula.fea.motion.loosened import joint_growth
+from alula.fea.motion.loosened import joint_growth, most_at_each
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.statics import Equilibrium
 
@@ -55,6 +55,11 @@ def loading_over(
     def force(joint: str) -> Scatter:
         return joint_growth(moved, load_case, joint, evaluated).times(grown.joints.get(joint, Scatter()))
 
+    @cache
+    def most(joint: str) -> Real:
+        own, shape = joint_growth(moved, load_case, joint, evaluated), grown.joints.get(joint, Scatter())
+        return most_at_each(moved, load_case, joint, evaluated, own) * shape.high
+
     def through(joint: str, demand: Demand) -> Scatter:
         def of(other: CaseMotion) -> Real:
             forces = other.forces[load_case]
@@ -72,7 +77,17 @@ def loading_over(
         def hands(link: str) -> list[LinkByHand]:
             return [link_by_hand(case, link, one) for one in here(link)]
 
-        return replace(over, ways=lambda: ways(pose), loads=here, hands=hands)
+        def grows(joint: str) -> Scatter:
+            return replace(force(joint), high=float(most(joint)[pose]))
+
+        return replace(
+            over,
+            ways=lambda: ways(pose),
+            loads=here,
+            hands=hands,
+            joint_growth=grows,
+            pin_growth=lambda joint: grows(joint).times(grown.pins.get(joint, Scatter())),
+        )
 
     over = OverMotion(
         case=case,
@@ -81,6 +96,7 @@ def loading_over(
         loads=loads,
         hands=lambda link: (),
         joint_growth=force,
+        most_growth=most,
         link_growth=lambda link: Scatter() if stressed is None else stressed(load_case, link),
         growth_through=through,
         pin_growth=lambda joint: force(joint).times(grown.pins.get(joint, Scatter())),

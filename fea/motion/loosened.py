@@ -213,6 +213,42 @@ def joint_growth(
     return play.times(_spread(moved, load_case, evaluated, lambda one: float(bears(one)[evaluated].max())))
 
 
+def most_at_each(
+    moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_], growth: Scatter
+) -> NDArray[np.float64]:
+    """Return by how much the force of a joint may be larger at each pose, of itself there.
+
+    A force that is not the largest of the motion may grow by more than the largest does (``joint_growth``).
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case, joint : str
+        Their names.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    growth : Scatter
+        Of the largest force of the motion, which counts at every pose beside it.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        The high end of ``growth`` where the joint bears nothing, and at poses that do not count.
+    """
+
+    def force(one: CaseMotion) -> NDArray[np.float64]:
+        return np.asarray(np.linalg.norm(one.forces[load_case].forces[joint], axis=1))
+
+    own, loose = force(moved), loose_motion(moved)
+    counts, most = evaluated & (own > 0.0), np.ones(len(own))
+    if loose is not None:
+        most[counts] += loose.slack(load_case, f"force {joint}")[counts] / own[counts]
+    for cause in causes_over(moved, load_case, evaluated):
+        others = np.max([own, *map(force, cause.others)], axis=0)
+        most[counts] *= np.inf if cause.endless else others[counts] / own[counts]
+    return np.where(counts, np.maximum(most, growth.high), growth.high)
+
+
 def _slack_of(
     moved: CaseMotion, load_case: str, key: str, sizes: NDArray[np.float64], evaluated: NDArray[np.bool_]
 ) -> Scatter:
