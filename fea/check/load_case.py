@@ -12,6 +12,7 @@ from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.doubts.causes import COUPLES, Cause, Stated, causes_of
 from alula.fea.doubts.force_doubt import rim_doubt
 from alula.fea.doubts.load_growth import Growths, growths
+from alula.fea.doubts.narrow_holes import narrow_holes
 from alula.fea.doubts.other_case import Doubt, OtherCase, Plates, widened
 from alula.fea.doubts.play_doubt import play_at_joint
 from alula.fea.doubts.tight_pins import SharedCouples
@@ -143,7 +144,7 @@ class LoadCaseByHand:
             grown=found.bent,
             links=told,
         )
-        growth = growth.times(rim_doubt(case, load_case, moved, stated.shared, loads, told))
+        growth = growth.times(rim_doubt(case, load_case, moved, stated.shared, loads, told)).times(narrow_holes(case))
         return replace(found, growth=growth, causes=(*causes_of(stated), *doubts))
 
     @property

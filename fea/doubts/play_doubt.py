@@ -170,26 +170,7 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         low, high = min(one.low, *(pin.low for pin in held)), max(one.high, *(pin.high for pin in held))
         return Scatter(low=max(low, 0.0), high=high, sources=(source,))
 
-    narrower = _narrower(case, link, source)
-    rules = lambda value, found: with_couples(value, found).times(narrower), with_couples, alone
-    return _OnLink(answers=answers, peaks=numbers[:2], by_hand=numbers[2:], rules=rules)
-
-
-def _narrower(case: Case, link: str, source: Source) -> Scatter:
-    """Return what narrower holes than the widest, which are drawn, may make of a link's stress.
-
-    Under one force the stress about a hole is F/(d t) times what grows as the wall w about it falls: in a hole of the
-    diameter d' it is at most d/d' of that in the wider one. It is at least (r'/r)(w/w')² of it, as in a ring of the
-    mean radius r that its pin bends; it falls by less in a wall that is pulled (``docs/theory/bands.md``).
-    """
-    body, low, high = case.body(link), 1.0, 1.0
-    for pin in body.pins:
-        if pin.slot == 0.0 and pin.clearance > 0.0:
-            hole, edge = pin.pin_diameter + case.linkage.wider(link, pin.name)[0], 2.0 * body.part.wall(body, pin)
-            ring = (edge + hole) / (edge + pin.diameter)
-            low = min(low, ring * ((edge - pin.diameter) / (edge - hole)) ** 2)
-            high = max(high, pin.diameter / hole)
-    return Scatter(low=low, high=high, sources=(source,))
+    return _OnLink(answers=answers, peaks=numbers[:2], by_hand=numbers[2:], rules=(with_couples, with_couples, alone))
 
 
 def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:

@@ -20,6 +20,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, load_scatter
 from alula.fea.common.threads import bounded, bounded_run
 from alula.fea.common.verdict import CheckOutcome, overall
+from alula.fea.doubts.narrow_holes import narrow_holes
 from alula.fea.elements.space import DisplacementSpace, displacement_space
 from alula.fea.judging.linkage import unless_it_gives_way
 from alula.fea.links.clamp_edge import CLAMP_SCATTER
@@ -81,7 +82,9 @@ class _Envelope:
         held = [link for link in self.loaded if clamped_end(case.body(link)) is not None]
         edges = {(history.name, link): CLAMP_SCATTER for link in held for history in self.loaded[link]}
         self.shares: dict[tuple[str, str], Scatter] = {}
-        for doubt in (loosened(moved, evaluated), otherwise(moved, evaluated), bent, edges):
+        stress = narrow_holes(case).stress
+        holes = {(history.name, link): own for link, own in stress.items() for history in self.loaded.get(link, ())}
+        for doubt in (holes, loosened(moved, evaluated), otherwise(moved, evaluated), bent, edges):
             self.uneven = dict(self.shares)  # in the end without ``edges``
             for key, scatter in doubt.items():
                 self.shares[key] = self.shares.get(key, Scatter()).times(scatter)

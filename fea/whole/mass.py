@@ -31,15 +31,10 @@ def mass_outcomes(case: Case, found: Weighed | None) -> tuple[CheckOutcome, ...]
         others = one.check.others if isinstance(one.check, MassCheck) else None
         whole = found.total.total + (others or 0.0)
         ends = [GRAMS * (whole - found.total.part + parts) for parts in masses_by_holes(case)]
-        holes = (play_source(_plays(case)),) if ends[0] < ends[1] else ()
+        holes = (play_source(case.linkage.plays),) if ends[0] < ends[1] else ()
         total = Band.around(GRAMS * whole, (GRAMS * whole, *ends), *holes)
         outcomes.append(one.for_all(case, total, mass_reason(found, others)))
     return tuple(outcomes)
-
-
-def _plays(case: Case) -> dict[str, float]:
-    plays = {joint: case.linkage.pin_holes(joint).play for joint in case.joints}
-    return {joint: play for joint, play in plays.items() if play > 0.0}
 
 
 def mass_reason(found: Weighed, others: float | None = None) -> Reason:

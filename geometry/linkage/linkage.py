@@ -257,6 +257,12 @@ class Linkage:
         """
         return self._pin_holes[name]
 
+    @cached_property
+    def plays(self) -> Mapping[str, float]:
+        """Joint -> largest play that is stated of it [mm], of joints with any (``PinHoles.play``)."""
+        found = {name: holes.play for name, holes in self._pin_holes.items()}
+        return {name: play for name, play in found.items() if play > 0.0}
+
     def wider(self, link: str, point: str) -> tuple[float, float, float]:
         """Return how much wider than its pin a link's hole is, by what the joints there state.
 

@@ -211,10 +211,7 @@ def clearances(case: CoreCase) -> dict[str, float]:
         Joint -> diametral play [mm]; empty where the linkage has more constraints than equilibrium has equations, or
         is let go: play of slots is not followed there.
     """
-    if not _follows_play(case):
-        return {}
-    found = {name: case.linkage.pin_holes(name).play for name in case.joints}
-    return {name: play for name, play in found.items() if play > 0.0}
+    return dict(case.linkage.plays) if _follows_play(case) else {}
 
 
 def check_clearances(case: CoreCase) -> None:
@@ -329,7 +326,7 @@ def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
             what=reason("running_pins", joints=running),
             why=reason("running_is_assumed", fit=RUNNING),
         )
-    loose = [name for name in case.joints if case.linkage.pin_holes(name).play > 0.0]
+    loose = list(case.linkage.plays)
     if left := [name for name in loose if case.joints[name].fit is not None and not _follows_play(case)]:
         yield Caveat(
             topic=Topic.PLAY,

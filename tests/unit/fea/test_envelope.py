@@ -422,6 +422,7 @@ def pose_of_bearing(monkeypatch, pressed, bears, evaluated):
     """Return the pose at which two eyes are judged that are pressed so, and bear so much."""
     monkeypatch.setattr(bearing, "in_own_eyes", lambda *_: dict(zip("ab", map(np.array, pressed), strict=True)))
     monkeypatch.setattr(bearing, "pressing", lambda case, link, force: force)
+    monkeypatch.setattr(bearing, "most_grown", lambda *_: np.ones(4))
     monkeypatch.setattr(
         bearing, "eyes_bear", lambda *_: {eye: (x, Scatter()) for eye, x in zip("ab", bears, strict=True)}
     )
