@@ -134,7 +134,8 @@ def linkage_modes(
     beams = beam_answers(tight, own.held.end_forces)
 
     def solved(path: EquilibriumPath, mass: MassMatrix) -> tuple[tuple[Mode, ...], float]:
-        K, G = stiffness_parts(path, own.held.end_forces, own.guide_forces, beams)
+        more = len(path.model.guides) - len(own.model.guides)
+        K, G = stiffness_parts(path, own.held.end_forces, np.append(own.guide_forces, np.zeros(more)), beams)
         found = frame_modes(path, K + G + own.drive(path), mass, count + BASIS)
         unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
         rate = float(np.sqrt(-found.values[0])) if unstable.any() else 0.0

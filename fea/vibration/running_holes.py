@@ -74,9 +74,9 @@ def with_hinges(
     Returns
     -------
     FrameModel
-        The elements are those of ``model``; further nodes stand after the old ones.
+        The elements are those of ``model``; further nodes and guides, which bear nothing, stand after the old ones.
     """
-    nodes, elements, ties = list(model.nodes), list(model.elements), list(model.ties)
+    nodes, elements, ties, guides = list(model.nodes), list(model.elements), list(model.ties), list(model.guides)
     names = [model.name(i) for i in range(len(nodes))]
     for name, link in holes:
         [i] = np.flatnonzero(parents == frame.pin_beams[name])
@@ -84,13 +84,26 @@ def with_hinges(
         if link not in eyes:
             continue  # a shorter joint's part of the same pin is there
         side = eyes.index(link)
+        # Between a slot and hinges the node there would spin about the way across, which a slot leaves free.
+        guides += [
+            replace(guide, normal=np.cross(guide.normal, guide.axis))
+            for guide in model.guides
+            if guide.pin == ends[side] and guide.axis is not None
+        ]
         for free in ACROSS:
             ties.append(Tie(nodes=(ends[side], len(nodes)), dofs=ALL_DOFS - {free}))
             ends[side] = len(nodes)
             nodes.append(nodes[elements[i].nodes[side]])
             names.append(f"the pin at {name} in {link}")
         elements[i] = replace(elements[i], nodes=(ends[0], ends[1]))
-    return replace(model, nodes=np.array(nodes), names=tuple(names), elements=tuple(elements), ties=tuple(ties))
+    return replace(
+        model,
+        nodes=np.array(nodes),
+        names=tuple(names),
+        elements=tuple(elements),
+        ties=tuple(ties),
+        guides=tuple(guides),
+    )
 
 
 def with_low_ends(modes: Sequence[Mode], hinged: Sequence[Mode]) -> tuple[Mode, ...]:

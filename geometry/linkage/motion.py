@@ -10,9 +10,10 @@ from alula.geometry.linkage.continuation import Track, follow
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.geometry.linkage.driven import DrivenClosure
 from alula.geometry.linkage.motion_record import BLOCK, Instants, Motion
+from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose_record import Pose
 
-__all__ = ["Instants", "Motion", "ends_of", "refuse_slot_ends", "solve_motion", "still_motion"]
+__all__ = ["Instants", "Motion", "ends_of", "refuse_beyond_slots", "refuse_slot_ends", "solve_motion", "still_motion"]
 
 Real = NDArray[np.float64]
 
@@ -158,6 +159,28 @@ def refuse_slot_ends(pose: Pose, values: Real, *, coordinate: Coordinate | None 
             _refuse(motion, link, point, (slot.first, slot.last))
 
 
+def refuse_beyond_slots(pose: Pose) -> None:
+    """Refuse a pose in which a pin stands beyond an end of its slot.
+
+    Parameters
+    ----------
+    pose : Pose
+
+    Raises
+    ------
+    CaseError
+        With where the pin stands.
+    """
+    for link, record in pose.linkage.links.items():
+        for point, slot in record.slots.items():
+            x, slack = float(_along(pose.placement, link, point)), _SLACK * (slot.last - slot.first)
+            if not slot.first - slack <= x <= slot.last + slack:
+                raise CaseError(
+                    f"links.{link}.slots.{point}: its pin stands at x = {x:.6g} mm, but the slot runs from "
+                    f"{slot.first:g} to {slot.last:g} mm; lengthen the slot"
+                )
+
+
 def ends_of(values: Real) -> tuple[float, float]:
     """Return the ends of the way that a coordinate goes.
 
@@ -177,14 +200,19 @@ def ends_of(values: Real) -> tuple[float, float]:
     return float(values[0]), float(values[-1])
 
 
-def _refuse(motion: Motion, link: str, point: str, ends: tuple[float, float]) -> None:
-    from scipy.interpolate import CubicSpline
-
-    place, linkage = motion.placement, motion.linkage
+def _along(place: Placement, link: str, point: str) -> Real:
+    """Return the x at which the pin in a slot stands, in the frame of the link with the slot [mm]."""
+    linkage = place.linkage
     joint = linkage.joints_at(link, point)[0]
     other = linkage.joints[joint].links[1]
     arm = place.position(other, linkage.point_of(joint, other)) - place.origin(link)
-    along = CubicSpline(steps := np.arange(len(motion.angles)), (np.conj(place.direction(link)) * arm).real)
+    return np.asarray((np.conj(place.direction(link)) * arm).real)
+
+
+def _refuse(motion: Motion, link: str, point: str, ends: tuple[float, float]) -> None:
+    from scipy.interpolate import CubicSpline
+
+    along = CubicSpline(steps := np.arange(len(motion.angles)), _along(motion.placement, link, point))
     at = np.unique([*steps, *along.derivative().roots(extrapolate=False)])
     x, (low, high) = along(at), ends
     slack = _SLACK * (high - low)

@@ -18,7 +18,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.continuation import DeadPointError, Track
 from alula.geometry.linkage.coordinate import Measure
 from alula.geometry.linkage.driven import DrivenClosure
-from alula.geometry.linkage.motion import Motion, solve_motion
+from alula.geometry.linkage.motion import Motion, refuse_beyond_slots, solve_motion
 from alula.geometry.linkage.placement import Placement
 from alula.geometry.linkage.pose import Pose
 from alula.loads.acting.acting import loads_of
@@ -102,12 +102,16 @@ def stand(case: Case, load_case: str, masses: Mapping[str, PartMass]) -> Standin
     Raises
     ------
     CaseError
-        For a stated pose beyond a stop, and for a linkage that is let go and finds no stable balance.
+        For a stated pose beyond a stop, for one in which a pin stands beyond an end of its slot, and for a linkage that
+        is let go and finds no stable balance.
     """
     pose = case.stated_pose
     _refuse_beyond(case, pose)
     if case.pose.equilibrium:
-        return _let_go(_Way(case, case.load_cases[load_case], masses), load_case)
+        found = _let_go(_Way(case, case.load_cases[load_case], masses), load_case)
+        refuse_beyond_slots(found.pose)
+        return found
+    refuse_beyond_slots(pose)
     place, stops = pose.placement, bounds(case)
     springs = tuple(one.state(place) for one in lasting(case))
     values = {name: float(stop.value(place)) for name, stop in stops.items()}

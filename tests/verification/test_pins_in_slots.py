@@ -14,6 +14,7 @@ import pytest
 from alula.fea.pins.clearances import clearances_of, gap_over_diameter
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.standing.joint_forces import JointForces
+from alula.fea.vibration.over_motion import case_frequencies
 from alula.fea.vibration.running_holes import running_holes
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
@@ -130,6 +131,21 @@ def test_a_slot_that_may_be_wider_has_a_hinge_in_frequencies():
     assert running_holes(lever(None, tight_in="crank")) == (("S", "lever"),)
     assert running_holes(lever("0.1 mm", tight_in="crank")) == (("S", "lever"),)
     assert running_holes(lever("0.1 mm")) == (("S", "lever"), ("S", "crank"))
+
+
+@pytest.mark.parametrize("force", [0.01, 20.0])
+def test_a_pin_between_slot_and_hinge_does_not_spin(force):
+    """With all other holes tight the lever's sway hardly knows the tilt of the pin; a wider slot weighs less."""
+    tight, loose = (lever(slot, tight_in="crank") for slot in ("0 mm", "0.1 mm"))
+    found = []
+    for case in (tight, loose):
+        [load] = case.load_cases["push"].forces
+        pushed = load.model_copy(update={"force": (force, 0.0)})
+        push = case.load_cases["push"].model_copy(update={"forces": (pushed,), "own_weight": False})
+        [history] = case_frequencies(case.model_copy(update={"load_cases": {"push": push}}), count=2).histories.values()
+        found.append([mode.frequency for mode in history.lowest.modes])
+    for held, tilts in zip(*found, strict=True):
+        assert 0.9 * held.low < tilts.low < tilts.value < 1.01 * held.value
 
 
 def test_heads_hold_no_link_at_its_slot():
