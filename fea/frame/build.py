@@ -40,8 +40,8 @@ TIED_TURNS = (frozenset(TURNS), frozenset((Way.ABOUT_ALONG, Way.ABOUT_ACROSS)))
 ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
-"""How many times the section of the stiffest part that of a link without part has in large displacements; in small ones
-it does not give (``FrameElement.rigid``)."""
+"""How many times as stiff as the stiffest and shortest part a link without part is, however long, where displacements
+are large and in vibration; in small displacements it does not give (``FrameElement.rigid``)."""
 YIELDS_NOT = 3e3
 """How many times less a beam bends where a clamp holds it than all of it would, in large displacements, which puts the
 tip of a cantilever 0.1 % too far; in small ones it does not give. Measured on a portal frame with clamps of 0.5 % to
@@ -442,10 +442,12 @@ class _Builder:
         links = self.case.bending_links
         young = max(self.case.material_of(link).youngs_modulus for link in links)
         sections = [self.case.part_of(link).section for link in links]
-        second = RIGID * max(max(s.i_y, s.i_z) for s in sections)
         size, apart = max(s.half_y for s in sections), float(np.linalg.norm(self.places[b] - self.places[a]))
+        spans = [span for span in map(self.case.linkage.span, links) if span > 0.0]
+        longer = max(apart / min(spans, default=apart or 1.0), 1.0)
+        second = RIGID * longer**3 * max(max(s.i_y, s.i_z) for s in sections)
         section = Section(
-            area=RIGID * max(s.area for s in sections),
+            area=RIGID * longer * max(s.area for s in sections),
             i_y=second,
             i_z=second,
             torsion=2.0 * second,

@@ -187,13 +187,25 @@ class Linkage:
     @cached_property
     def longest(self) -> float:
         """The greatest distance between two points of one link [mm]: the linkage's length scale."""
-        spans = []
-        for link in self.links.values():
-            xy = np.array(list(link.points.values()))
-            spans.append(float(np.max(np.linalg.norm(xy[:, None] - xy[None], axis=-1))))
-        if max(spans) == 0.0:
+        longest = max(map(self.span, self.links))
+        if longest == 0.0:
             raise CaseError("links: all points of every link coincide; give the links a length")
-        return max(spans)
+        return longest
+
+    def span(self, link: str) -> float:
+        """Return the greatest distance between two points of a link.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        float
+            [mm]
+        """
+        xy = np.array(list(self.links[link].points.values()))
+        return float(np.max(np.linalg.norm(xy[:, None] - xy[None], axis=-1)))
 
     @cached_property
     def mobility(self) -> int:

@@ -146,3 +146,35 @@ def test_a_linkage_that_is_let_go_does_not_leave_its_slot():
                 solve_case_statics(validate(data))
         else:
             assert solve_case_statics(validate(data))
+
+
+STRUT = f"""
+schema_version = 1
+title = "A long lever without part stands on a short strut"
+carried = [{{ link = "lever", at = "E", mass = "100 g" }}]
+links.base = {{ ground = true, points = {{ O = ["0 mm", "0 mm"], G = ["30 mm", "-25 mm"] }} }}
+links.strut = {{ part = "bar", points = {{ G = ["0 mm", "0 mm"], B = ["20 mm", "0 mm"] }} }}
+links.lever = {{ points = {{ O = ["0 mm", "0 mm"], E = ["500 mm", "0 mm"] }} }}
+joints.O = {{ links = ["base", "lever"], pin_diameter = "2 mm" }}
+joints.G = {{ links = ["base", "strut"], pin_diameter = "2 mm" }}
+joints.B = {{ type = "pin-in-slot", links = ["lever", "strut"], points = ["O", "B"], pin_diameter = "2 mm" }}
+drive = {{ link = "strut", joint = "G" }}
+pose = {{ coordinate = "strut", angle = "50 deg", near = {{ lever = "0 deg" }} }}
+load_cases.hang = {{ own_weight = false, forces = [{{ link = "lever", at = "E", force = ["0 N", "-0.01 N"] }}] }}
+{STIFF.replace("YOUNG", "70")}
+"""
+
+
+def test_a_link_without_part_does_not_give_however_long_it_is():
+    """The strut bends, is pressed and sheared (Cowper's κ) by a force across the lever; the lever alone would sag."""
+    B = 30.0 + 20.0 * math.cos(math.radians(50.0)), -25.0 + 20.0 * math.sin(math.radians(50.0))
+    across = math.atan2(B[1], B[0]) + math.pi / 2.0 - math.radians(50.0)
+    young, poisson, area, inertia = 70e3, 0.3, 5.0 * 3.0, 3.0 * 5.0**3 / 12.0
+    kappa, shear = 10.0 * (1.0 + poisson) / (12.0 + 11.0 * poisson), young / 2.0 / (1.0 + poisson)
+    bent = 20.0**3 / 3.0 / young / inertia + 20.0 / kappa / shear / area
+    gives = math.sin(across) ** 2 * bent + math.cos(across) ** 2 * 20.0 / young / area
+    expected = math.hypot(*B) / 500.0 / math.sqrt(gives * 1e-4) / 2.0 / math.pi
+    [history] = case_frequencies(validate(tomllib.loads(STRUT)), count=2).histories.values()
+    first, second = (mode.frequency.value for mode in history.lowest.modes)
+    assert first == pytest.approx(expected, rel=5e-3)
+    assert second > 10.0 * first
