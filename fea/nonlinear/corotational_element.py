@@ -19,7 +19,7 @@ loads do along it, the potential. So it is differentiated by nine variables, the
 the first and the spins of both, and the twelve of the nodes follow.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -29,6 +29,7 @@ from alula.fea.beam.deflection import flexibility
 from alula.fea.frame.model import FrameModel, Guide
 from alula.fea.frame.system import line_load_effect, natural_flexibility
 from alula.fea.nonlinear.jet import EPSILON, Bilinear, Jet, cross, dot, stack, unit
+from alula.fea.nonlinear.kinematic_chain import changes_of
 from alula.geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -192,22 +193,31 @@ class CorotationalElements:
         triads = stack(*(_turned(rotations[:, k], self.axes.swapaxes(1, 2), _SPINS[k]) for k in range(2)))
         e3 = unit(cross(e1, triads.map(_MEAN_Y)))
         axes = stack(e1, cross(e3, e1), e3)
-        angles = _rotation_vectors(axes, triads)
-        lengthening = dot(chord, chord).power(0.5)
-        # From the ends' difference in displacement, so that no rounding error of the positions comes in.
+        grown, sines = self._from_changes(displacements, rotations)
+        angles = _rotation_vectors(axes, triads, sines)
+        lengthening = replace(dot(chord, chord).power(0.5), value=grown)
+        lengthening = lengthening + angles.form(_BOWING).times(self.lengths[:, None] / 30.0)
+        return stack(lengthening, angles.map(_NATURAL)), axes
+
+    def _from_changes(self, displacements: Floats, rotations: Floats) -> tuple[Floats, Floats]:
+        """Lengthening (m, 1) and sines (m, 6) of the ends' turns, from what has changed alone.
+
+        Lengths and axes as they are differ from those at rest by less than they round, where loads are small.
+        """
+        length, (x, y, z) = self.lengths[:, None], self.axes.transpose(2, 0, 1)
+        turned = changes_of(rotations)
         parted = displacements[:, 1] - displacements[:, 0]
         for end, sign in ((0, -1.0), (1, 1.0)):
-            parted = parted + sign * np.einsum("mij,mj->mi", rotations[:, end] - np.eye(3), self.arms[:, end])
-        length = self.lengths[:, None]
-        original = length * self.axes[:, :, 0]
-        grown = ((2.0 * original + parted) * parted).sum(axis=1, keepdims=True)
-        lengthening = Jet(
-            value=grown / (lengthening.value + length),
-            gradient=lengthening.gradient,
-            hessian=lengthening.hessian,
-        )
-        lengthening = lengthening + angles.form(_BOWING).times(length / 30.0)
-        return stack(lengthening, angles.map(_NATURAL)), axes
+            parted = parted + sign * np.einsum("mij,mj->mi", turned[:, end], self.arms[:, end])
+        grown, along = _stretched(length, x, parted)
+        triads = np.concatenate([(turned[:, k] @ self.axes).swapaxes(1, 2).reshape(-1, 9) for k in range(2)], axis=1)
+        mean = triads @ _MEAN_Y.T
+        tilted = 2.0 * np.cross(along, y) + np.cross(x + along, mean)
+        _, across = _stretched(2.0, z, tilted)
+        upright = np.cross(across, x + along) + np.cross(z, along)
+        axes = np.hstack([along, upright, across])
+        still, both = np.hstack([x, y, z]), np.hstack([x, y, z, x, y, z])
+        return grown, _sines.of(still + axes, triads) + _sines.of(axes, both)
 
     def _arm(self, end: int, rotations: Floats) -> Jet:
         """From a node to its end of a beam."""
@@ -267,7 +277,7 @@ _sines = Bilinear(_SINES)
 
 
 def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[float, ElementResponse]:
-    """Return the gap d · n or a · n of a guide.
+    """Return the gap d · n or a · n of a guide, which is 0 as the frame stands.
 
     Parameters
     ----------
@@ -286,6 +296,9 @@ def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[f
     normal = _turned(rotations[None, 0], guide.normal[None, None], _SPINS[0])
     if guide.axis is not None:
         gap = dot(_turned(rotations[None, 1], guide.axis[None, None], _SPINS[1]), normal)
+        turned, leant = changes_of(rotations) @ np.array([guide.normal, guide.axis])[:, :, None]
+        from_changes = turned[:, 0] @ (guide.axis + leant[:, 0]) + guide.normal @ leant[:, 0]
+        gap = replace(gap, value=np.array([[from_changes]]))
     else:
         apart = _constant(displacements[None, 1] - displacements[None, 0])
         apart.gradient[0, :, :3] = np.eye(3)
@@ -366,12 +379,23 @@ for _i in range(3):
         _TWICE[_i, _i, _j, _j] -= 1.0
 
 
-def _rotation_vectors(axes: Jet, triads: Jet) -> Jet:
-    """Rotation vectors (m, 6), in the element's axes, that turn these axes into both triads; below a right angle."""
+def _stretched(length: float | Floats, direction: Floats, change: Floats) -> tuple[Floats, Floats]:
+    """By how much vectors of a length and a direction (m, 3) lengthen, (m, 1), and what their directions gain."""
+    gained = ((2.0 * length * direction + change) * change).sum(axis=1, keepdims=True)
+    after = np.sqrt(length**2 + gained)
+    longer = gained / (after + length)
+    return longer, (change - longer * direction) / after
+
+
+def _rotation_vectors(axes: Jet, triads: Jet, sines: Floats) -> Jet:
+    """Rotation vectors (m, 6), in the element's axes, that turn these axes into both triads; below a right angle.
+
+    ``sines`` (m, 6) are the values of those that ``_sines`` gives of both.
+    """
     traces = np.einsum("mi,mki->mk", axes.value, triads.value.reshape(-1, 2, 9))
     if np.any(traces <= 1.0 + 1e-3):
         raise CannotRunError("a beam bends by a right angle within one element; divide it into more elements")
-    sine = _sines(axes, triads).rows(3)
+    sine = replace(_sines(axes, triads), value=sines).rows(3)
     s = dot(sine, sine)
     return (sine * s.apply(*_arc_sine_ratio(s.value))).rows(6)
 

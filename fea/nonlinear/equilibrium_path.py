@@ -10,7 +10,7 @@ from alula.fea.frame.model import FrameModel, Guide
 from alula.fea.frame.spring import FrameSpring
 from alula.fea.nonlinear.corotational_element import CorotationalElements, ElementResponse, guide_gap
 from alula.fea.nonlinear.jet import Jet
-from alula.fea.nonlinear.kinematic_chain import KinematicChain, Places
+from alula.fea.nonlinear.kinematic_chain import KinematicChain, Places, changes_of
 from alula.fea.nonlinear.springs import SpringForces
 from alula.geometry.base.errors import CannotRunError
 
@@ -255,13 +255,14 @@ class EquilibriumPath:
         left, tangent = self.balance(state, factor)
         rate = -self._solve(tangent, self.balance(state, factor + 1.0)[0] - left)
         largest = float(np.abs(rate[: len(unit)] / unit).max(initial=0.0))
-        if largest < _TOLERANCE:  # as of a force straight into the ground
+        if largest == 0.0:  # as of a force straight into the ground
             return _Course(rate=rate, bend=np.zeros_like(rate), length=1.0)
         t, kept = _DIFFERENCE / largest, (self._at, self._balanced)
-        ahead, behind = (self.balance(self._moved(state, d * rate), factor + d)[0] for d in (t, -t))
+        moved = [self._moved(state, d * rate) for d in (t, -t)]
+        ahead, behind = (self.balance(one, factor + d)[0] for one, d in zip(moved, (t, -t), strict=True))
         self._at, self._balanced = kept
         parted = ahead - 2.0 * left + behind
-        if self._measure(parted) <= self._rounding(state):
+        if self._measure(parted) <= self._rounding(moved[0]):
             return _Course(rate=rate, bend=np.zeros_like(rate), length=1.0)
         bend = -self._solve(tangent, parted) / t**2
         allowed = np.abs(rate[: len(unit)] / unit) + _SLOW * largest
@@ -289,7 +290,7 @@ class EquilibriumPath:
             try:
                 residual, tangent = self._ahead(state, factor, ahead)
                 size = self._measure(residual)
-                if size <= max(_TOLERANCE * factor, self._rounding(state)):
+                if size <= max(_TOLERANCE * factor, min(self._rounding(state), _MOST_ROUNDING)):
                     _, tangent = self.balance(state, factor)
                     tangents = (tangents + self._solve(tangent, self.balance(state, self.reached)[0])) / 2.0
                     moved = state.displacements - self.state.displacements
@@ -353,7 +354,8 @@ class EquilibriumPath:
         k = self.elements.stiffness
         stretched = k[:, 0, 0].max() * np.abs(state.displacements).max()
         bent = (k[:, [1, 3], [1, 3]].max(axis=1) / self.elements.lengths).max()
-        return min(_ROUNDINGS * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
+        turned = np.abs(changes_of(state.rotations)).max()
+        return _ROUNDINGS * float(np.finfo(float).eps * (stretched + bent * turned)) / self.scale
 
     def _measure(self, residual: Floats) -> float:
         """Largest force left over, over the sum of the loads; or gap of a guide, over the frame's size or in rad."""

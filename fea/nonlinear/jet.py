@@ -266,6 +266,10 @@ class Bilinear:
             hessian=_combined(by_a, a.hessian) + _combined(by_b, b.hessian) + mixed + mixed.swapaxes(2, 3),
         )
 
+    def of(self, a: Floats, b: Floats) -> Floats:
+        """Return the sums of values (m, c) and (m, e) alone."""
+        return np.asarray(np.einsum("dce,mc,me->md", self.tensor, a, b, optimize=True))
+
     @cached_property
     def _pairs(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """(d, n) each: the components whose products stand in each sum; all sums have as many."""

@@ -306,3 +306,23 @@ def rotations_of(vectors: Floats) -> Floats:
     # np.sinc(t) is sin(πt)/(πt); (1 - cos a)/a² is half the square of sin(a/2)/(a/2).
     half = np.sinc(angle / (2.0 * np.pi))
     return np.asarray(np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * half**2 * (skew @ skew))
+
+
+def changes_of(rotations: Floats) -> Floats:
+    """Return rotation matrices less the unit matrix, however small the turns are.
+
+    With the antisymmetric part W = sin t N of a turn by t, R - 1 is W + W²/(1 + cos t). The diagonal of R has lost the
+    second term where t² is below its rounding. From a right angle on nothing cancels.
+
+    Parameters
+    ----------
+    rotations : ndarray, shape (..., 3, 3)
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+    """
+    cosine = (np.trace(rotations, axis1=-2, axis2=-1)[..., None, None] - 1.0) / 2.0
+    skew = (rotations - rotations.swapaxes(-1, -2)) / 2.0
+    small = skew + skew @ skew / (1.0 + np.maximum(cosine, 0.0))
+    return np.where(cosine > 0.0, small, rotations - np.eye(3))

@@ -476,6 +476,8 @@ def _deformed(
     if times * small.share > LARGE:
         share, where, limit = small.share, small.where, LARGE / times
         why = reason("moves_too_far", linear=small.linear, where=where, share=share, span=small.span, limit=limit)
+    elif min(small.buckling, small.dead_point) >= small.linear_from:
+        why = reason("far_by_linear_theory")
     elif small.buckling <= small.dead_point:
         why = reason("buckles_too_near", factor=small.buckling, limit=small.linear_from)
     else:

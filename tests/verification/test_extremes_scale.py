@@ -9,12 +9,13 @@ from arm_case import ARM
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
+from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.links.solid_result import link_task
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field, von_mises
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
-from alula.loads.case.case_file import validate
+from alula.loads.case.case_file import read_case, validate
 from alula.loads.records.bearing import WIDE
 
 MATERIAL = """
@@ -83,6 +84,25 @@ def test_solid_in_any_scale(solid, size, force, young):
 @pytest.mark.parametrize("young", [1e-3, 1e6])
 def test_whole_check_by_hand_in_any_scale(size, force, young):
     np.testing.assert_allclose(by_hand(size, force, young), by_hand(1.0, 1.0, 2900.0), rtol=1e-9)
+
+
+def four_bar(force):
+    """Verdicts of the built-in case's checks, displacements over the force, and factors times it."""
+    overrides = [f'load_cases.lift.forces=[{{link="rocker", at="P", force=["0 N", "{-force!r} N"]}}]']
+    case = read_case("four-bar", [*overrides, "load_cases.lift.own_weight=false"])
+    found = check_case(case, fidelity="beam").load_cases["lift"]
+    moves = {Quantity.DEFLECTION: 1.0 / force}
+    values = [one.value.value * moves.get(one.quantity, force) for one in found.checks]
+    return [one.verdict for one in found.checks], values
+
+
+def test_factors_of_a_linkage_are_in_proportion_however_small_its_load():
+    verdicts, values = four_bar(1e-3)
+    assert Verdict.PASS in verdicts
+    for force in (1e-9, 1e-10):
+        found = four_bar(force)
+        assert found[0] == verdicts
+        assert found[1] == pytest.approx(values, rel=1e-3, nan_ok=True)
 
 
 def test_one_thread_repeats_to_the_last_bit_and_two_to_rounding(solid):

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from alula.fea.frame.model import FrameElement, FrameModel
-from alula.fea.nonlinear.corotational_element import CorotationalElements
+from alula.fea.frame.model import FrameElement, FrameModel, Guide
+from alula.fea.nonlinear.corotational_element import CorotationalElements, guide_gap
 from alula.geometry.parts.part import rectangle
 
 MODEL = FrameModel(
@@ -59,6 +59,19 @@ def test_rigid_motion_strains_nothing(rigid: np.ndarray, shift: np.ndarray) -> N
     displacements, rotations = placed(np.zeros(12), rigid, np.zeros(12))
     deformations, _ = ELEMENT.natural(displacements + 100 * shift, rotations)
     assert np.abs(deformations.value).max() < 1e-12
+
+
+@pytest.mark.parametrize("angle", [1e-4, 1e-8, 1e-12])
+def test_small_rigid_turns_strain_nothing_in_proportion(angle: float) -> None:
+    """Of a beam with arms, and of a guide's axis; though what it moves along itself is below the rounding of R."""
+    normal, axis = np.array([0.8, -0.6, 0.0]), np.array([0.36, 0.48, 0.8])
+    turn = np.array([[0.0, -0.64, -0.6], [0.64, 0.0, -0.48], [0.6, 0.48, 0.0]])
+    change = np.sin(angle) * turn + 2.0 * np.sin(angle / 2.0) ** 2 * turn @ turn
+    rotations = np.tile(np.eye(3) + change, (1, 2, 1, 1))
+    deformations, _ = ELEMENT.natural((MODEL.nodes @ change.T)[None], rotations)
+    assert np.abs(deformations.value).max() < 1e-13 * angle
+    gap, _ = guide_gap(Guide(carrier=0, pin=1, normal=normal, axis=axis), np.zeros((2, 3)), rotations[0])
+    assert abs(gap) < 1e-15 * angle
 
 
 def test_tangent_at_rest_is_the_linear_stiffness() -> None:

@@ -1,9 +1,11 @@
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from alula.fea.frame.build import build_frame
 from alula.fea.frame.linear import solve_frame
 from alula.fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
 from alula.fea.nonlinear.corotational import solve_large_displacement, subdivide
@@ -11,6 +13,8 @@ from alula.fea.nonlinear.equilibrium_path import EquilibriumPath, UnfollowedErro
 from alula.fea.nonlinear.stability import buckling_factor
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.parts.part import rectangle, ring
+from alula.loads.case.case_file import read_case
+from alula.loads.states.actions import acting_loads
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)
@@ -70,6 +74,26 @@ def test_small_loads_give_the_linear_frame() -> None:
         assert forces < 0.1 * np.sqrt(force)
     assert differences[1] < 2e-3
     assert differences[1] == pytest.approx(differences[0] / 10, rel=0.1)
+
+
+def slider_crank(force: float) -> FrameModel:
+    """The built-in case in its layers, where guides hold the slider."""
+    case = read_case("slider-crank")
+    loads = acting_loads(case, case.load_cases["push"], case.solve_pose().placement, {})
+    model = build_frame(case, case.solve_pose(), loads, held=case.pinned_drive).model
+    return replace(model, loads=tuple(replace(one, wrench=force * one.wrench) for one in model.loads))
+
+
+@pytest.mark.parametrize("frame", [four_bar, slider_crank])
+def test_answers_are_in_proportion_to_loads_however_small(frame: Callable[[float], FrameModel]) -> None:
+    """Turns far below the rounding of a rotation matrix leave forces that balance all the same."""
+    assert solve_large_displacement(frame(1e-5), 2).residual < 1e-8
+    small = solve_large_displacement(frame(1e-8), 2)
+    for force in (1e-9, 1e-11, 1e-13, 1e-15):
+        found, times = solve_large_displacement(frame(force), 2), 1e-8 / force
+        for name in ("displacements", "end_forces", "joint_wrenches"):
+            one, other = getattr(small, name), times * getattr(found, name)
+            assert other == pytest.approx(one, rel=0.0, abs=1e-6 * np.abs(one).max()), name
 
 
 def test_reactions_balance_the_loads_on_the_deformed_shape() -> None:

@@ -16,7 +16,8 @@ from alula.fea.common.verdict import LINKAGE, Verdict
 from alula.fea.frame.build import build_frame
 from alula.fea.nonlinear.corotational import solve_large_displacement
 from alula.fea.nonlinear.deformed_links import balanced, bent, in_slots
-from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, examine
+from alula.fea.nonlinear.equilibrium_path import NoEquilibriumError
+from alula.fea.nonlinear.large_displacement import LEAST_FACTOR, examine, with_growth
 from alula.fea.nonlinear.softened import PATH_SUBDIVISIONS, displaced, followed
 from alula.fea.nonlinear.stability import LARGE, span
 from alula.fea.standing.case_statics import solve_case_statics
@@ -102,6 +103,19 @@ def test_no_load_is_so_large_that_its_path_jumps_over_the_snap_through(times):
     assert found.state == "no equilibrium"
     assert times * found.held == pytest.approx(0.203, rel=0.03)
     assert times * found.held < 0.205 <= times * found.lost + 1e-3
+
+
+def test_what_gives_way_against_linear_theory_is_not_told_to_be_too_near_for_it(monkeypatch):
+    case = under([0, -0.125], *HELD_AT_GF)
+    small, loads = examined(case)
+
+    def snaps(frame, factor):
+        raise NoEquilibriumError(0.25, 0.5, buckled=False)
+
+    monkeypatch.setattr("alula.fea.nonlinear.large_displacement.followed", snaps)
+    found = told(with_growth(case, "weight", small, loads).reason)
+    assert found.startswith("linear theory finds the linkage far from buckling and from a dead point; on its deformed")
+    assert "too near" not in found
 
 
 def test_its_verdict_is_fail_and_the_undeformed_figures_stay():
