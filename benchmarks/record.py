@@ -26,15 +26,15 @@ def circumstances() -> dict[str, Any]:
         "machine": f"{platform.machine()}, {os.cpu_count()} cores",
         "processor": processor(),
         "load_average": round(LOAD, 2),
-        "alula": {"version": version("alula"), "sources": sources()},
+        "alula": {"version": version("alula")} | sources(),
         "versions": f"Python {platform.python_version()}, "
         + ", ".join(f"{name} {version(name)}" for name in ("alula", "numpy", "scipy", "scikit-fem", "gmsh")),
     }
 
 
-def sources() -> str:
-    """Digest of all of alula's own sources: a result of others is older than the code."""
-    return sources_digest(("geometry", "loads", "fea", "reports"))
+def sources() -> dict[str, str]:
+    """Digests of alula's own sources: of all that compute, and of the commands and pages around them."""
+    return {"sources": sources_digest(), "commands": sources_digest(("reports",))}
 
 
 def stamp(record: dict[str, Any]) -> str:

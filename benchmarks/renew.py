@@ -32,6 +32,8 @@ COMMANDS: dict[str, list[str]] = {
     PAGES: ["pages"],
 }
 """Result -> what makes it anew, as a module and its arguments."""
+COMMANDED = frozenset(("stages", "page", "workbench", "commits"))
+"""Results that run whole commands, pages or the workbench: these stand on ``reports``, too."""
 
 
 def results() -> dict[str, dict[str, Any]]:
@@ -48,15 +50,18 @@ def older(record: dict[str, Any], version: str) -> str:
     return "" if made["version"] == version else f"of alula {made['version']}"
 
 
-def stale(record: dict[str, Any], version: str, digest: str) -> str:
-    """Return why a result is older than the code; empty where it is not."""
-    return older(record, version) or ("" if record["alula"]["sources"] == digest else "sources have changed since")
+def stale(name: str, record: dict[str, Any], version: str, now: dict[str, str]) -> str:
+    """Return why a result is older than the code that it runs; empty where it is not."""
+    if why := older(record, version):
+        return why
+    changed = [kind for kind in ("sources", "commands") if record["alula"].get(kind) != now[kind]]
+    return f"{changed[0]} have changed since" if changed and (name in COMMANDED or changed != ["commands"]) else ""
 
 
 def main() -> None:
     """List, or renew what is named."""
-    found, version, digest = results(), alula_version(), sources()
-    why = {name: stale(record, version, digest) for name, record in found.items()}
+    found, version, now = results(), alula_version(), sources()
+    why = {name: stale(name, record, version, now) for name, record in found.items()}
     names = sys.argv[1:]
     if not names:
         for name, record in found.items():

@@ -13,9 +13,10 @@ from programs import ROOT
 
 from benchmarks import calibration, eye_limits, tables
 from benchmarks.record import RESULTS, printed
-from benchmarks.renew import older, results, stale
+from benchmarks.renew import COMMANDED, older, results, stale
 
-OF = {"alula": {"version": "1.0", "sources": "ab"}}
+NOW = {"sources": "ab", "commands": "12"}
+OF = {"alula": {"version": "1.0"} | NOW}
 
 
 @pytest.mark.parametrize("name", list(tables.SECTIONS))
@@ -56,11 +57,26 @@ def test_a_result_notes_when_and_by_which_version_it_was_made(file: Path) -> Non
         ({}, "it was made before results noted their sources"),
         ({"alula": {"version": "0.9", "sources": "ab"}}, "of alula 0.9"),
         ({"alula": {"version": "1.0", "sources": "cd"}}, "sources have changed since"),
+        ({"alula": {"version": "1.0", "sources": "cd", "commands": "12"}}, "sources have changed since"),
     ],
 )
 def test_a_result_is_older_than_the_code(record: dict[str, dict[str, str]], why: str) -> None:
-    assert stale(record, "1.0", "ab") == why
+    assert stale("stages", record, "1.0", NOW) == stale("draws", record, "1.0", NOW) == why
     assert older(record, "1.0") == ("" if record and record["alula"]["version"] == "1.0" else why)
+
+
+def test_of_a_changed_command_only_results_that_run_commands_are_older() -> None:
+    changed = {"alula": OF["alula"] | {"commands": "34"}}
+    assert [stale(name, changed, "1.0", NOW) for name in ("draws", "stages")] == ["", "commands have changed since"]
+
+
+def test_results_that_run_commands_pages_or_the_workbench_are_known() -> None:
+    """They name the package or run the program; what only words a number or a sentence by it is none."""
+    running = re.compile(r'alula\.reports\.(?!sentences|words)|"alula", "check"|run\(\[alula, ')
+    files = {
+        file.stem for file in (ROOT / "benchmarks").glob("*.py") if running.search(file.read_text(encoding="utf-8"))
+    }
+    assert files & set(results()) == COMMANDED
 
 
 @pytest.mark.parametrize(

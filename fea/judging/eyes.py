@@ -107,11 +107,10 @@ def _modes(
     """Return what an eye bears in each mode for all that its clearance and yield strength may be, and those eyes."""
     material, body = case.material_of(link), case.body(link)
     ring, eyes = body.ring(pin), []
-    own, hole = strength_scatter(material), case.linkage.pin_holes(joints[0])[link]
+    own, clearances = strength_scatter(material), _clearances(case, link, joints)
     pin_yield = min(case.pin_material(joint).yield_strength or math.inf for joint in joints)
     assert material.yield_strength is not None
-    clearances = (hole.nominal, hole.low, hole.high if math.isfinite(hole.high) else hole.nominal)
-    play = (play_source({joints[0]: clearances[2]}),) if clearances[1] < clearances[2] else ()
+    play = (play_source(dict.fromkeys(joints, clearances[2])),) if clearances[1] < clearances[2] else ()
     found = []
     for clearance, share in itertools.product(clearances, (1.0, own.low, own.high)):
         eye = RoundEye(
@@ -130,6 +129,18 @@ def _modes(
             found.append(en_1993_1_8(eye, strength, pin_yield))
     bands = {mode: Band.around(found[0][mode], tuple(x[mode] for x in found), *own.told, *play) for mode in found[0]}
     return bands, eyes
+
+
+def _clearances(case: Case, link: str, joints: Sequence[str]) -> tuple[float, float, float]:
+    """Return how much wider than its pin an eye's hole is in the middle, at least and at most [mm].
+
+    It is one hole: of joints that state it differently each end is that of the loosest.
+    """
+    every = [case.linkage.pin_holes(joint)[link] for joint in joints]
+    holes = [hole for hole in every if hole.stated] or every
+    ends = [(hole.nominal, hole.low, hole.high if math.isfinite(hole.high) else hole.nominal) for hole in holes]
+    middle, least, most = map(max, zip(*ends, strict=True))
+    return middle, least, most
 
 
 def _shank_width(body: Body, point: str) -> float:

@@ -84,10 +84,13 @@ class Store:
         CannotRunError
             Where the disk refuses. What was finished before stands.
         """
-        held = None
         try:
             folder.mkdir(parents=True, exist_ok=True)
             held = locked(folder, wait=False)
+        except OSError as error:
+            told = f"output: '{folder}' cannot be written ({error.strerror}); choose another"
+            raise unwritable(told, error) from None
+        try:
             if held is None and _can_lock():
                 raise CaseError(
                     f"output: another study is writing to '{folder}'; wait for it, or choose another folder"
@@ -96,9 +99,6 @@ class Store:
                 store._require_known(folder)
                 store._prepare()
                 yield store
-        except OSError as error:
-            told = f"output: '{folder}' cannot be written ({error.strerror}); choose another"
-            raise unwritable(told, error) from None
         finally:
             if held is not None:
                 os.close(held)

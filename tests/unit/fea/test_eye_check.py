@@ -112,6 +112,30 @@ def test_each_load_case_has_its_worst_eye(narrow, thin):
     assert f"{EyeMode.BEARING} of the eye at {thin}" in told(pushed.reason)
 
 
+@pytest.mark.parametrize("tight", ["first", "second"])
+def test_a_hole_about_which_two_joints_turn_is_as_wide_as_the_loosest_of_them_says(tight):
+    """A third bar turns about the pin at B; the hole of the level one is 5.4 to 5.6 mm wide."""
+    clearances = {"first": ["0.1 mm", "0.2 mm"], "second": ["0.4 mm", "0.6 mm"]}
+    narrow, wide = clearances.values() if tight == "first" else reversed(clearances.values())
+
+    def third(tables):
+        plain = tables["joints"]["O"]
+        tables["links"]["frame"]["points"]["Q"] = ["0 mm", "60 mm"]
+        for name, first in (("post", "B"), ("stay", "Q")):
+            tables["links"][name] = {"part": "bar", "points": {first: ["0 mm", "0 mm"], "D": ["60 mm", "0 mm"]}}
+        tables["joints"] |= {"Q": plain | {"links": ["frame", "stay"]}, "D": plain | {"links": ["post", "stay"]}}
+        tables["joints"]["C"] = plain | {"links": ["level", "post"], "points": ["B", "B"], "clearance": {"level": wide}}
+        tables["joints"]["B"]["clearance"] = {"level": narrow}
+        tables["pose"]["near"] |= {"post": "90 deg", "stay": "0 deg"}
+        tables["checks"]["eye"]["standard"] = "EN 1993-1-8"
+
+    [bears] = [one for one in strengths(eyes(third), "level", eyes(third).checks["eye"]) if one.name == "B"]
+    side = bears.modes[EyeMode.SIDE]
+    hole = [2.0 * 2.0 * 240.0 * ((12.0 - wide) / 2.0 - wide / 3.0) for wide in (5.5, 5.4, 5.6)]
+    assert (side.value, side.high, side.low) == pytest.approx(hole, rel=1e-3)
+    assert SourceKind.PLAY in {source.kind for source in side.sources}
+
+
 def test_the_band_holds_loads_strength_and_clearance():
     def scattered(tables):
         tables["load_cases"]["pull"]["scatter"] = [0.8, 1.25]

@@ -157,6 +157,17 @@ def test_a_finished_point_is_whole_or_not_there_when_the_disk_is_full(tmp_path):
     assert [len(a.numbers) for _, _, a, _ in rows] == [1, 2000, 2000]
 
 
+def test_what_the_system_refuses_while_a_study_runs_is_not_blamed_on_its_folder(tmp_path):
+    """A folder that cannot be made is the user's to change; another missing file is not."""
+    with pytest.raises(FileNotFoundError, match="a library"), Store.writing(tmp_path):
+        raise FileNotFoundError(2, "a library is missing")
+    (tmp_path / "file").touch()
+    with pytest.raises(CaseError, match="cannot be written"), Store.writing(tmp_path / "file" / "below"):
+        pass
+    with Store.writing(tmp_path):
+        pass
+
+
 def test_who_may_write(tmp_path):
     """One at a time; no other study, no file of something else, no newer version. Whoever looks may look."""
     run(tmp_path, Desk(passed))
