@@ -1,10 +1,12 @@
 """What a user may type or have set: each time one sentence and the status that goes with it, or the usual output."""
 
+import errno
 import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
+from unittest.mock import patch
 
 import programs
 import pytest
@@ -17,6 +19,7 @@ from alula.loads.case.case_file import read_case, read_text, validate
 from alula.loads.plans.plan import plan_of
 from alula.loads.plans.variants import Variants
 from alula.loads.text.nesting import DEEPEST
+from alula.reports.commands import ending
 from alula.reports.commands.cli import app
 from alula.reports.notebook.check_report import CheckReport
 
@@ -146,6 +149,42 @@ def test_a_folder_without_a_name_in_python(tmp_path: Path, monkeypatch: pytest.M
         with pytest.raises(CaseError, match="the name of the folder is empty"):
             call()
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("command", [("check",), ("open", "--no-browser")])
+def test_a_case_in_a_folder_that_may_not_be_entered(
+    command: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One command said that there is no such file, the other to free space on the disk."""
+    place, stat = tmp_path / "lock" / "f.toml", Path.stat
+
+    def refuse(path: Path, **options: Any) -> Any:
+        if path == place:
+            raise PermissionError(13, "Permission denied", str(path))
+        return stat(path, **options)
+
+    monkeypatch.setattr(Path, "stat", refuse)
+    told = refused(command[0], str(place), *command[1:], folder=tmp_path)
+    assert told.endswith("f.toml': it cannot be read (Permission denied); check its permissions\n")
+
+
+@pytest.mark.parametrize(
+    ("number", "remedy"),
+    [
+        (errno.ENOSPC, "free space on the disk or choose another place"),
+        (errno.EACCES, "check its permissions or choose another place"),
+        (errno.EIO, "choose another place"),
+    ],
+)
+def test_the_remedy_for_a_file_that_fails(number: int, remedy: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Any failure was told to be a full disk."""
+
+    def fail() -> None:
+        raise OSError(number, "broken", "a.csv")
+
+    with pytest.raises(SystemExit) as stop, patch.object(ending, "end_cleanly_on_signals"):
+        ending.run(fail)
+    assert (stop.value.code, capsys.readouterr().err) == (4, f"alula: 'a.csv' failed (broken); {remedy}\n")
 
 
 @pytest.mark.parametrize("name", ["COLUMNS", "LINES"])
