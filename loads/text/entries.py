@@ -2,10 +2,11 @@
 
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from alula.geometry.base.units import INTERNAL_UNITS, as_text
 
@@ -19,6 +20,13 @@ REFERS = {
     "load_case": "load_cases",
 }
 """Entries that name what stands elsewhere: in which table of the case, or among the points of a link."""
+
+
+_LAX: dict[str, TypeAdapter[Any]] = {
+    "boolean": TypeAdapter(bool),
+    "integer": TypeAdapter(int),
+    "number": TypeAdapter(float),
+}
 
 
 def alike(name: str, known: Iterable[str]) -> str:
@@ -81,6 +89,33 @@ def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     nodes = [node for node in _at(model, path) if "x-names" not in node]
     free = [node["additionalProperties"] for node in nodes if node.get("additionalProperties")]
     return any(node.get("type") in ("object", "array") for child in free for node in options(child, root))
+
+
+def as_meant(model: type[BaseModel], path: Sequence[object], value: object) -> object:
+    """Return what a change sets an entry to: ``no`` is false where a truth stands, and text a number where one does.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+    path : sequence
+        Keys and indices of the entry.
+    value : object
+        As it was stated; a command line, a table of points or a program may not know of which type the entry is.
+
+    Returns
+    -------
+    object
+        The value itself where the entry takes no other.
+    """
+    if not isinstance(value, str | int | float) or isinstance(value, bool):
+        return value
+    read: dict[str, object] = {}
+    for kind, lax in _LAX.items():
+        with suppress(ValidationError):
+            read[kind] = lax.validate_python(value)
+    kinds = {str(node.get("type")) for node in _at(model, path)} - {"null"} if read else ()
+    return read.get(*kinds, value) if len(kinds) == 1 else value
 
 
 def _at(model: type[BaseModel], path: Sequence[object]) -> list[Schema]:
