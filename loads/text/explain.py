@@ -35,8 +35,8 @@ _RULES = {
     "not_positive": "it must be greater than zero; make it larger",
     "negative": "it must not be negative; write zero or more",
 }
-
-
+_ENDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+"""What pydantic calls NaN as well."""
 _WRITTEN = {
     "sources": 'sources = { density = "data sheet of its maker" }, for each value where it comes from',
     "status": 'status = { density = "datasheet" }, for each value "measured", "datasheet", "handbook" or "assumed"',
@@ -89,7 +89,7 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
         raise CaseError(f"{entry}: '{printable(str(name))}' {rule}; {choice}{' ' if remedy else ''}{remedy}")
 
 
-def sentence(error: ValidationError, model: type[BaseModel]) -> str:
+def sentence(error: ValidationError, model: type[BaseModel], whole: str = "case") -> str:
     """Put the first problem of a validation into one sentence: entry, value, rule, remedy.
 
     What is wrong comes before what is missing: a mistyped key leaves an entry missing. Where one is missing, all that
@@ -101,6 +101,8 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
         What pydantic found.
     model : type of BaseModel
         What was validated.
+    whole : str, optional
+        What all of it is called.
 
     Returns
     -------
@@ -134,7 +136,9 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
             context["expected"] = context["expected_tags"]
     if kind == "missing" and isinstance(place[-1], int):
         kind, place = "too_few_values", place[:-1]
-    entry = printable(".".join(map(str, place))) or "case"
+    entry = printable(".".join(map(str, place))) or whole
+    if kind in _ENDS and str(value).strip().lower().endswith("nan"):
+        kind = "float_type"
     if kind == "extra_forbidden":
         rule = "this key is unknown" + (meant or "; correct its name or remove it")
     elif kind == "missing":

@@ -97,7 +97,16 @@ def _usage(error: Exception) -> str | None:
     if type(error).__name__ == "NoArgsIsHelpError":  # a command alone: its help, as it stands
         error.show()  # type: ignore[attr-defined]
         sys.exit(CaseError.exit_status)
+    from pydantic import BaseModel, ValidationError
+
     message, context = error.format_message().strip().rstrip("."), getattr(error, "ctx", None)  # type: ignore[attr-defined]
+    if message.endswith("is not readable"):
+        message += "; check its permissions"
+    cause = error.__cause__
+    if isinstance(cause, ValidationError):
+        from alula.loads.text.explain import sentence
+
+        message = sentence(cause, BaseModel, error.param.opts[-1])  # type: ignore[attr-defined]
     after = " See" if message.endswith("?") else "; see"
     see = "" if context is None else f"{after} {context.command_path} --help"
     return f"{message[:1].lower()}{message[1:]}{see}"
