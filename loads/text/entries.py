@@ -67,6 +67,30 @@ def known_keys(model: type[BaseModel], path: Sequence[object]) -> tuple[str, ...
     return tuple(dict.fromkeys(key for node in _at(model, path) for key in node.get("properties", ())))
 
 
+def of_another_kind(model: type[BaseModel], path: Sequence[object], key: str) -> str:
+    """Tell of a key that a table does not take, but one of another kind in its place does.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+    path : sequence
+        Keys and indices of the table; the kind of a union stands behind its entry.
+    key : str
+
+    Returns
+    -------
+    str
+        Such as ``shape 'step' takes no 'width'``; "" for a key that none takes, and a table of one kind.
+    """
+    for node in _at(model, path):
+        kind = node.get("kind")
+        if kind == path[-1] and key in known_keys(model, path[:-1]):
+            entry = next(name for name, entry in node["properties"].items() if entry.get("const") == kind)
+            return f"{entry} '{kind}' takes no '{key}'"
+    return ""
+
+
 def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     """Say whether the user names the tables or lists at a path himself, such as ``links`` or ``links.X.points``.
 

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from alula.geometry.base.errors import CaseError
-from alula.loads.text.entries import alike, known_keys
+from alula.loads.text.entries import alike, known_keys, of_another_kind
 
 _TABLE = "it must be a table of entries; write it as [{entry}] with one entry per line below"
 _LIST = "it must be a list of values in square brackets; write for example {example}"
@@ -118,9 +118,10 @@ def sentence(error: ValidationError, model: type[BaseModel], whole: str = "case"
     first = next((one for one in problems if one["type"] not in ("missing", "too_short")), problems[0])
     kind, place, value = first["type"], _place(first["loc"]), first["input"]
     context: dict[str, Any] = dict(first.get("ctx", {}))
-    meant = ""
+    meant = other = ""
     if kind == "extra_forbidden":
         above = first["loc"][:-1]
+        other = of_another_kind(model, above, str(place[-1])) if above else ""
         meant = alike(str(place[-1]), known_keys(model, above) or known_keys(model, _place(above)))
     if kind.startswith("union_tag"):
         # A part, check or the like whose kind decides what else belongs to it.
@@ -140,7 +141,7 @@ def sentence(error: ValidationError, model: type[BaseModel], whole: str = "case"
     if kind in _ENDS and str(value).strip().lower().endswith("nan"):
         kind = "float_type"
     if kind == "extra_forbidden":
-        rule = "this key is unknown" + (meant or "; correct its name or remove it")
+        rule = f"{other}; remove it" if other else "this key is unknown" + (meant or "; correct its name or remove it")
     elif kind == "missing":
         lacking = [p["loc"] for p in problems if p["type"] == "missing" and not isinstance(p["loc"][-1], int)]
         listed = list(dict.fromkeys((entry, *(printable(".".join(map(str, _place(loc)))) for loc in lacking))))

@@ -41,6 +41,10 @@ BAD = [
     ("links.GF.colour=1", ["links.GF.colour", "unknown"]),
     ("parts.tube.colour=1", ["parts.tube.colour:", "unknown"]),
     ("checks.strength.colour=1", ["checks.strength.colour:", "unknown"]),
+    # keys of another kind
+    ("parts.tube.shape=bar", ["parts.tube.outer_diameter: shape 'bar' takes no 'outer_diameter'; remove it"]),
+    ("parts.tube.shape=step", ["parts.tube.outer_diameter: shape 'step' takes no 'outer_diameter'; remove it"]),
+    ("checks.strength.maximum=2", ["checks.strength.maximum: type 'safety-factor' takes no 'maximum'; remove it"]),
     ("materials.m={}", ["materials.m.title, materials.m.density, ", "missing", "add them"]),
     # missing units
     ("pose.angle=228", ["pose.angle", "228", "unit", "30 deg"]),
