@@ -159,8 +159,11 @@ def find_size(
     from alula.geometry.base.tidying import scratch_folder
     from alula.loads.plans.plan import plan_of
     from alula.loads.plans.variants import Variants
+    from alula.loads.text.explain import printable
 
     axes = _axes(vary, choose, step)
+    if twice := [axis.path for axis in axes if axis.path in values]:
+        raise CaseError(f"size: '{printable(twice[0])}' is varied and set; leave one of the two out")
     if minimise and maximise:
         raise CaseError("size: both --minimise and --maximise are stated; leave one of the two out")
     objective = Objective(quantity=maximise or minimise or "mass", largest=bool(maximise))

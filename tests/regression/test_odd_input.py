@@ -214,6 +214,12 @@ def test_a_limit_of_memory_below_what_is_held_already(command: str) -> None:
     )
 
 
+def test_an_entry_that_is_varied_and_set() -> None:
+    """What was set had no effect."""
+    told = refused("size", CASE, "--vary", f"{T}=9 mm..10 mm", "--set", f"{W}=9 mm", "--set", f"{T}=9 mm")
+    assert told == f"alula: size: '{T}' is varied and set; leave one of the two out\n"
+
+
 def test_the_old_name_of_threads(tmp_path: Path) -> None:
     """``--workers`` of study and size meant what is called ``--threads`` elsewhere; here nothing varies."""
     for command in ("study", "size"):
