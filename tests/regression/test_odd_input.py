@@ -5,6 +5,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 from unittest.mock import patch
 
@@ -13,13 +14,14 @@ import pytest
 import typer
 
 import alula
+from alula.fea.sizing.candidates import Objective
 from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, read_text, validate
 from alula.loads.plans.plan import plan_of
 from alula.loads.plans.variants import Variants
 from alula.loads.text.nesting import DEEPEST
-from alula.reports.commands import ending
+from alula.reports.commands import ending, size
 from alula.reports.commands.cli import app
 from alula.reports.notebook.check_report import CheckReport
 
@@ -218,6 +220,16 @@ def test_an_entry_that_is_varied_and_set() -> None:
     """What was set had no effect."""
     told = refused("size", CASE, "--vary", f"{T}=9 mm..10 mm", "--set", f"{W}=9 mm", "--set", f"{T}=9 mm")
     assert told == f"alula: size: '{T}' is varied and set; leave one of the two out\n"
+
+
+def test_what_shall_be_least_is_refused_after_one_variant() -> None:
+    """All of them were computed first."""
+    result = SimpleNamespace(state="done", numbers=[SimpleNamespace(quantity="mass")])
+    search = cast(Any, SimpleNamespace(at=lambda points, fidelity, *, roughly: [result for _ in points]))
+    for name in ("mass", "safety factor"):
+        size._require_number(search, {}, Objective(quantity=name))
+    with pytest.raises(CaseError, match=r"^size: no variant has the number 'cost'; choose among mass$"):
+        size._require_number(search, {}, Objective(quantity="cost"))
 
 
 def test_the_old_name_of_threads(tmp_path: Path) -> None:
