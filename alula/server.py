@@ -5,6 +5,7 @@ Name, arguments and text of a tool are those of the function; its answer is what
 """
 
 import inspect
+import re
 import threading
 from collections.abc import Callable
 from functools import wraps
@@ -114,10 +115,16 @@ def made(folder: Path, threads: int) -> "MCPServer":
         function = getattr(alula, name)
         server.add_tool(
             _tool(function, folder.absolute(), threads, one_at_a_time),
-            description=str(inspect.getdoc(function)).partition("\nExamples\n")[0],
+            description=_description(function),
             annotations=ToolAnnotations(read_only_hint=True, open_world_hint=False),
         )
     return server
+
+
+def _description(function: Callable[..., Any]) -> str:
+    """Return the text of a function without its examples and the arguments that the tool has not."""
+    text = str(inspect.getdoc(function)).partition("\nExamples\n")[0]
+    return re.sub(rf"^(?:{'|'.join(_LEFT_OUT)}) : .*\n(?: +.*\n)+", "", text, flags=re.MULTILINE)
 
 
 async def _pass_on(lines: Any, send: Any, answers: Any) -> None:

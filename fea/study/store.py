@@ -126,7 +126,7 @@ class Store:
         if not (folder / NAME).is_file():
             raise CaseError(f"'{folder}' holds no study ({NAME}); give the folder that 'alula study' wrote")
         with (
-            _said(folder, "'{file}' cannot be read ({told}); try again, or give another folder"),
+            _said(folder, "'{file}' cannot be read ({told}); check its permissions, try again, or give another folder"),
             cls._open(folder / NAME, "rw" if os.access(folder, os.W_OK) else "ro") as store,
         ):
             store._require_known(folder)

@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Annotated, Any, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic_core import PydanticCustomError, PydanticKnownError, core_schema
 
 from alula.geometry.base.errors import CaseError
 
@@ -28,6 +28,13 @@ class CaseModel(BaseModel):
     )
 
     @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        """Take for a number or a truth no text that reads like one, and for a truth no number."""
+        schema = handler(source)
+        _make_strict(schema.get("schema", schema))
+        return schema
+
+    @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> dict[str, Any]:
         """Describe each entry by the text that stands below it in the source, as ``entry_texts.toml`` holds it."""
         schema: dict[str, Any] = handler(core_schema)
@@ -39,6 +46,30 @@ class CaseModel(BaseModel):
                 if entry is not None:  # the schema leaves out what no file states
                     entry["description"] = text
         return schema
+
+
+def _make_strict(schema: Any) -> None:
+    """Make numbers and truths of a core schema strict."""
+    if isinstance(schema, dict):
+        if schema.get("type") in ("bool", "float"):
+            schema["strict"] = True
+        elif schema.get("type") == "int":  # strict, it would not take 5.0, which is whole
+            inner = dict(schema)
+            schema.clear()
+            schema.update(core_schema.no_info_before_validator_function(_no_text, inner))
+            return
+        for key, inner in schema.items():
+            if key != "metadata":
+                _make_strict(inner)
+    elif isinstance(schema, list | tuple):
+        for inner in schema:
+            _make_strict(inner)
+
+
+def _no_text(value: object) -> object:
+    if isinstance(value, str | bool):
+        raise PydanticKnownError("int_type")
+    return value
 
 
 @cache

@@ -23,7 +23,7 @@ from alula.loads.acting.cycle import read_cycle
 from alula.loads.case.case import Case
 from alula.loads.stated.level_file import in_level_file, with_level_file
 from alula.loads.stated.part_points import with_part_points
-from alula.loads.text.entries import alike, names_tables
+from alula.loads.text.entries import alike, as_meant, names_tables
 from alula.loads.text.explain import printable, sentence
 from alula.loads.text.file_text import LARGEST_FILE, file_text
 from alula.loads.text.nesting import refuse_deep, too_deep
@@ -499,6 +499,6 @@ def _override(data: dict[str, Any], change: Change) -> None:
                 f"{who} {printable(path)}: '{above}' is a value, so nothing can be set below it; correct the path"
             )
         if last:
-            here[index] = deepcopy(change.value)  # a later change may be about a part of it
+            here[index] = deepcopy(as_meant(Case, keys, change.value))  # a later change may be about a part of it
         else:
             here = here[index]

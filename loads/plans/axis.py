@@ -146,7 +146,12 @@ def _range(path: str, text: str) -> Axis:
         steps = _count(parts["count"], named) - 1
     elif parts["step"] is not None:
         size, of = _quantity(parts["step"], named)
-        steps = _steps((last - first) / (size * _factor(of, unit, named)) if size > 0.0 else 0.0, named)
+        size *= _factor(of, unit, named)
+        if not size > 0.0:
+            raise CaseError(f"{named} the step must be greater than zero; make it larger")
+        if size > (last - first) * (1.0 + _FITS):
+            raise CaseError(f"{named} the step is longer than the range; make it smaller")
+        steps = _steps((last - first) / size, named)
     else:
         return found
     return found.divided(steps)
@@ -211,7 +216,7 @@ def _count(text: str, named: str) -> int:
 def _steps(steps: float, named: str) -> int:
     if steps >= MOST_VALUES:
         raise CaseError(f"{named} the range has more than {MOST_VALUES} values; make the step larger")
-    if steps <= 0.5 or abs(steps - round(steps)) > _FITS:
+    if abs(steps - round(steps)) > _FITS:
         raise CaseError(f"{named} the step does not divide the range into whole steps; correct the step or an end")
     return round(steps)
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
 from alula.geometry.base.errors import AlulaError, CaseError
@@ -20,6 +20,7 @@ from alula.geometry.bodies.features import Slot
 from alula.geometry.imported.read import file_digest
 from alula.geometry.joints.joint import Joint
 from alula.geometry.parts.mesh_part import MeshPart
+from alula.geometry.parts.part import Part
 from alula.geometry.parts.step import FilePart, StepPart
 from alula.geometry.placement.fit import Fit, Wanted
 from alula.geometry.placement.load_faces import load_faces
@@ -33,6 +34,12 @@ KINDS: dict[str, type[FilePart]] = {"step": StepPart, "mesh": MeshPart}
 """Shapes of parts that are imported."""
 DIGITS = 9
 """Of a place in mm."""
+
+
+class _Parts(BaseModel):
+    """Where a part stands in a case, among those of all kinds."""
+
+    parts: dict[str, Part]
 
 
 def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> dict[str, Any]:
@@ -98,11 +105,11 @@ def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]
 
 
 def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> FilePart:
-    kind = KINDS[stated["shape"]]
     try:
-        part = kind.model_validate(stated, context=dict(context))
+        part = _Parts.model_validate({"parts": {name: stated}}, context=dict(context)).parts[name]
     except ValidationError as error:
-        raise CaseError(f"parts.{name}.{sentence(error, kind)}") from None
+        raise CaseError(sentence(error, _Parts)) from None
+    assert isinstance(part, FilePart)
     try:
         file_digest(Path(part.file), mesh=part.mesh_unit is not None)
     except CaseError as error:

@@ -2,10 +2,11 @@
 
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from alula.geometry.base.units import INTERNAL_UNITS, as_text
 
@@ -19,6 +20,13 @@ REFERS = {
     "load_case": "load_cases",
 }
 """Entries that name what stands elsewhere: in which table of the case, or among the points of a link."""
+
+
+_LAX: dict[str, TypeAdapter[Any]] = {
+    "boolean": TypeAdapter(bool),
+    "integer": TypeAdapter(int),
+    "number": TypeAdapter(float),
+}
 
 
 def alike(name: str, known: Iterable[str]) -> str:
@@ -59,6 +67,30 @@ def known_keys(model: type[BaseModel], path: Sequence[object]) -> tuple[str, ...
     return tuple(dict.fromkeys(key for node in _at(model, path) for key in node.get("properties", ())))
 
 
+def of_another_kind(model: type[BaseModel], path: Sequence[object], key: str) -> str:
+    """Tell of a key that a table does not take, but one of another kind in its place does.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+    path : sequence
+        Keys and indices of the table; the kind of a union stands behind its entry.
+    key : str
+
+    Returns
+    -------
+    str
+        Such as ``shape 'step' takes no 'width'``; "" for a key that none takes, and a table of one kind.
+    """
+    for node in _at(model, path):
+        kind = node.get("kind")
+        if kind == path[-1] and key in known_keys(model, path[:-1]):
+            entry = next(name for name, entry in node["properties"].items() if entry.get("const") == kind)
+            return f"{entry} '{kind}' takes no '{key}'"
+    return ""
+
+
 def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     """Say whether the user names the tables or lists at a path himself, such as ``links`` or ``links.X.points``.
 
@@ -81,6 +113,33 @@ def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     nodes = [node for node in _at(model, path) if "x-names" not in node]
     free = [node["additionalProperties"] for node in nodes if node.get("additionalProperties")]
     return any(node.get("type") in ("object", "array") for child in free for node in options(child, root))
+
+
+def as_meant(model: type[BaseModel], path: Sequence[object], value: object) -> object:
+    """Return what a change sets an entry to: ``no`` is false where a truth stands, and text a number where one does.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+    path : sequence
+        Keys and indices of the entry.
+    value : object
+        As it was stated; a command line, a table of points or a program may not know of which type the entry is.
+
+    Returns
+    -------
+    object
+        The value itself where the entry takes no other.
+    """
+    if not isinstance(value, str | int | float) or isinstance(value, bool):
+        return value
+    read: dict[str, object] = {}
+    for kind, lax in _LAX.items():
+        with suppress(ValidationError):
+            read[kind] = lax.validate_python(value)
+    kinds = {str(node.get("type")) for node in _at(model, path)} - {"null"} if read else ()
+    return read.get(*kinds, value) if len(kinds) == 1 else value
 
 
 def _at(model: type[BaseModel], path: Sequence[object]) -> list[Schema]:

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from alula.geometry.base.errors import CaseError
-from alula.loads.text.entries import alike, known_keys
+from alula.loads.text.entries import alike, known_keys, of_another_kind
 
 _TABLE = "it must be a table of entries; write it as [{entry}] with one entry per line below"
 _LIST = "it must be a list of values in square brackets; write for example {example}"
@@ -35,8 +35,8 @@ _RULES = {
     "not_positive": "it must be greater than zero; make it larger",
     "negative": "it must not be negative; write zero or more",
 }
-
-
+_ENDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+"""What pydantic calls NaN as well."""
 _WRITTEN = {
     "sources": 'sources = { density = "data sheet of its maker" }, for each value where it comes from',
     "status": 'status = { density = "datasheet" }, for each value "measured", "datasheet", "handbook" or "assumed"',
@@ -89,7 +89,7 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
         raise CaseError(f"{entry}: '{printable(str(name))}' {rule}; {choice}{' ' if remedy else ''}{remedy}")
 
 
-def sentence(error: ValidationError, model: type[BaseModel]) -> str:
+def sentence(error: ValidationError, model: type[BaseModel], whole: str = "case") -> str:
     """Put the first problem of a validation into one sentence: entry, value, rule, remedy.
 
     What is wrong comes before what is missing: a mistyped key leaves an entry missing. Where one is missing, all that
@@ -101,6 +101,8 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
         What pydantic found.
     model : type of BaseModel
         What was validated.
+    whole : str, optional
+        What all of it is called.
 
     Returns
     -------
@@ -116,9 +118,10 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     first = next((one for one in problems if one["type"] not in ("missing", "too_short")), problems[0])
     kind, place, value = first["type"], _place(first["loc"]), first["input"]
     context: dict[str, Any] = dict(first.get("ctx", {}))
-    meant = ""
+    meant = other = ""
     if kind == "extra_forbidden":
         above = first["loc"][:-1]
+        other = of_another_kind(model, above, str(place[-1])) if above else ""
         meant = alike(str(place[-1]), known_keys(model, above) or known_keys(model, _place(above)))
     if kind.startswith("union_tag"):
         # A part, check or the like whose kind decides what else belongs to it.
@@ -134,9 +137,11 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
             context["expected"] = context["expected_tags"]
     if kind == "missing" and isinstance(place[-1], int):
         kind, place = "too_few_values", place[:-1]
-    entry = printable(".".join(map(str, place))) or "case"
+    entry = printable(".".join(map(str, place))) or whole
+    if kind in _ENDS and str(value).strip().lower().endswith("nan"):
+        kind = "float_type"
     if kind == "extra_forbidden":
-        rule = "this key is unknown" + (meant or "; correct its name or remove it")
+        rule = f"{other}; remove it" if other else "this key is unknown" + (meant or "; correct its name or remove it")
     elif kind == "missing":
         lacking = [p["loc"] for p in problems if p["type"] == "missing" and not isinstance(p["loc"][-1], int)]
         listed = list(dict.fromkeys((entry, *(printable(".".join(map(str, _place(loc)))) for loc in lacking))))

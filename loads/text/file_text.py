@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import stat
 from pathlib import Path
 
 from alula.geometry.base.errors import CaseError
@@ -38,7 +39,9 @@ def file_text(path: str, what: str, *, missing: str, empty: str, mark: bool = Fa
     refuse_elsewhere(path)
     file, shown = Path(path), f"{what} '{printable(path)}'"
     try:
-        exists = file.is_file()
+        exists = stat.S_ISREG(file.stat().st_mode)
+    except PermissionError as error:  # a folder above it may not be entered
+        raise CaseError(f"{shown}: it cannot be read ({error.strerror}); check its permissions") from None
     except (OSError, ValueError):
         exists = False
     if not exists:

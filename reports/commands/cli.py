@@ -1,5 +1,6 @@
 """The command ``alula``. Heavy libraries are imported by the command that needs them."""
 
+import os
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -300,6 +301,7 @@ def claims(
         if case is None:
             found = check_all(fidelity=fidelity, threads=threads)
         else:
+            _require_claims(case)
             found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
             if not found[case]:
                 raise CaseError(f"'{printable(case)}' states no claims, so that none could hold; add [[claims]]")
@@ -314,6 +316,24 @@ def claims(
         print(count(results))
     if strict and any(result.finding.refutes for result in results):
         raise SystemExit(1)
+
+
+def _require_claims(name: str) -> None:
+    """Refuse a name of nothing with those that have claims, which are not those of all built-in cases."""
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.case.case_file import built_in_cases, read_tables
+    from alula.loads.sources.claim import read_source, sources
+    from alula.loads.text.entries import alike
+    from alula.loads.text.explain import printable
+
+    if name in (*sources(), *built_in_cases()) or Path(name).suffix == ".toml" or os.path.lexists(name):
+        return
+    known = {claim.case for source in sources() for claim in read_source(source).claims if claim.case}
+    known |= {*sources(), *(case for case in built_in_cases() if read_tables(case).get("claims"))}
+    raise CaseError(
+        f"case '{printable(name)}': there is no such file or built-in case; give a path to a case file or one of those "
+        f"that have claims: {', '.join(sorted(known))}{alike(name, known)}"
+    )
 
 
 @app.command()

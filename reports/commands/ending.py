@@ -20,6 +20,7 @@ PIPE_CLOSED = 141
 """As in a shell: 128 and the number of SIGPIPE."""
 GRACE = 1.0
 """Seconds from a signal to the end of a process whose threads do not come back, such as from a factorisation."""
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 _told = threading.Event()
 
@@ -62,7 +63,10 @@ def run(app: Callable[[], object]) -> NoReturn:
         _abandon_output()
         missing = "the current folder" if isinstance(error, FileNotFoundError) else "standard output"
         where = f"'{error.filename}'" if error.filename else missing
-        _stop(f"{where} failed ({error.strerror or error}); free space on the disk or choose another place", CRASHED)
+        remedy = "free space on the disk or choose another place" if error.errno in _FULL else "choose another place"
+        if isinstance(error, PermissionError):
+            remedy = "check its permissions or choose another place"
+        _stop(f"{where} failed ({error.strerror or error}); {remedy}", CRASHED)
     except UnicodeEncodeError as error:
         if os.environ.get("ALULA_TRACEBACK"):
             raise
@@ -93,7 +97,16 @@ def _usage(error: Exception) -> str | None:
     if type(error).__name__ == "NoArgsIsHelpError":  # a command alone: its help, as it stands
         error.show()  # type: ignore[attr-defined]
         sys.exit(CaseError.exit_status)
+    from pydantic import BaseModel, ValidationError
+
     message, context = error.format_message().strip().rstrip("."), getattr(error, "ctx", None)  # type: ignore[attr-defined]
+    if message.endswith("is not readable"):
+        message += "; check its permissions"
+    cause = error.__cause__
+    if isinstance(cause, ValidationError):
+        from alula.loads.text.explain import sentence
+
+        message = sentence(cause, BaseModel, error.param.opts[-1])  # type: ignore[attr-defined]
     after = " See" if message.endswith("?") else "; see"
     see = "" if context is None else f"{after} {context.command_path} --help"
     return f"{message[:1].lower()}{message[1:]}{see}"

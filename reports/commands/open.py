@@ -1,5 +1,6 @@
 """``alula open``: a page to work in, for the browser of this machine."""
 
+import os
 import threading
 from pathlib import Path
 from typing import Annotated
@@ -29,16 +30,15 @@ def open_case(
     from alula.geometry.base.errors import CaseError
     from alula.loads.case.case_file import built_in_cases
     from alula.reports.workbench.app import serve
-    from alula.reports.workbench.keeping import case_text
+    from alula.reports.workbench.keeping import case_text, is_missing
 
     if case is not None:
-        if not case.exists() and str(case) in built_in_cases():
+        if not os.path.exists(case) and str(case) in built_in_cases():
             raise CaseError(
                 f"case '{case}': it is a built-in case; write one of your own with "
                 f"'alula new my-case.toml --from {case}', and open that"
             )
-        new = case.suffix == ".toml" and case.parent.is_dir() and not case.exists()
-        if not new:
+        if not (case.suffix == ".toml" and is_missing(case) and case.parent.is_dir()):
             case_text(case)
 
     def ready(address: str) -> None:

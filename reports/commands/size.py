@@ -13,10 +13,13 @@ from alula.reports.commands.ending import progress
 from alula.reports.commands.telling import tell
 
 if TYPE_CHECKING:
+    from alula.fea.sizing.candidates import Objective
     from alula.fea.sizing.least import Sized
     from alula.fea.sizing.lightest import Lightest
+    from alula.fea.sizing.search import Search
     from alula.loads.compose.stated_case import StatedCase
     from alula.loads.plans.axis import Axis
+    from alula.loads.plans.points import Point
 
 app = typer.Typer()
 STEPS = 100
@@ -159,8 +162,11 @@ def find_size(
     from alula.geometry.base.tidying import scratch_folder
     from alula.loads.plans.plan import plan_of
     from alula.loads.plans.variants import Variants
+    from alula.loads.text.explain import printable
 
     axes = _axes(vary, choose, step)
+    if twice := [axis.path for axis in axes if axis.path in values]:
+        raise CaseError(f"size: '{printable(twice[0])}' is varied and set; leave one of the two out")
     if minimise and maximise:
         raise CaseError("size: both --minimise and --maximise are stated; leave one of the two out")
     objective = Objective(quantity=maximise or minimise or "mass", largest=bool(maximise))
@@ -182,6 +188,8 @@ def find_size(
         engine = stack.enter_context(engine_for(variants, kept, workers=workers))
         search = Search(plan, Path(), store, engine, tell=tell)
         told = caveats(case.with_values(dict(values) | points[0]).record, over_motion=analysis == "envelope")
+        if minimise or maximise:
+            _require_number(search, points[0], objective)
         found: Sized | Lightest = (
             lightest(search, axes, objective, most=most, seed=seed, caveats=told)
             if several
@@ -190,6 +198,21 @@ def find_size(
         if folder is not None:
             search.finish()
     return found
+
+
+def _require_number(search: "Search", point: "Point", objective: "Objective") -> None:
+    """Refuse a number that neither one variant nor a check has, before all variants are computed."""
+    from alula.fea.common.verdict import Quantity
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.text.explain import printable
+
+    [result] = search.at([point], "beam", roughly=True)
+    known = {number.quantity for number in result.numbers}
+    if result.state == "done" and objective.quantity not in known | {*Quantity}:
+        raise CaseError(
+            f"size: no variant has the number '{printable(objective.quantity)}'; choose among "
+            f"{', '.join(sorted(known))}"
+        )
 
 
 def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None) -> "list[Axis]":

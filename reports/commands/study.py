@@ -29,11 +29,17 @@ class _Group(typer.core.TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         return super().resolve_command(ctx, args if args and args[0] in self.commands else ["run", *args])
 
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """List what a study takes, whose command has no name of its own to ask for it."""
+        self.commands["run"].format_options(ctx, formatter)
+        self.format_commands(ctx, formatter)
+
 
 app = typer.Typer(
     name="study",
     cls=_Group,
     no_args_is_help=True,
+    subcommand_metavar="CASE | show FOLDER",
     help="Compute many variants of a case into one file: alula study CASE --vary ... -o FOLDER. "
     "Show them: alula study show FOLDER.",
 )

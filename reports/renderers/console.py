@@ -101,7 +101,7 @@ def print_table(table: Table, console: "Console", said: list[str] | None = None)
     said : list of str, optional
         What was told before, and will be here: it is not told again.
     """
-    table = table.shown
+    full, below, table = table, table.below, table.shown
     columns = [(as_plain(column.head), not column.text) for column in table.columns]
     say_table(
         console,
@@ -111,10 +111,17 @@ def print_table(table: Table, console: "Console", said: list[str] | None = None)
         whole=table.kind == "whole",
     )
     said = [] if said is None else said
-    for text in map(as_plain, table.below.values()):
-        if not _said(text, said):
-            said.append(text)
-            say(console, text)
+    for row, text in below.items():
+        if not _said(as_plain(text), said):
+            said.append(as_plain(f"{_name(full, row)}{text}"))
+            say(console, said[-1])
+
+
+def _name(table: Table, row: int) -> str:
+    """Return what a paragraph below a table begins with: the name of the check that it is about, and of its link."""
+    cells = zip(table.columns, map(str, table.rows[row]), strict=True)
+    names = [cell for column, cell in cells if column.role == "who" or (column.head, column.hidden) == ("check", True)]
+    return f"{', '.join(names)}: " if table.kind == "checks" else ""
 
 
 def _said(text: str, said: Iterable[str]) -> bool:

@@ -52,6 +52,24 @@ def case_text(path: Path) -> str:
     return file_text(str(path), "case", missing=missing, empty="the file is empty; start from 'alula new'", mark=True)
 
 
+def is_missing(path: Path) -> bool:
+    """Return whether nothing stands at a path; False where the system does not let it be known.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    bool
+    """
+    try:
+        path.stat()
+    except (OSError, ValueError) as error:
+        return isinstance(error, FileNotFoundError)
+    return False
+
+
 def is_plain(name: str, suffix: str) -> bool:
     """Return whether ``plain_name`` takes a name.
 

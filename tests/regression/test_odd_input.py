@@ -1,22 +1,27 @@
 """What a user may type or have set: each time one sentence and the status that goes with it, or the usual output."""
 
+import errno
 import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
+from unittest.mock import patch
 
 import programs
 import pytest
 import typer
 
 import alula
+from alula.fea.sizing.candidates import Objective
 from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import read_case, read_text, validate
 from alula.loads.plans.plan import plan_of
 from alula.loads.plans.variants import Variants
 from alula.loads.text.nesting import DEEPEST
+from alula.reports.commands import ending, size
 from alula.reports.commands.cli import app
 from alula.reports.notebook.check_report import CheckReport
 
@@ -148,6 +153,42 @@ def test_a_folder_without_a_name_in_python(tmp_path: Path, monkeypatch: pytest.M
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("command", [("check",), ("open", "--no-browser")])
+def test_a_case_in_a_folder_that_may_not_be_entered(
+    command: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One command said that there is no such file, the other to free space on the disk."""
+    place, stat = tmp_path / "lock" / "f.toml", Path.stat
+
+    def refuse(path: Path, **options: Any) -> Any:
+        if path == place:
+            raise PermissionError(13, "Permission denied", str(path))
+        return stat(path, **options)
+
+    monkeypatch.setattr(Path, "stat", refuse)
+    told = refused(command[0], str(place), *command[1:], folder=tmp_path)
+    assert told.endswith("f.toml': it cannot be read (Permission denied); check its permissions\n")
+
+
+@pytest.mark.parametrize(
+    ("number", "remedy"),
+    [
+        (errno.ENOSPC, "free space on the disk or choose another place"),
+        (errno.EACCES, "check its permissions or choose another place"),
+        (errno.EIO, "choose another place"),
+    ],
+)
+def test_the_remedy_for_a_file_that_fails(number: int, remedy: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Any failure was told to be a full disk."""
+
+    def fail() -> None:
+        raise OSError(number, "broken", "a.csv")
+
+    with pytest.raises(SystemExit) as stop, patch.object(ending, "end_cleanly_on_signals"):
+        ending.run(fail)
+    assert (stop.value.code, capsys.readouterr().err) == (4, f"alula: 'a.csv' failed (broken); {remedy}\n")
+
+
 @pytest.mark.parametrize("name", ["COLUMNS", "LINES"])
 @pytest.mark.parametrize("size", ["0", "00", "-3", "abc", "1e3", "²", "9" * 5000, ""])
 def test_a_terminal_of_no_size(name: str, size: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,6 +214,22 @@ def test_a_limit_of_memory_below_what_is_held_already(command: str) -> None:
         r'write more, for example "4 GB"\n',
         told,
     )
+
+
+def test_an_entry_that_is_varied_and_set() -> None:
+    """What was set had no effect."""
+    told = refused("size", CASE, "--vary", f"{T}=9 mm..10 mm", "--set", f"{W}=9 mm", "--set", f"{T}=9 mm")
+    assert told == f"alula: size: '{T}' is varied and set; leave one of the two out\n"
+
+
+def test_what_shall_be_least_is_refused_after_one_variant() -> None:
+    """All of them were computed first."""
+    result = SimpleNamespace(state="done", numbers=[SimpleNamespace(quantity="mass")])
+    search = cast(Any, SimpleNamespace(at=lambda points, fidelity, *, roughly: [result for _ in points]))
+    for name in ("mass", "safety factor"):
+        size._require_number(search, {}, Objective(quantity=name))
+    with pytest.raises(CaseError, match=r"^size: no variant has the number 'cost'; choose among mass$"):
+        size._require_number(search, {}, Objective(quantity="cost"))
 
 
 def test_the_old_name_of_threads(tmp_path: Path) -> None:

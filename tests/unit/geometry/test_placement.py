@@ -169,7 +169,9 @@ def test_named_bores_without_a_joint_tell_how_a_part_on_a_single_pin_lies(seed, 
     assert list(found.bores) == [pin]
     other = max(loaded)
     two = {point: names[point] for point in (pin, other)}
-    sides = [place(part(bores=two, flip=f), bores, wanted({pin: POINTS[pin]}), {other: POINTS[other]}) for f in (0, 1)]
+    sides = [
+        place(part(bores=two, flip=bool(f)), bores, wanted({pin: POINTS[pin]}), {other: POINTS[other]}) for f in (0, 1)
+    ]
     assert sides[0].turn[2] == pytest.approx(-sides[1].turn[2])
     for side in sides:
         assert side.turn @ bores["ABC".index(other)].centre + side.shift == pytest.approx([*POINTS[other], 0.0])

@@ -41,6 +41,10 @@ BAD = [
     ("links.GF.colour=1", ["links.GF.colour", "unknown"]),
     ("parts.tube.colour=1", ["parts.tube.colour:", "unknown"]),
     ("checks.strength.colour=1", ["checks.strength.colour:", "unknown"]),
+    # keys of another kind
+    ("parts.tube.shape=bar", ["parts.tube.outer_diameter: shape 'bar' takes no 'outer_diameter'; remove it"]),
+    ("parts.tube.shape=step", ["parts.tube.outer_diameter: shape 'step' takes no 'outer_diameter'; remove it"]),
+    ("checks.strength.maximum=2", ["checks.strength.maximum: type 'safety-factor' takes no 'maximum'; remove it"]),
     ("materials.m={}", ["materials.m.title, materials.m.density, ", "missing", "add them"]),
     # missing units
     ("pose.angle=228", ["pose.angle", "228", "unit", "30 deg"]),
@@ -57,6 +61,14 @@ BAD = [
         ["checks.x: at is about one point", "remove one"],
     ),
     ('checks.x={type="displacement",maximum=2}', ["checks.x.maximum", "(it is 2)", "unit"]),
+    # text for a truth or a number, and a number for a truth: in a table, which is taken as a file states it
+    *(
+        (f"load_cases={{x={{own_weight={stated}}}}}", ["load_cases.x.own_weight", "true or false; write one of them"])
+        for stated in ('"no"', '"yes"', "1", "1.0")
+    ),
+    ('links.CF.holes.1={count="3"}', ["links.CF.holes.1.count", "(it is '3')", "a whole number; write for example 5"]),
+    ("links.CF.holes.1={count=true}", ["links.CF.holes.1.count", "a whole number; write for example 5"]),
+    ('parts.tube.build_direction=["0", "0", "1"]', ["build_direction.0", "(it is '0')", "a number without unit"]),
     # numbers that are not written as TOML and physics write them
     ("pose.angle=228,15 deg", ["pose.angle", 'use a decimal point: "228.15 deg"']),
     (
@@ -235,6 +247,10 @@ def test_two_diameters_in_one_hole() -> None:
         ("title=A wing = a wing", lambda case: case.title == "A wing = a wing"),
         ('title="with # sign"', lambda case: case.title == "with # sign"),
         ("solid.curved=false", lambda case: case.solid.curved is False),
+        ("solid.curved=no", lambda case: case.solid.curved is False),
+        ("solid.curved=1", lambda case: case.solid.curved is True),
+        ('links.CF.holes.1.count="3"', lambda case: case.links["CF"].holes[1].count == 3),
+        ("links.CF.holes.1.count=3.0", lambda case: case.links["CF"].holes[1].count == 3),
         ("solid.mesh_size=2", lambda case: case.solid.mesh_size == 2.0),
         ("links.CF.holes.1.count=3", lambda case: case.links["CF"].holes[1].count == 3),
         ("load_cases.weight.forces.0.at=D", lambda case: case.load_cases["weight"].forces[0].at == "D"),

@@ -124,8 +124,12 @@ def test_new_lists_the_built_in_cases() -> None:
         (["check"], ["alula: missing argument 'case'; see alula check --help"]),
         (
             ["check", "four-bar", "--threads", "0"],
-            ["alula: invalid value for '--threads': ", "; see alula check --help"],
+            ["alula: --threads (it is '0'): it must be at least 1; make it larger; see alula check --help"],
         ),
+        (["check", "four-bar", "--threads", "x"], ["alula: --threads (it is 'x'): it must be a whole number"]),
+        (["check", "four-bar", "--time-limit", "-1"], ["--time-limit (it is '-1'): it must be at least 0"]),
+        (["open", "--port", "99999"], ["alula: --port (it is '99999'): it must be at most 65535; make it smaller"]),
+        (["envelope", "four-bar", "--growth", "nan"], ["--growth (it is 'nan'): it must be a number without unit"]),
         (["synth", "-o", f"{__file__}/out"], ["output: ", "(Not a directory)", "choose another folder"]),
         (["study", "four-bar", "--vary", "parts.bar.width=8 mm", "-o", f"{__file__}/out"], ["(Not a directory)"]),
         (["new", "--list", "a.toml"], ["--list", "leave out all else"]),
@@ -141,10 +145,19 @@ def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: 
         assert word in done.stderr
 
 
+@pytest.mark.parametrize("command", [("inspect",), ("mcp",), ("study", "show")])
+def test_what_may_not_be_read_has_a_remedy(command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "access", lambda *asked, **more: False)
+    done = programs.inside(*command, __file__ if command == ("inspect",) else str(Path(__file__).parent))
+    assert done.returncode == 2
+    assert f"is not readable; check its permissions; see alula {' '.join(command)} --help\n" in done.stderr
+
+
 def test_help_names_what_an_option_takes_and_no_type_of_python() -> None:
     for command in ("check", "claims", "envelope", "inspect", "size", "study", "synth", "tolerance"):
-        told = programs.inside(*(["study", "run"] if command == "study" else [command]), "--help").stdout
+        told = programs.inside(command, "--help").stdout
         assert "Options:" in told
+        assert "--output" in told or command == "claims"
         assert not re.search(r"--\S+ <(list|str|int|float)|<list\[", told), told
 
 

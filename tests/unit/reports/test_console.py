@@ -64,3 +64,9 @@ def test_a_command_is_one_line_that_a_shell_takes_and_nothing_is_told_twice():
     aluminium = " ".join(printed(told("four-bar", "parts.bar.material=aluminium-6061-t6")).split())
     assert aluminium.lower().count("hand calculation is not calibrated for this link: its patch") == 1
     assert "What would change it Safety factor of rocker (undecided): as told above." in aluminium
+
+
+def test_what_stands_below_the_checks_names_its_check():
+    text = " ".join(printed(told("four-bar-synthesis")).split())
+    assert "clearance, the linkage: Link c and link a come nearest" in text
+    assert "clearance, the linkage: Links c and b, 5 mm apart" in text

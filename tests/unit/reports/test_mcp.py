@@ -64,6 +64,10 @@ def test_a_tool_is_a_function_of_the_face(home):
         assert ">>>" not in tool.description
         assert tool.annotations.read_only_hint
         assert not {"progress", "threads"} & tool.input_schema["properties"].keys()
+        assert "threads :" not in tool.description
+        assert "progress :" not in tool.description
+    assert "accuracy : str" in tools[0].description
+    assert "\n\nReturns\n" in tools[0].description
     assert tools[0].input_schema["required"] == ["case"]
     assert {"fidelity", "accuracy", "values"} < tools[0].input_schema["properties"].keys()
     (drawn,), _ = asked(made(home, 1), ("statics", {"case": CASE, "matrix": True}))

@@ -1,5 +1,6 @@
 import json
 import os
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -351,9 +352,15 @@ def test_a_file_or_link_in_place_of_the_folder_is_refused(tmp_path: Path) -> Non
     (tmp_path / "dangling").symlink_to(tmp_path / "none")
     (tmp_path / "real").mkdir()
     (tmp_path / "real" / "motion").symlink_to(tmp_path)
-    for name, command in (("file", "check"), ("link", "motion"), ("dangling", "check"), ("real", "motion")):
+    leads = f"is a symbolic link, and alula writes through none; give '{re.escape(str(tmp_path.resolve()))}' itself$"
+    for name, command, told in (
+        ("file", "check", "exists and is not a folder"),
+        ("link", "motion", leads),
+        ("dangling", "check", "is a symbolic link, and alula writes through none; choose another name$"),
+        ("real", "motion", leads),
+    ):
         for attempt in (refuse_unusable, lambda folder, command: write_folder(folder, command, fill())):
-            with pytest.raises(CaseError, match="is not a folder"):
+            with pytest.raises(CaseError, match=told):
                 attempt(tmp_path / name, command)
 
 
