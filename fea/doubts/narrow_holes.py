@@ -40,12 +40,12 @@ def narrower(case: Case, link: str) -> Scatter:
     Scatter
     """
     body, low, high = case.body(link), 1.0, 1.0
-    for pin in body.pins:
-        if pin.slot == 0.0 and pin.clearance > 0.0:
-            hole, edge = pin.pin_diameter + case.linkage.wider(link, pin.name)[0], 2.0 * body.part.wall(body, pin)
-            ring = (edge + hole) / (edge + pin.diameter)
-            low = min(low, ring * ((edge - pin.diameter) / (edge - hole)) ** 2)
-            high = max(high, pin.diameter / hole)
+    for pin, least in zip(body.pins, case.narrowest_body(link).pins, strict=True):
+        if least.diameter < pin.diameter and not pin.slot:
+            edge = 2.0 * body.part.wall(body, pin)
+            ring = (edge + least.diameter) / (edge + pin.diameter)
+            low = min(low, ring * ((edge - pin.diameter) / (edge - least.diameter)) ** 2)
+            high = max(high, pin.diameter / least.diameter)
     if not low < high:
         return Scatter()
     return Scatter(low=low, high=high, sources=(play_source(case.linkage.plays),))

@@ -138,8 +138,8 @@ def as_meant(model: type[BaseModel], path: Sequence[object], value: object) -> o
     for kind, lax in _LAX.items():
         with suppress(ValidationError):
             read[kind] = lax.validate_python(value)
-    kinds = {str(node.get("type")) for node in _at(model, path)} - {"null"} if read else ()
-    return read.get(*kinds, value) if len(kinds) == 1 else value
+    kinds = {str(node.get("type")) for node in _at(model, path)} - {"null"} if read else set()
+    return read.get(kinds.pop(), value) if len(kinds) == 1 else value
 
 
 def _at(model: type[BaseModel], path: Sequence[object]) -> list[Schema]:

@@ -171,8 +171,8 @@ def _unwritable(target: Path, error: OSError) -> AlulaError:
 def _refuse_no_folder(output: Path, target: Path) -> None:
     for folder in (Path(os.path.abspath(output)), target):
         if folder.is_symlink():
-            target = os.path.realpath(folder)
-            remedy = f"give '{target}' itself" if os.path.isdir(target) else "choose another name"
+            real = os.path.realpath(folder)
+            remedy = f"give '{real}' itself" if os.path.isdir(real) else "choose another name"
             raise CaseError(f"output: '{folder}' is a symbolic link, and alula writes through none; {remedy}")
         if folder.exists() and not folder.is_dir():
             raise CaseError(f"output: '{folder}' exists and is not a folder; choose another name")

@@ -12,9 +12,10 @@ from rocker_case import TOML
 
 from alula.fea.beam.cut_free import seat
 from alula.fea.check.run import check_case
-from alula.fea.common.source import SourceKind, play_source
+from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Verdict
 from alula.fea.doubts import play_doubt as doubt_of_play
+from alula.fea.doubts.narrow_holes import narrower
 from alula.fea.outcomes.result import LoadCaseResult
 from alula.geometry.linkage.play import LooseJoints
 from alula.loads.case.case_file import read_case, validate
@@ -248,7 +249,7 @@ def test_of_two_loose_holes_the_worse_counts(holes: tuple[str, str]) -> None:
     entries = [
         f'joints.{name}.clearance={{crank=["0 mm", "{play}"]}}' for name, play in zip(("O2", "A"), holes, strict=True)
     ]
-    found = doubt_of_play._narrower(edited("four-bar", entries), "crank", play_source({"A": 1.0}))
+    found = narrower(edited("four-bar", entries), "crank")
     assert found.high == pytest.approx(4.0 / 3.0)
     assert found.low == pytest.approx(15.8 / 16.8 * (8.8 / 9.8) ** 2)
 

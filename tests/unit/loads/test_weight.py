@@ -67,7 +67,7 @@ def test_bodies_of_one_shape_are_weighed_once_whatever_their_pins_are_called(
     assert case.body("lever-right") != case.body("lever-left")
     assert len({*asked}) == 1
     assert (right.mass, *right.centroid) == (left.mass, *left.centroid)
-    whole = mass_properties(case.body("lever-left"))
+    whole = mass_properties(case.body_to_make("lever-left"))
     assert left.mass == whole.volume * case.material_of("lever-left").density
 
 
