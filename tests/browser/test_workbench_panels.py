@@ -370,7 +370,7 @@ def test_solids_bring_models_and_stand_beside_the_hand(browser: chromium.Browser
     browser.element("#solids-auto").click()  # by itself, once nothing has changed for three seconds
     browser.wait("document.querySelector('#panel-solids [role=status]').innerText.includes('links are solved')")
     browser.wait("document.querySelector('#panel-solids .model canvas')")
-    assert browser.element("#panel-solids th").text == "crank"
+    browser.wait("document.querySelector('#panel-solids th')?.innerText === 'crank'")
     open_panel(browser, "verdict")
     browser.wait("document.querySelector('#panel-verdict svg.bands')")
     told = browser.element("#panel-verdict svg.bands").get_attribute("aria-label")
