@@ -82,7 +82,7 @@ def test_the_readme_counts_as_the_page_does(request):
     ("arguments", "sentence"),
     [
         (("nobody",), "no such file or built-in case; give a path to a case file or one of those that have claims: f"),
-        (("owl-wings",), "owl-wing, owl-wing-static; did you mean 'owl-wing'?"),
+        (("owl-wings",), "owl-wing-static; did you mean 'owl-wing'?"),
         (("--set", "a=1"), "it needs a case"),
         (("owl-wing", "--fidelity", "x"), "fidelity: 'x' is unknown"),
     ],
