@@ -267,7 +267,17 @@ class Bilinear:
         )
 
     def of(self, a: Floats, b: Floats) -> Floats:
-        """Return the sums of values (m, c) and (m, e) alone."""
+        """Return the sums without derivatives.
+
+        Parameters
+        ----------
+        a, b : ndarray, shape (m, c) and (m, e)
+            Values.
+
+        Returns
+        -------
+        ndarray, shape (m, d)
+        """
         return np.asarray(np.einsum("dce,mc,me->md", self.tensor, a, b, optimize=True))
 
     @cached_property

@@ -167,7 +167,7 @@ def test_a_case_in_a_folder_that_may_not_be_entered(
 
     monkeypatch.setattr(Path, "stat", refuse)
     told = refused(command[0], str(place), *command[1:], folder=tmp_path)
-    assert told.endswith("f.toml': it cannot be read (Permission denied); check its permissions\n")
+    assert told.endswith("it cannot be read (Permission denied); check its permissions\n")
 
 
 @pytest.mark.parametrize(
