@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from materials import SOURCED_ENTRIES
+from materials import stiff
 from scipy.linalg import eigh
 from vibrating_frames import DENSITY, LENGTH, POISSON, YOUNG, eigenvalues, rectangle, straight
 
@@ -41,14 +41,7 @@ material = "stiff"
 width = "8 mm"
 thickness = "6 mm"
 fillet_radius = "1 mm"
-[materials.stiff]
-title = "stiff"
-density = "4 g/cm^3"
-youngs_modulus = "90000 GPa"
-poissons_ratio = 0.3
-strength = "yield"
-yield_strength = "90 GPa"
-{chr(10).join(SOURCED_ENTRIES)}
+{stiff(density="4 g/cm^3", young="90000 GPa", strength="90 GPa")}
 """
 LEVER = """
 schema_version = 1

@@ -10,7 +10,7 @@ import tomllib
 from typing import Any
 
 import pytest
-from materials import SOURCED_ENTRIES
+from materials import stiff
 
 from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.vibration.over_motion import case_frequencies
@@ -26,14 +26,7 @@ width = "5 mm"
 thickness = "3 mm"
 eye_diameter = "6 mm"
 fillet_radius = "0.3 mm"
-[materials.stiff]
-title = "stiff"
-density = "0.0001 g/cm^3"
-youngs_modulus = "YOUNG GPa"
-poissons_ratio = 0.3
-strength = "yield"
-yield_strength = "900 GPa"
-{chr(10).join(SOURCED_ENTRIES)}
+{stiff(density="0.0001 g/cm^3", young="YOUNG GPa", strength="900 GPa")}
 """
 CRANK = """
 schema_version = 1
