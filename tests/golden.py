@@ -53,6 +53,9 @@ WHOLE = ("mass", "size", "frequencies")
 ``test_frequency_check.py``)."""
 FEWER_POSES = {"flapping-wing-chosen": ("--set", "motion.poses=37")}
 """Play at every degree of this motion takes as long as all other motions together; at every tenth it tells the same."""
+UNHURRIED = ("--json", "--threads", "1", "--time-limit", "1e6")
+"""Arguments of results that go through a mesh. No limit of time ends their refinement, which would make them depend on
+how fast and how busy the machine is."""
 FRAMED = "linkage"
 """Entry whose numbers come from the frame; they are kept with hand calculations and motions alone."""
 
@@ -70,13 +73,13 @@ def commands() -> dict[str, list[str]]:
             continue
         found |= {
             f"statics-{case}": ["statics", case, "--json", *sets],
-            f"auto-{case}": ["check", case, "--json", "--threads", "1"],
-            f"solid-{case}": ["check", case, "--fidelity", "solid", "--json", "--threads", "1"],
+            f"auto-{case}": ["check", case, *UNHURRIED],
+            f"solid-{case}": ["check", case, "--fidelity", "solid", *UNHURRIED],
         }
         if "[motion]" in read_text(case)[0]:
             found |= {
                 f"motion-{case}": ["motion", case, "--json", *FEWER_POSES.get(case, ())],
-                f"envelope-{case}": ["envelope", case, "--json", "--threads", "1"],
+                f"envelope-{case}": ["envelope", case, *UNHURRIED],
             }
     return found
 
