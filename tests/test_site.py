@@ -2,6 +2,7 @@
 
 import json
 import re
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -65,6 +66,11 @@ def test_slow_examples_are_not_run_unless_asked_for(monkeypatch: pytest.MonkeyPa
     assert told.endswith("\n\nText.\n")
     monkeypatch.setenv("GALLERY", "all")
     assert re.search(gallery.run_pattern(gallery.not_run()), "/docs/gallery/long.py")
+
+
+def test_examples_run_anew_after_a_change_of_alula_alone() -> None:
+    """Else pages from before stay, since the scripts are as they were."""
+    assert runpy.run_path(str(DOCS / "conf.py"))["sphinx_gallery_conf"]["run_stale_examples"] is True
 
 
 @pytest.mark.parametrize("model", [Case, StudyPlan])
