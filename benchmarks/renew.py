@@ -22,12 +22,15 @@ from benchmarks.stability import ROWS
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = "pages"
+ALONE = (
+    *("verification", "tiers", "draws", "tolerances", "plastic_peers"),
+    *("collapse_meshes", "link_frequencies", "second_opinion"),
+)
 COMMANDS: dict[str, list[str]] = {
     **{name: ["benchmarks.run", "--only", name] for name in BENCHMARKS},
     **{f"stability-{row}": ["benchmarks.stability", row] for row in ROWS},
-    **{name: [f"benchmarks.{name}"] for name in ("verification", "tiers", "draws", "tolerances", "plastic_peers")},
+    **{name: [f"benchmarks.{name}"] for name in ALONE},
     "coverage": ["benchmarks.coverage", "--anew"],
-    "collapse_meshes": ["benchmarks.collapse_meshes"],
     "widths_auto": ["benchmarks.widths", "--fidelity", "auto"],
     PAGES: ["pages"],
 }
