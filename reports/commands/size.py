@@ -46,7 +46,7 @@ def size(
     ] = None,
     minimise: Annotated[
         str | None,
-        typer.Option(metavar="<name>", help='What shall be least: mass, or "largest drive torque" and the like.'),
+        typer.Option(metavar="<name>", help='What shall be least: mass, "drive torque" and the like.'),
     ] = None,
     maximise: Annotated[str | None, typer.Option(metavar="<name>", help="What shall be greatest instead.")] = None,
     most: Annotated[
@@ -58,7 +58,9 @@ def size(
     seed: Annotated[int, typer.Option(metavar="<number>", min=0, help="Of the search over several entries.")] = 0,
     step: Annotated[
         str | None,
-        typer.Option(metavar="<step>", help='Distance of two values, such as "0.5 mm"; default: a hundredth.'),
+        typer.Option(
+            metavar="<step>", help='Distance of two values, such as "0.5 mm"; default: a hundredth of the range.'
+        ),
     ] = None,
     link: options.LinkOption = None,
     overrides: options.SetOption = None,

@@ -121,7 +121,7 @@ def _name(table: Table, row: int) -> str:
     """Return what a paragraph below a table begins with: the name of the check that it is about, and of its link."""
     cells = zip(table.columns, map(str, table.rows[row]), strict=True)
     names = [cell for column, cell in cells if column.role == "who" or (column.head, column.hidden) == ("check", True)]
-    return f"{', '.join(names)}: " if table.kind == "checks" else ""
+    return f"{', '.join(names)}: " if names and table.kind == "checks" else ""
 
 
 def _said(text: str, said: Iterable[str]) -> bool:

@@ -183,6 +183,7 @@ def test_the_command_writes_a_report_for_each_test(tmp_path, monkeypatch):
     assert run.exit_code == 3, run.output
     assert "In the manner of ISO 10328, example, condition I: undecided." in run.output
     assert re.search(r"proof +stays elastic\?", run.output)
+    assert re.search(r"^Proof: \w", run.output, re.M)
     assert "Load cases of the case itself, which are of no test: undecided." in run.output
     assert {str(x.relative_to(out)) for x in out.rglob("report.html")} == {
         "tests/proof/report.html",
