@@ -6,13 +6,12 @@ The lowest in the plane of the linkage, and the lowest out of it. Some three min
 """
 
 from collections.abc import Iterator
-from pathlib import Path
 
 from alula.fea.vibration.link_modes import LinkModes, link_modes
 from alula.loads.case.case_file import read_case
 from benchmarks.record import between, stamped
+from benchmarks.verification import PAGE
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "verification.md"
 LINKS = {
     "owl-wing-static": ("GF", "AE", "CF", "CH", "ED"),
     "ornithopter": ("rod", "lever-right", "crank"),

@@ -23,9 +23,16 @@ from benchmarks.stability import ROWS
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = "pages"
 ALONE = (
-    *("verification", "tiers", "draws", "tolerances", "plastic_peers"),
-    *("collapse_meshes", "link_frequencies", "second_opinion"),
+    "verification",
+    "tiers",
+    "draws",
+    "tolerances",
+    "plastic_peers",
+    "collapse_meshes",
+    "link_frequencies",
+    "second_opinion",
 )
+"""Results that modules of their names make, without arguments."""
 COMMANDS: dict[str, list[str]] = {
     **{name: ["benchmarks.run", "--only", name] for name in BENCHMARKS},
     **{f"stability-{row}": ["benchmarks.stability", row] for row in ROWS},
