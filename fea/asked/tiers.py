@@ -1,13 +1,15 @@
 """The two tiers of a verdict: whether all stays elastic, and whether anything breaks or gives way.
 
-A link of a brittle material has no elastic tier to lose: it breaks where its stress first reaches its strength. A tier
-is passed by whole links alone: that an eye, a wall or a connection bears does not say that its link does not collapse.
+A link without plastic collapse, since it is brittle or printed in layers, has no elastic tier to lose: it breaks where
+its stress first reaches its strength. A tier is passed by whole links alone: that an eye, a wall or a connection bears
+does not say that its link does not collapse.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Tier, Verdict, deciding
+from alula.loads.case.break_rules import unlike_ductile
 from alula.loads.case.case import Case
 from alula.loads.records.check_spec import BearingCheck
 
@@ -23,7 +25,7 @@ class TierVerdict:
     ----------
     tier : Tier
     links : tuple of str
-        Those with a part that have such a tier: of what stays elastic the ductile ones, else all.
+        Those with a part that have such a tier: of what stays elastic those that can collapse, else all.
     unasked : tuple of str
         Those of them that no check of the case asks as a whole for it.
     decides : CheckOutcome or None
@@ -49,7 +51,7 @@ class TierVerdict:
 def tier_of(case: Case, outcome: CheckOutcome) -> Tier:
     """Return the tier of an outcome: that of its quantity, or of the strength that it is against.
 
-    A safety factor against ultimate strength, and line contact of which a side is brittle, are of breaking.
+    A safety factor against ultimate strength, and line contact of which a side breaks before it flows, are of breaking.
 
     Parameters
     ----------
@@ -63,10 +65,15 @@ def tier_of(case: Case, outcome: CheckOutcome) -> Tier:
     if outcome.quantity.tier is not Tier.ELASTIC:
         return outcome.quantity.tier
     subject, check = outcome.subject, case.all_checks.get(outcome.name)
-    cards = [(case.material_of if subject.kind == "link" else case.pin_material)(subject.name)]
+    if isinstance(check, BearingCheck):
+        return Tier.BREAK
+    if subject.kind == "link":
+        breaks = bool(unlike_ductile(case, subject.name))
+    else:
+        breaks = case.pin_material(subject.name).brittle
     if outcome.quantity is Quantity.LINE_CONTACT and (slotted := case.joints[subject.name].slotted) is not None:
-        cards.append(case.material_of(slotted))
-    return Tier.BREAK if isinstance(check, BearingCheck) or any(card.brittle for card in cards) else Tier.ELASTIC
+        breaks = breaks or bool(unlike_ductile(case, slotted))
+    return Tier.BREAK if breaks else Tier.ELASTIC
 
 
 def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, ...]:
@@ -86,7 +93,7 @@ def tiers_of(case: Case, checks: Sequence[CheckOutcome]) -> tuple[TierVerdict, .
     if not case.checked_links:
         return ()
     found = []
-    ductile = tuple(link for link in case.checked_links if not case.material_of(link).brittle)
+    ductile = tuple(link for link in case.checked_links if not unlike_ductile(case, link))
     for tier in (Tier.ELASTIC, Tier.BREAK):
         own = [check for check in checks if tier_of(case, check) is tier]
         links = ductile if tier is Tier.ELASTIC else case.checked_links

@@ -169,6 +169,22 @@ def test_brittle_links_have_no_elastic_tier(mixed):
     assert tiers_of(starter, [])[1].asks == "safety-factor"
 
 
+def test_a_link_printed_in_layers_is_never_said_to_want_a_check_that_it_is_refused():
+    """Its layers come apart before it flows, whatever its card: its safety factor is of breaking, as of a brittle link."""
+    laid = [f'parts.{part}.build_direction=[0, 0, 1]' for part in ("lever", "rod")]
+    strength = [f'checks.{name}={{type="safety-factor", minimum=2}}' for name in ("collapse", "eyes")]
+    one, both = (edited("spring-pedal", (*strength, *some)) for some in (laid[1:], laid))
+    asked = [outcome(PEDAL, 2.5), outcome(ROD, 2.2)]
+    elastic, broken = tiers_of(one, asked)
+    assert [tier_of(one, check) for check in asked] == [Tier.ELASTIC, Tier.BREAK]
+    assert (elastic.links, elastic.verdict) == (("pedal",), Verdict.PASS)
+    assert (broken.unasked, broken.asks, broken.decides.subject) == (("pedal",), "plastic-collapse", ROD)
+    assert tiers_of(one, [collapse(PEDAL, 2.0)])[1].asks == "safety-factor"
+    elastic, broken = tiers_of(both, asked)
+    assert (elastic.links, broken.verdict, broken.decides.subject) == ((), Verdict.PASS, ROD)
+    assert tiers_of(both, [])[1].asks == "safety-factor"
+
+
 def test_the_lines_name_what_decides_and_what_asks(ductile, mixed):
     def lines(case, *checks, several=False):
         return [line.replace(KEPT, " ") for line in tier_lines(tiers_of(case, checks), several=several)]
