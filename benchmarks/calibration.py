@@ -233,7 +233,8 @@ def compare(body: Body, nu: float, kept: dict[str, dict[str, list[float]]]) -> l
         ]
         hand = max(location.estimate for location in places)
         line = (body.pins[0].x, body.pins[-1].x)
-        moved = displacement_estimate(body, loads, beam, young=YOUNG, poisson=nu, line=line)
+        acting, forces = loads.chosen(None), beam.forces.state(None)
+        (moved,) = displacement_estimate(body, acting, forces, beam.section, young=YOUNG, poisson=nu, line=line)
         of_all = {"case": loads.name, "kind": "displacement", "share": 1.0, "by_hand": 1.0}
         rows.append(of_all | {"von_mises": [value / moved for value in solid["displacement"]]})
         for location in places:

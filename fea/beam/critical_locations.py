@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.deflection import deflection
+from alula.fea.beam.flanks import flanks_of
 from alula.fea.beam.holes import net_tension, tube_hole_factors
 from alula.fea.beam.piecewise import Piecewise, Side, only
 from alula.fea.beam.section_stress import bending_stress, equivalent_stress, rim_shear
-from alula.fea.beam.theory import BeamCheck, largest_stress
+from alula.fea.beam.theory import largest_stress
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.common.reason import Reason, reason
 from alula.geometry.bodies.body import extent, patch_span
@@ -110,8 +111,15 @@ def critical_locations(body: Body, loads: LinkLoads, forces: Piecewise, poisson:
 
 
 def displacement_estimate(
-    body: Body, loads: LinkLoads, beam: BeamCheck, *, young: float, poisson: float, line: tuple[float, float]
-) -> float:
+    body: Body,
+    loads: LinkLoads,
+    forces: Piecewise,
+    section: Section,
+    *,
+    young: float,
+    poisson: float,
+    line: tuple[float, float],
+) -> Floats:
     """Estimate the largest displacement of any point, relative to the line through two stations.
 
     It sums three terms: the displacement of the axis by beam theory, which goes on straight beyond the last load; what
@@ -122,9 +130,11 @@ def displacement_estimate(
     body : Body
         Geometry of the link.
     loads : LinkLoads
-        Of one load case.
-    beam : BeamCheck
-        The link by beam theory.
+        In n states.
+    forces : Piecewise
+        Internal forces of all of them, on the link's axis.
+    section : Section
+        Of the beam.
     young : float
         Young's modulus [MPa].
     poisson : float
@@ -134,26 +144,26 @@ def displacement_estimate(
 
     Returns
     -------
-    float
-        Displacement [mm].
+    ndarray, shape (n,)
+        Displacement in every state [mm].
     """
-    section = beam.section
-    bent = deflection(beam.forces, section, young=young, poisson=poisson, line=line)
-    first, last = bent.functions.breaks[0], bent.functions.breaks[-1]
-    table = np.array([bent.functions.at(x) for x in np.linspace(first, last, 65)])
-    table[:, 3] -= (bent.functions.at(line[0])[3] + bent.functions.at(line[1])[3]) / 2.0
-    ends = extent(body)
-    beyond = [
-        (u, v + turn_z * overhang, w - turn_y * overhang)
-        for (u, v, w, _, turn_y, turn_z), overhang in ((table[0], ends[0] - first), (table[-1], ends[1] - last))
-    ]
-    axis = max(float(np.linalg.norm(moved)) for moved in (*table[:, :3], *beyond))
-    bending = max(section.half_y, section.half_z) * np.hypot(table[:, 4], table[:, 5])
+    bent = deflection(
+        forces, section, young=young, poisson=poisson, line=line, flanks=flanks_of(body), cuts=body.cuts
+    ).functions
+    first, last = bent.breaks[0], bent.breaks[-1]
+    table = np.stack([bent.at(x) for x in np.linspace(first, last, 65)], axis=1)
+    table[..., 3] -= (bent.at(line[0])[:, None, 3] + bent.at(line[1])[:, None, 3]) / 2.0
+    places = [table[..., :3]]
+    for end, overhang in zip((0, -1), (extent(body)[0] - first, extent(body)[1] - last), strict=True):
+        u, v, w, _, turn_y, turn_z = np.moveaxis(table[:, [end]], -1, 0)
+        places.append(np.stack([u, v + turn_z * overhang, w - turn_y * overhang], axis=-1))
+    axis = np.linalg.norm(np.concatenate(places, axis=1), axis=-1).max(axis=1)
+    bending = max(section.half_y, section.half_z) * np.hypot(table[..., 4], table[..., 5])
     rings = {pin.name: body.ring(pin) for pin in body.pins}
     corner = max((math.hypot(ring.diameter, ring.height) / 2.0 for ring in rings.values()), default=0.0)
-    twist = corner * np.abs(table[:, 3])
-    pinned = max((float(np.linalg.norm(p.wrench[:3])) / rings[p.name].thickness for p in loads.pins), default=0.0)
-    return float(axis + (bending + twist).max() + pinned / young)
+    twist = corner * np.abs(table[..., 3])
+    pinned = [np.linalg.norm(pin.wrench[:, :3], axis=1) / rings[pin.name].thickness for pin in loads.pins]
+    return np.asarray(axis + (bending + twist).max(axis=1) + np.max([np.zeros(len(axis)), *pinned], axis=0) / young)
 
 
 def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float, float, float]:

@@ -327,9 +327,10 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     body = task.body
     outside = uncalibrated(body, task.nu)
     found: tuple[CriticalLocation, ...] = ()
+    acting, forces = loads.chosen(None), beam.forces.state(None)
     if not outside:
         try:
-            found = critical_locations(body, loads.chosen(None), beam.forces.state(None), task.nu)
+            found = critical_locations(body, acting, forces, task.nu)
         except CannotRunError as error:
             outside = str(error)
     if outside:
@@ -346,12 +347,12 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         for location in found
     ]
     line = reference_line(body)
-    moved = displacement_estimate(body, loads, beam, young=task.E, poisson=task.nu, line=line)
+    moved = displacement_estimate(body, acting, forces, beam.section, young=task.E, poisson=task.nu, line=line)
     rows.sort(key=lambda row: row.von_mises.high, reverse=True)
     return HandBands(
         von_mises=Band.largest([row.von_mises for row in rows]),
         principal=Band.largest([row.principal for row in rows]),
-        displacement=_band(moved, calibration.displacement, sources),
+        displacement=_band(float(moved[0]), calibration.displacement, sources),
         locations=tuple(rows),
         outside=None,
     )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.beam.calibration import calibration_of, uncalibrated
-from alula.fea.beam.critical_locations import critical_locations
+from alula.fea.beam.critical_locations import critical_locations, displacement_estimate
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.beam.deflection import Deflection, deflection
 from alula.fea.beam.details import Detail, details, has_details, remarks
@@ -270,8 +270,24 @@ class HandStates:
 
     @cached_property
     def displacement(self) -> Real:
-        """The largest (n,) [mm]; the largest pin force [N] where no beam stands."""
-        return self._worse(self._each(lambda _, forces: _bent(self._body, self._material, forces).each))
+        """That of any point (n,), as it is banded [mm]; the largest pin force [N] where no beam stands.
+
+        The bending of the axis alone does not tell it: a link between two pins has none.
+        """
+        body, material = self._body, self._material
+
+        def of(loads: LinkLoads, forces: Piecewise) -> Real:
+            return displacement_estimate(
+                body,
+                loads,
+                forces,
+                hand_section(body),
+                young=material.youngs_modulus,
+                poisson=material.poissons_ratio,
+                line=reference_line(body),
+            )
+
+        return self._worse(self._each(of))
 
     @cached_property
     def inverse_buckling(self) -> Real:
