@@ -36,8 +36,8 @@ DRAWS = 300
 STAGES = ((1e-3, 4, 1e-3), (1e-4, 2, 1e-4))
 """Of the search, one after the other: the residual at which its states end, from how many of the largest ones each
 function is followed, and down to which gain, over the range of the starts. Some way before rims touch, they are smooth
-functions of the radii with fewer local ends, and their slopes are known to 1e-6 and better; at 1e-8 they are known to
-1e-3 alone, where it is open whether a rim touches."""
+functions of the radii with fewer local ends, and their slopes are known to 1e-6 and better; at 1e-8 they are known
+less well, where it is open whether a rim touches."""
 ROUGH = 1e-8
 """Residual at which couples are known to 1e-10, so that it tells in which of the states found they are largest."""
 ALIKE = 1e-6

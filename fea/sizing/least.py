@@ -1,9 +1,9 @@
 """The least size that passes and the greatest that fails, each over its whole band; what lies between is open.
 
-Hand calculation of all steps says where to look. The model that decides goes from there to both sides, in strides that
-double, until one value passes and one fails, and halves what lies between. Where margins shrink with growing values,
-the greatest value that passes is sought. Where hand calculation crosses the limit more than once, the model decides a
-step of each stretch: a value that fails beyond one that passes is told.
+Hand calculation of at most 33 steps says where to look. The model that decides goes from there to both sides, in
+strides that double, until one value passes and one fails, and halves what lies between. Where margins shrink with
+growing values, the greatest value that passes is sought. Where hand calculation crosses the limit more than once, the
+model decides a step of each stretch: a value that fails beyond one that passes is told.
 """
 
 import math

@@ -10,7 +10,7 @@ from alula.fea.common.verdict import Quantity, Subject
 from alula.fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from alula.reports.figures.motion.motion_figures import COLOURS, DASHES
 from alula.reports.figures.sheet.canvas import Canvas
-from alula.reports.figures.sheet.chart import Chart
+from alula.reports.figures.sheet.chart import Chart, legend_above
 from alula.reports.figures.sheet.style import GROUND, INK, STYLE, WIDTH, quiet_glyphs
 from alula.reports.words.numbers import number, plain
 
@@ -21,6 +21,8 @@ _DECADES = 1e3
 _TITLE = 40
 """Letters of a title beside which that of the next panel has room."""
 _MARKS = ("error band", "least of the motion", "limit of the check")
+_BAND: dict[str, Any] = {"alpha": 0.22, "linewidth": 0.0}
+"""Of the area between both ends of a band."""
 _PANEL = 2.1
 """Height of a panel [inches]."""
 
@@ -63,17 +65,10 @@ def envelope_figure(result: EnvelopeResult) -> Chart:
             axes.set_xlabel(label, parse_math=False)
             axes.tick_params(labelbottom=True)
         figure.supylabel("safety factor", fontsize=9.0)
-        handles[_MARKS[0]] = Patch(color="0.8", linewidth=0.0)
+        drawn = [i for i, name in enumerate(names) if name in handles]
+        handles[_MARKS[0]] = tuple(Patch(**_BAND, color=COLOURS[i % len(COLOURS)]) for i in drawn[: len(COLOURS)])
         shown = [name for name in (*names, *_MARKS) if name in handles]
-        legend = figure.legend(
-            [handles[name] for name in shown],
-            shown,
-            loc="outside upper center",
-            ncols=min(5, len(shown)),
-            frameon=False,
-        )
-        for text in legend.get_texts():
-            text.set_parse_math(False)
+        legend_above(figure, [handles[name] for name in shown], shown)
         return Chart(figure, style=STYLE)
 
 
@@ -147,7 +142,7 @@ def _panel(
             value, low, high = (link.strength / np.maximum(s, 0.0) for s in (found.value, found.high, found.low))
         # Beyond any panel, so that curves leave it upwards where nothing acts.
         far = [np.minimum(curve, 1e6 * _DECADES * np.nanmin(value, initial=np.inf)) for curve in (value, low, high)]
-        axes.fill_between(angles, far[1], far[2], color=colour, alpha=0.22, linewidth=0.0)
+        axes.fill_between(angles, far[1], far[2], color=colour, **_BAND)
         (handles[name],) = axes.plot(angles, far[0], color=colour, linestyle=dash, linewidth=1.6)
         shown += [*value[np.isfinite(value)], *low[np.isfinite(low)]]
         worst = found.safety_factor.value

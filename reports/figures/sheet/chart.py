@@ -1,7 +1,7 @@
 """A chart that matplotlib draws: as PNG, as an element of a page, and the curves in it."""
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from html import escape
 from threading import Lock
@@ -78,6 +78,33 @@ class Chart:
     def plotted(self) -> tuple[Plotted, ...]:
         """Its curves, as they stand in the figure: lines, then ends of bands and tops of bars."""
         return tuple(one for axes in self.figure.axes for one in _plotted(self.figure, axes))
+
+
+def legend_above(figure: Any, handles: Sequence[Any], texts: Sequence[str]) -> None:
+    """Put a legend above a figure, in as many columns as it has room for, at most five.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        With constrained layout.
+    handles : sequence of matplotlib artists, or of tuples of them, which stand side by side
+    texts : sequence of str
+        Beside each handle; names of a case, in which no mathematics is meant.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.legend_handler import HandlerTuple
+
+    side_by_side = {tuple: HandlerTuple(ndivide=None, pad=0.0)}
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for columns in range(min(5, len(texts)), 0, -1):
+        found = figure.legend(
+            handles, texts, loc="outside upper center", ncols=columns, frameon=False, handler_map=side_by_side
+        )
+        for named in found.get_texts():
+            named.set_parse_math(False)
+        if columns == 1 or found.get_window_extent(renderer).width <= figure.bbox.width:
+            break
+        found.remove()
 
 
 def _plotted(figure: Any, axes: Any) -> Iterator[Plotted]:

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from alula.reports.figures.sheet.chart import legend_above
 from alula.reports.figures.sheet.style import GROUND, INK, WIDTH
 from alula.reports.figures.study.curves import reach
 from alula.reports.figures.study.points import MOST_LINES, MOST_MARKS, Parameter, Response, marked
@@ -116,7 +117,7 @@ def parallel(parameters: Sequence[Parameter], responses: Sequence[Response], out
     handles = [Line2D([], [], color=LOOKS[name].colour, linestyle=LOOKS[name].dashes, linewidth=1.6)
                for name in present(outcome)]  # fmt: skip
     texts = [f"{name}: {int(np.sum(outcome == name))}" for name in present(outcome)]
-    figure.legend(handles, texts, loc="outside upper center", ncols=5, frameon=False)
+    legend_above(figure, handles, texts)
     return figure
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from alula.reports.figures.sheet.chart import legend_above
 from alula.reports.figures.sheet.style import GROUND, INK, JOINT_FORCE, LOAD, WIDTH
 from alula.reports.figures.study.style import LOOKS, Words, limit_handle, present, scale, styled, wants_decades
 from alula.reports.words.numbers import fixed, number
@@ -83,7 +84,7 @@ def histogram(
     if math.isfinite(limit):
         handles, texts = [*handles, limit_handle()], [*texts, f"limit {'≥' if at_least else '≤'} {number(limit, 3)}"]
     if math.isfinite(limit) or names != ["done"]:
-        figure.legend(handles, texts, loc="outside upper center", ncols=5, frameon=False)
+        legend_above(figure, handles, texts)
     if beside := int((~known).sum()):
         axes.set_title(f"not drawn: {beside} {counted} without a finite value", loc="right", fontsize=8.0)
     return figure

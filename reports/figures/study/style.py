@@ -11,7 +11,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from alula.reports.figures.sheet.chart import Chart
+from alula.reports.figures.sheet.chart import Chart, legend_above
 from alula.reports.figures.sheet.style import GROUND, INK, LOAD, STYLE
 from alula.reports.figures.study.points import OUTCOMES
 from alula.reports.words.numbers import number
@@ -153,7 +153,6 @@ def legend(figure: Figure, outcome: Words, others: Iterable[tuple[Any, str]] = (
     others : iterable of tuple, optional
         Further handles with their texts.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.lines import Line2D
 
     handles: list[Any] = []
@@ -170,16 +169,8 @@ def legend(figure: Figure, outcome: Words, others: Iterable[tuple[Any, str]] = (
     for handle, text in others:
         handles.append(handle)
         texts.append(text)
-    if not handles:
-        return
-    renderer = FigureCanvasAgg(figure).get_renderer()
-    for columns in range(min(5, len(texts)), 0, -1):
-        found = figure.legend(handles, texts, loc="outside upper center", ncols=columns, frameon=False)
-        for named in found.get_texts():
-            named.set_parse_math(False)
-        if columns == 1 or found.get_window_extent(renderer).width <= figure.bbox.width:
-            break
-        found.remove()
+    if handles:
+        legend_above(figure, handles, texts)
 
 
 def limit_handle() -> Any:

@@ -170,8 +170,8 @@ def test_brittle_links_have_no_elastic_tier(mixed):
 
 
 def test_a_link_printed_in_layers_is_never_said_to_want_a_check_that_it_is_refused():
-    """Its layers come apart before it flows, whatever its card: its safety factor is of breaking, as of a brittle link."""
-    laid = [f'parts.{part}.build_direction=[0, 0, 1]' for part in ("lever", "rod")]
+    """Its layers come apart before it flows, whatever its card: its safety factor is of breaking."""
+    laid = [f"parts.{part}.build_direction=[0, 0, 1]" for part in ("lever", "rod")]
     strength = [f'checks.{name}={{type="safety-factor", minimum=2}}' for name in ("collapse", "eyes")]
     one, both = (edited("spring-pedal", (*strength, *some)) for some in (laid[1:], laid))
     asked = [outcome(PEDAL, 2.5), outcome(ROD, 2.2)]

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from told_motion import pictures
 
 from alula.fea.beam.loads import BeamLoads, PointLoad
@@ -32,6 +33,7 @@ from alula.reports.study.columns import Parameter, Response
 
 SPEED = 60.0
 """Revolutions per minute of the crank: 2π rad/s."""
+PUSHED = "pushed forward by a name that is long"
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +91,7 @@ def test_forces_speeds_and_energies_of_a_motion(moved, drawn):
 
 
 def test_the_safety_factor_over_the_motion():
-    """Of two links of unlike strength, over the driven angle in degrees."""
+    """Of two links of unlike strength, over the driven angle in degrees; the legend has the bands' colours and room."""
     angles = np.radians(np.linspace(10.0, 350.0, 35))
     source = (Source(kind=SourceKind.DISCRETISATION),)
 
@@ -98,19 +100,19 @@ def test_the_safety_factor_over_the_motion():
         peak = Band(value=stress[pose], low=0.9 * stress[pose], high=1.2 * stress[pose], sources=source)
         one = SimpleNamespace(value=stress, low=0.9 * stress, high=1.2 * stress, pose=pose, stress=peak,
                               safety_factor=peak.inverse(strength))  # fmt: skip
-        return SimpleNamespace(link=name, strength=strength, load_cases={"turn": one}, worst=one)
+        return SimpleNamespace(link=name, strength=strength, load_cases={"turn": one, PUSHED: one}, worst=one)
 
     stresses = {"crank": 12.0 + 3.0 * np.sin(angles), "rod": 20.0 + 5.0 * np.cos(angles)}
     links = {"crank": link("crank", 40.0, stresses["crank"]), "rod": link("rod", 60.0, stresses["rod"])}
     checks = [SimpleNamespace(subject=Subject.link("rod"), quantity=Quantity.SAFETY_FACTOR, limit=1.7)]
     result = SimpleNamespace(
-        case=SimpleNamespace(load_cases={"turn": None}), links=links, checks=checks, drive_angles=angles, angles=angles,
+        case=SimpleNamespace(load_cases={"turn": None, PUSHED: None}), links=links, checks=checks, drive_angles=angles, angles=angles,
         drive=SimpleNamespace(link="crank"),
         moved=SimpleNamespace(motion=SimpleNamespace(coordinate="crank", instants=None)),
     )  # fmt: skip
     picture = envelope_figure(result)
     lines = [one for one in picture.plotted if len(one.y) == len(angles)]
-    for found, name in zip(lines, stresses, strict=True):
+    for found, name in zip(lines, np.repeat(list(stresses), 2), strict=True):
         assert (found.y_label, found.unit) == ("safety factor", "")
         assert found.x_label == "direction of crank (driven) [deg]"
         np.testing.assert_allclose(found.x, np.linspace(10.0, 350.0, 35))
@@ -118,6 +120,13 @@ def test_the_safety_factor_over_the_motion():
     levels = [one.y for one in picture.plotted if len(one.y) == 2]
     assert [1.7, 1.7] in [level.tolist() for level in levels]
     assert picture.png().startswith(b"\x89PNG")
+    [legend] = picture.figure.legends
+    assert [text.get_text() for text in legend.get_texts()][:3] == ["turn", PUSHED, "error band"]
+    assert legend.get_window_extent().x0 >= 0.0
+    drawn = {area.get_facecolor()[0].tobytes() for axes in picture.figure.axes for area in axes.collections}
+    named = {np.array(patch.get_facecolor()).tobytes() for patch in legend.findobj(Rectangle)}
+    assert len(drawn) == 2
+    assert drawn <= named
 
 
 def test_a_curve_of_a_study():
